@@ -1,0 +1,94 @@
+"""The network of lamella centre lines: nodes, lamellas and faces as flat arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+NODE_KINDS = ("regular", "boundary", "singular", "seam")
+REGULAR, BOUNDARY, SINGULAR, SEAM = range(4)
+
+
+@dataclass(frozen=True)
+class Network:
+    """A net of lamella centre lines on a surface of mean curvature H.
+
+    Lists of unequal length are stored one after the other: item ``k`` of a list with ``offsets`` is
+    ``values[offsets[k]:offsets[k + 1]]``.
+
+    Attributes
+    ----------
+    mean_curvature : float
+        H of the surface, 1/m, for the normals given here.
+    step : float
+        l0, the distance of neighbouring lamellas in u + v and in u - v, sqrt(m).
+    node_points, node_normals : (n, 3)
+        Positions (m) and unit surface normals.
+    node_kinds : (n,) int
+        Index into `NODE_KINDS`.
+    ids : tuple of str
+        "A1", "A2", ..., "B1", ...
+    families : (m,) str
+        "A" (geodesic torsion > 0) or "B" (< 0) of each lamella.
+    closed : (m,) bool
+        Whether the lamella returns to its start; its first sample and node are then repeated at the end.
+    sample_offsets : (m + 1,) int
+        Where each lamella's samples begin.
+    sample_points, sample_normals, sample_tangents : (k, 3)
+        Centre line samples (m), unit surface normals, unit tangents in the lamella's own direction.
+    sample_where : (k,) or (k, d)
+        The samples' places on the surface, in the surface's own coordinates.
+    sample_arclengths : (k,)
+        Arc length from the lamella's start, m.
+    stop_offsets : (m + 1,) int
+        Where each lamella's list of nodes begins.
+    stop_nodes : (q,) int
+        Node index.
+    stop_samples : (q,) int
+        Index of the node's sample within its lamella's samples.
+    stop_arclengths : (q,)
+        Arc length of the node from the lamella's start, m.
+    face_offsets : (f + 1,) int
+    face_nodes : (e,) int
+        Faces, counter-clockwise about the normal.
+    """
+
+    mean_curvature: float
+    step: float
+    node_points: Floats
+    node_normals: Floats
+    node_kinds: Integers
+    ids: tuple[str, ...]
+    families: NDArray[np.str_]
+    closed: NDArray[np.bool_]
+    sample_offsets: Integers
+    sample_points: Floats
+    sample_normals: Floats
+    sample_tangents: Floats
+    sample_where: NDArray[np.generic]
+    sample_arclengths: Floats
+    stop_offsets: Integers
+    stop_nodes: Integers
+    stop_samples: Integers
+    stop_arclengths: Floats
+    face_offsets: Integers
+    face_nodes: Integers
+
+    @property
+    def lengths(self) -> Floats:
+        """Arc length of each lamella, m, shape (m,)."""
+        return self.sample_arclengths[self.sample_offsets[1:] - 1]
+
+    def node_degrees(self) -> tuple[Integers, Integers]:
+        """Number of A and of B lamella stops at each node, two arrays of shape (n,)."""
+        is_a = np.repeat(self.families == "A", np.diff(self.stop_offsets))
+        count = len(self.node_points)
+        return (
+            np.bincount(self.stop_nodes[is_a], minlength=count),
+            np.bincount(self.stop_nodes[~is_a], minlength=count),
+        )

@@ -1,0 +1,33 @@
+"""A surface sampled as a mesh, for pictures and for programs that read meshes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SurfaceMesh:
+    """Vertices on the surface with their curvatures, and faces.
+
+    Attributes
+    ----------
+    points, normals : (n, 3)
+        Vertices (m) and unit surface normals.
+    faces : (f, 4) int
+        Vertex indices, counter-clockwise about the normal; a triangle repeats its last index.
+    mean_curvature, gaussian_curvature, k1, k2 : (n,)
+        H, K and the principal curvatures k1 >= k2 at the vertices, 1/m (K in 1/m^2).
+    """
+
+    points: Floats
+    normals: Floats
+    faces: NDArray[np.int64]
+    mean_curvature: Floats
+    gaussian_curvature: Floats
+    k1: Floats
+    k2: Floats
