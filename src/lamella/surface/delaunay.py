@@ -1,0 +1,136 @@
+"""Delaunay's unduloid and nodoid (DESIGN section 9): revolution surfaces of constant mean curvature."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lamella.errors import InputError
+from lamella.surface.elliptic import jacobi, quarter_period
+from lamella.surface.closed_form import Floats
+from lamella.surface.revolution import Profile, SurfaceOfRevolution
+
+# below this ratio of radii a Delaunay surface is a string of spheres to within drawing accuracy
+SPHERE_RATIO = 1e-3
+
+
+class Delaunay(SurfaceOfRevolution):
+    """Meridian r = r_m / dn(x, m), x = r_M H U, m = 1 - (r_m / r_M)^2, from the neck at z = 0.
+
+    z = T U + r_M (E(am x | m) - m sn x cn x / dn x), which is DESIGN's r_M [E(am(x + K) | m) - E(m)].
+    """
+
+    def __init__(self, neck_radius: float, bulge_radius: float, flux_sign: int) -> None:
+        if neck_radius < SPHERE_RATIO * bulge_radius:
+            raise InputError(
+                f"neck_radius = {neck_radius:g} m is {neck_radius / bulge_radius:.1e} of bulge_radius = "
+                f"{bulge_radius:g} m: a row of spheres (limit {SPHERE_RATIO:g}). On a sphere every point is umbilic: "
+                "all directions bend alike, so no net of lamellas is singled out",
+                "choose a wider neck",
+                "surface.neck_radius",
+            )
+        self.neck_radius, self.bulge_radius = neck_radius, bulge_radius
+        self.mean_curvature = 1.0 / (bulge_radius + flux_sign * neck_radius)
+        self.flux = flux_sign * self.mean_curvature * bulge_radius * neck_radius
+        self._m1 = (neck_radius / bulge_radius) ** 2
+
+    @property
+    def period(self) -> float:
+        """U from neck to neck, 2 K(m) / (r_M H)."""
+        return 2 * quarter_period(self._m1) / (self.bulge_radius * self.mean_curvature)
+
+    def profile(self, u: Floats) -> Profile:
+        rate = self.bulge_radius * self.mean_curvature
+        f = jacobi(rate * u, self._m1)
+        m = 1.0 - self._m1
+        bend = m * f.sn * f.cn / f.dn
+        r = self.neck_radius / f.dn
+        return Profile(
+            r,
+            self.flux * u + self.bulge_radius * (f.epsilon - bend),
+            r * bend * rate,
+            self.mean_curvature * r**2 + self.flux,
+        )
+
+
+class Unduloid(Delaunay):
+    """Unduloid between two heights, z = 0 at a neck; normal towards the axis, H = 1 / (r_M + r_m) > 0.
+
+    Parameters
+    ----------
+    neck_radius, bulge_radius : float
+        Smallest and largest radius r_m <= r_M, m; equal radii are a cylinder.
+    height : (float, float)
+        z0 < z1, m; several periods allowed.
+    """
+
+    kind = "unduloid"
+
+    def __init__(self, neck_radius: float, bulge_radius: float, height: tuple[float, float]) -> None:
+        if neck_radius > bulge_radius:
+            raise InputError(
+                f"neck_radius = {neck_radius:g} m is above bulge_radius = {bulge_radius:g} m",
+                "the neck is the smallest radius, the bulge the largest: swap them",
+                "surface.neck_radius",
+            )
+        super().__init__(neck_radius, bulge_radius, 1)
+        self.outline = self.between(*height)
+
+    def describe(self) -> dict[str, object]:
+        """Length of a full period, m."""
+        return {"period": float(self.profile(np.array([self.period])).z[0])}
+
+
+class Nodoid(Delaunay):
+    """Neck branch of a nodoid, |z| below the fold; normal away from the axis at the neck, H > 0.
+
+    Parameters
+    ----------
+    neck_radius, bulge_radius : float
+        Smallest and largest radius r_m < r_M of the whole nodoid, m; H = 1 / (r_M - r_m).
+    height : (float, float)
+        z0 < z1, m, inside (-fold, fold), where r^2 = r_M r_m at the fold.
+    """
+
+    kind = "nodoid"
+
+    def __init__(self, neck_radius: float, bulge_radius: float, height: tuple[float, float]) -> None:
+        if neck_radius >= bulge_radius:
+            raise InputError(
+                f"neck_radius = {neck_radius:g} m is not below bulge_radius = {bulge_radius:g} m "
+                "(H = 1 / (bulge_radius - neck_radius) has to be positive and finite)",
+                "the neck is the smallest radius, the bulge the largest",
+                "surface.neck_radius",
+            )
+        super().__init__(neck_radius, bulge_radius, -1)
+        fold = self.fold
+        for z in height:
+            if abs(z) >= fold:
+                raise InputError(
+                    f"z = {z:g} m lies at or beyond the nodoid's fold: |z| < {fold:.6g} m for these radii",
+                    "only the branch around the neck is offered: shorten the range or widen the radii",
+                    "surface.height",
+                )
+        self.outline = self.between(*height)
+
+    @property
+    def fold(self) -> float:
+        """Height of the fold r^2 = r_M r_m, where the meridian turns back, m."""
+        return float(abs(self.profile(np.array([self._fold_parameter])).z[0]))
+
+    @property
+    def _fold_parameter(self) -> float:
+        from lamella.surface.elliptic import first_kind
+
+        # dn^2 = r_m / r_M there, that is sn^2 = 1 / (1 + r_m / r_M)
+        sine = np.array([np.sqrt(1 / (1 + self.neck_radius / self.bulge_radius))])
+        return float(first_kind(sine, 1 - self._m1)[0]) / (self.bulge_radius * self.mean_curvature)
+
+    def parameter_at_height(self, z: float) -> float:
+        from scipy.optimize import brentq
+
+        reach = self._fold_parameter
+        return float(brentq(lambda u: float(self.profile(np.array([u])).z[0]) - z, -reach, reach, xtol=1e-15))
+
+    def describe(self) -> dict[str, object]:
+        """Height of the fold, m."""
+        return {"fold": self.fold}

@@ -1,0 +1,68 @@
+"""The helicoid, the ruled minimal surface: lamellas are its rulings and its helices."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lamella.surface.closed_form import ClosedForm, Complexes, Floats
+from lamella.surface.outline import Rectangle
+
+
+class Helicoid(ClosedForm):
+    """(c sinh U cos V, c sinh U sin V, +-c V) with c = |pitch| / 2 pi; normal e_U x e_V, H = 0.
+
+    Parameters
+    ----------
+    pitch : float
+        Rise of a full turn, m; negative: left-handed.
+    inner_radius, outer_radius : float
+        0 <= inner < outer, m.
+    turns : float
+        Number of full turns.
+    """
+
+    kind = "helicoid"
+    mean_curvature = 0.0
+
+    def __init__(self, pitch: float, inner_radius: float, outer_radius: float, turns: float) -> None:
+        self._c = abs(pitch) / (2 * np.pi)
+        self._sense = float(np.sign(pitch))
+        start, end = np.arcsinh(inner_radius / self._c), np.arcsinh(outer_radius / self._c)
+        self.outline = Rectangle(complex(start, 0), float(end - start), 2 * np.pi * turns)
+
+    def position(self, where: Complexes) -> Floats:
+        r = self._c * np.sinh(where.real)
+        return np.column_stack(
+            [r * np.cos(where.imag), r * np.sin(where.imag), self._sense * self._c * where.imag]
+        )
+
+    def frame(self, where: Complexes) -> tuple[Floats, Floats, Floats]:
+        c, s = np.cos(where.imag), np.sin(where.imag)
+        tanh, sech = np.tanh(where.real), self._sense / np.cosh(where.real)
+        zero = np.zeros_like(c)
+        e_v = np.column_stack([-tanh * s, tanh * c, sech])
+        return np.column_stack([c, s, zero]), e_v, np.column_stack([sech * s, -sech * c, tanh])
+
+    def metric(self, where: Complexes) -> Floats:
+        return self._c * np.cosh(where.real)
+
+    def log_metric_gradient(self, where: Complexes) -> Complexes:
+        return np.tanh(where.real).astype(complex)
+
+    def hopf(self, where: Complexes) -> Complexes:
+        return np.full(len(where), 0.5j * self._sense * self._c)
+
+    @property
+    def _root(self) -> complex:
+        return complex(np.sqrt(1j * self._sense * self._c))
+
+    def isothermic(self, where: Complexes) -> Complexes:
+        return self._root * where
+
+    def from_isothermic(self, w: Complexes) -> Complexes:
+        return w / self._root
+
+    @property
+    def longest_principal_line(self) -> float:
+        """Principal lines cross the parameter rectangle at 45 degrees: the narrow side decides."""
+        return float(np.sqrt(2 * self._c) * min(self.outline.width, self.outline.height))
