@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.surface.darboux import Darboux
+
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -41,6 +43,8 @@ class Network:
         Where each lamella's samples begin.
     sample_points, sample_normals, sample_tangents : (k, 3)
         Centre line samples (m), unit surface normals, unit tangents in the lamella's own direction.
+    sample_darboux : Darboux
+        kn, kg and tg of the lamellas at their samples, 1/m, each (k,).
     sample_where : (k,) or (k, d)
         The samples' places on the surface, in the surface's own coordinates.
     sample_arclengths : (k,)
@@ -70,6 +74,7 @@ class Network:
     sample_points: Floats
     sample_normals: Floats
     sample_tangents: Floats
+    sample_darboux: Darboux
     sample_where: NDArray[np.generic]
     sample_arclengths: Floats
     stop_offsets: Integers

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamella.surface.closed_form import Floats
+from lamella.surface.points import Floats
 from lamella.surface.revolution import Profile, SurfaceOfRevolution
 
 
@@ -28,6 +28,9 @@ class Catenoid(SurfaceOfRevolution):
 
     def parameter_at_height(self, z: float) -> float:
         return z / self.neck_radius
+
+    def radius_at(self, u: Floats) -> Floats:
+        return np.asarray(self.neck_radius * np.cosh(u))
 
     def profile(self, u: Floats) -> Profile:
         c = self.neck_radius

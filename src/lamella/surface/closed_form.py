@@ -12,12 +12,9 @@ from abc import ABC, abstractmethod
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lamella.surface.outline import Outline
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
+from lamella.surface.points import Complexes, Floats, SurfacePoints
 
 
 class ClosedForm(ABC):
@@ -30,7 +27,7 @@ class ClosedForm(ABC):
     kind : str
         Name in a project file.
     mean_curvature : float
-        H, 1/m, for the normal given by `normal`.
+        H, 1/m, for the normal e_U x e_V.
     outline : Outline
         The piece of the parameter plane the surface covers.
     hopf_order : int
@@ -43,20 +40,12 @@ class ClosedForm(ABC):
     hopf_order: int = 0
 
     @abstractmethod
-    def position(self, where: Complexes) -> Floats:
-        """Position, m, shape (n, 3)."""
-
-    @abstractmethod
-    def frame(self, where: Complexes) -> tuple[Floats, Floats, Floats]:
-        """Unit tangents e_U, e_V and unit normal n = e_U x e_V, each of shape (n, 3)."""
+    def at(self, where: Complexes) -> SurfacePoints:
+        """Everything about places `where`, shape (n,), in one evaluation."""
 
     @abstractmethod
     def metric(self, where: Complexes) -> Floats:
         """Conformal factor lambda, m per unit of zeta, shape (n,)."""
-
-    @abstractmethod
-    def log_metric_gradient(self, where: Complexes) -> Complexes:
-        """d(ln lambda)/dU + i d(ln lambda)/dV, shape (n,)."""
 
     @abstractmethod
     def hopf(self, where: Complexes) -> Complexes:
@@ -83,50 +72,18 @@ class ClosedForm(ABC):
         """What a user should know about this surface before building it."""
         return ()
 
-    def hopf_log_gradient(self, where: Complexes) -> Complexes:
-        """d(ln |Q|)/dU + i d(ln |Q|)/dV; zero where Q is constant."""
-        return np.zeros(len(where), complex)
-
-    def normal(self, where: Complexes) -> Floats:
-        """Unit normal, shape (n, 3)."""
-        return self.frame(where)[2]
-
-    def vector(self, where: Complexes, components: Complexes) -> Floats:
-        """Tangent vectors Re(components) e_U + Im(components) e_V, shape (n, 3)."""
-        e_u, e_v, _ = self.frame(where)
-        return components.real[:, None] * e_u + components.imag[:, None] * e_v
-
-    def deviator(self, where: Complexes) -> Complexes:
-        """2 Q / lambda^2: trace-free shape operator [[Re, -Im], [-Im, -Re]] in (e_U, e_V), 1/m."""
-        return 2 * self.hopf(where) / self.metric(where) ** 2
-
-    def shape_operator(self, where: Complexes) -> Floats:
-        """Shape operator S as symmetric matrices in space, S t = -dn(t), 1/m, shape (n, 3, 3)."""
-        e_u, e_v, _ = self.frame(where)
-        d = self.deviator(where)
-        uu, vv = e_u[:, :, None] * e_u[:, None, :], e_v[:, :, None] * e_v[:, None, :]
-        uv = e_u[:, :, None] * e_v[:, None, :]
-        s = (self.mean_curvature + d.real)[:, None, None] * uu + (self.mean_curvature - d.real)[:, None, None] * vv
-        return np.asarray(s - d.imag[:, None, None] * (uv + uv.transpose(0, 2, 1)))
-
-    def principal_curvatures(self, where: Complexes) -> tuple[Floats, Floats]:
-        """k1 >= k2, 1/m, each of shape (n,)."""
-        half = np.abs(self.deviator(where))
-        return self.mean_curvature + half, self.mean_curvature - half
-
-    def principal_directions(self, where: Complexes) -> tuple[Floats, Floats]:
-        """Unit d1, d2 with (d1, d2, n) right-handed, each of shape (n, 3); undefined at umbilics."""
-        turn = np.exp(-0.5j * np.angle(self.hopf(where)))
-        return self.vector(where, turn), self.vector(where, 1j * turn)
-
-    def mu(self, where: Complexes) -> Floats:
-        """mu = (H^2 - K)^(1/4), 1/sqrt(m), shape (n,): du = mu <d1, .>, dv = mu <d2, .>."""
-        return np.sqrt(np.abs(self.deviator(where)))
-
-    def log_mu_gradient(self, where: Complexes) -> Floats:
-        """Surface gradient of ln mu = ln(H^2 - K) / 4, 1/m, shape (n, 3).
-
-        At a zero of Q it is infinite along the radius; there only the finite part, zero by symmetry, is given.
-        """
-        gradient = self.hopf_log_gradient(where) / 2 - self.log_metric_gradient(where)
-        return self.vector(where, gradient / self.metric(where))
+    def _points(
+        self,
+        where: Complexes,
+        frame: tuple[Floats, Floats, Floats, Floats],
+        metric: Floats,
+        log_metric_gradient: Complexes,
+        log_hopf_gradient: Complexes | float = 0.0,
+    ) -> SurfacePoints:
+        """Points from position, e_U, e_V, n; lambda; and d/dU + i d/dV of ln lambda and of ln |Q|."""
+        return SurfacePoints(
+            *frame,
+            np.full(len(where), self.mean_curvature),
+            2 * self.hopf(where) / metric**2,
+            (log_hopf_gradient / 2 - log_metric_gradient) / metric,
+        )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamella.surface.closed_form import Floats
+from lamella.surface.points import Floats
 from lamella.surface.revolution import Profile, SurfaceOfRevolution
 
 
@@ -29,6 +29,9 @@ class Cylinder(SurfaceOfRevolution):
 
     def parameter_at_height(self, z: float) -> float:
         return z / self.radius
+
+    def radius_at(self, u: Floats) -> Floats:
+        return np.full_like(u, self.radius)
 
     def profile(self, u: Floats) -> Profile:
         full = np.full_like(u, self.radius)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import brentq
 
 from lamella.errors import InputError
-from lamella.surface.elliptic import jacobi, quarter_period
-from lamella.surface.closed_form import Floats
+from lamella.surface.elliptic import epsilon, first_kind, jacobi, quarter_period
+from lamella.surface.points import Floats
 from lamella.surface.revolution import Profile, SurfaceOfRevolution
 
 # below this ratio of radii a Delaunay surface is a string of spheres to within drawing accuracy
@@ -38,6 +39,9 @@ class Delaunay(SurfaceOfRevolution):
         """U from neck to neck, 2 K(m) / (r_M H)."""
         return 2 * quarter_period(self._m1) / (self.bulge_radius * self.mean_curvature)
 
+    def radius_at(self, u: Floats) -> Floats:
+        return np.asarray(self.neck_radius / jacobi(self.bulge_radius * self.mean_curvature * u, self._m1).dn)
+
     def profile(self, u: Floats) -> Profile:
         rate = self.bulge_radius * self.mean_curvature
         f = jacobi(rate * u, self._m1)
@@ -46,7 +50,7 @@ class Delaunay(SurfaceOfRevolution):
         r = self.neck_radius / f.dn
         return Profile(
             r,
-            self.flux * u + self.bulge_radius * (f.epsilon - bend),
+            self.flux * u + self.bulge_radius * (epsilon(rate * u, f, self._m1) - bend),
             r * bend * rate,
             self.mean_curvature * r**2 + self.flux,
         )
@@ -119,15 +123,11 @@ class Nodoid(Delaunay):
 
     @property
     def _fold_parameter(self) -> float:
-        from lamella.surface.elliptic import first_kind
-
         # dn^2 = r_m / r_M there, that is sn^2 = 1 / (1 + r_m / r_M)
         sine = np.array([np.sqrt(1 / (1 + self.neck_radius / self.bulge_radius))])
         return float(first_kind(sine, 1 - self._m1)[0]) / (self.bulge_radius * self.mean_curvature)
 
     def parameter_at_height(self, z: float) -> float:
-        from scipy.optimize import brentq
-
         reach = self._fold_parameter
         return float(brentq(lambda u: float(self.profile(np.array([u])).z[0]) - z, -reach, reach, xtol=1e-15))
 

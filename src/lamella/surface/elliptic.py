@@ -17,12 +17,11 @@ Floats = NDArray[np.float64]
 
 
 class Jacobi(NamedTuple):
-    """Jacobi's functions of one argument, and the elliptic integral of the second kind E(am x | m)."""
+    """Jacobi's functions of one argument."""
 
     sn: Floats
     cn: Floats
     dn: Floats
-    epsilon: Floats
 
 
 def quarter_period(m1: float) -> float:
@@ -31,7 +30,7 @@ def quarter_period(m1: float) -> float:
 
 
 def jacobi(x: Floats, m1: float) -> Jacobi:
-    """Jacobi's sn, cn, dn and epsilon(x) = E(am x | m) for any real x.
+    """Jacobi's sn, cn and dn for any real x.
 
     Parameters
     ----------
@@ -39,6 +38,17 @@ def jacobi(x: Floats, m1: float) -> Jacobi:
         Argument.
     m1 : float
         Complementary parameter 1 - m, 0 < m1 <= 1; given itself because m is near 1 on thin necks.
+    """
+    m = 1.0 - m1
+    quarter = quarter_period(m1)
+    turns = np.round(x / (2 * quarter))
+    sn, cn, _, _ = ellipj(x - turns * 2 * quarter, m)
+    sign = 1.0 - 2.0 * (turns % 2)
+    return Jacobi(sign * sn, sign * cn, np.sqrt(m1 + m * np.square(cn)))
+
+
+def epsilon(x: Floats, f: Jacobi, m1: float) -> Floats:
+    """Jacobi's epsilon E(am x | m) for any real x, given f = jacobi(x, m1).
 
     Notes
     -----
@@ -46,15 +56,10 @@ def jacobi(x: Floats, m1: float) -> Jacobi:
     epsilon(x + 2 K) = epsilon(x) + 2 E(m) (DLMF 22.16.26).
     """
     m = 1.0 - m1
-    quarter = quarter_period(m1)
-    turns = np.round(x / (2 * quarter))
-    sn, cn, _, _ = ellipj(x - turns * 2 * quarter, m)
-    # cn >= 0 on the reduced interval; rounding at its very ends must not turn the sign
-    c2 = np.maximum(cn, 0.0) ** 2
-    d2 = m1 + m * c2
-    epsilon = sn * elliprf(c2, d2, 1.0) - m / 3 * sn**3 * elliprd(c2, d2, 1.0)
-    sign = np.where(turns % 2 == 0, 1.0, -1.0)
-    return Jacobi(sign * sn, sign * cn, np.sqrt(d2), epsilon + 2 * turns * float(ellipe(m)))
+    turns = np.round(x / (2 * quarter_period(m1)))
+    sn = f.sn * (1.0 - 2.0 * (turns % 2))
+    c2, d2 = np.square(f.cn), np.square(f.dn)
+    return np.asarray(sn * elliprf(c2, d2, 1.0) - m / 3 * sn**3 * elliprd(c2, d2, 1.0) + 2 * turns * float(ellipe(m)))
 
 
 def first_kind(sine: Floats, m: float) -> Floats:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamella.surface.closed_form import ClosedForm, Complexes, Floats
+from lamella.surface.closed_form import ClosedForm
 from lamella.surface.outline import Disc
+from lamella.surface.points import Complexes, Floats, SurfacePoints
 
 
 class Enneper(ClosedForm):
@@ -44,34 +45,32 @@ class Enneper(ClosedForm):
             f"itself from a parameter radius of {self.crossing_radius:.4g} on; it cannot be built there",
         )
 
-    def position(self, where: Complexes) -> Floats:
+    def at(self, where: Complexes) -> SurfacePoints:
         n = self.order
         high = where ** (2 * n - 1) / (2 * n - 1)
-        return self.scale * np.column_stack(
+        position = self.scale * np.column_stack(
             [(where - high).real, (1j * (where + high)).real, (2 * where**n / n).real]
         )
-
-    def frame(self, where: Complexes) -> tuple[Floats, Floats, Floats]:
-        g = where ** (self.order - 1)
+        g = where ** (n - 1)
         size = 1 + np.abs(g) ** 2
         phi = np.column_stack([1 - g**2, 1j * (1 + g**2), 2 * g]) / size[:, None]
-        n = np.column_stack([2 * g.real, 2 * g.imag, size - 2]) / size[:, None]
-        return np.ascontiguousarray(phi.real), np.ascontiguousarray(-phi.imag), n
+        normal = np.column_stack([2 * g.real, 2 * g.imag, size - 2]) / size[:, None]
+        frame = position, np.ascontiguousarray(phi.real), np.ascontiguousarray(-phi.imag), normal
+        k, r2 = 2 * n - 2, np.abs(where) ** 2
+        return self._points(
+            where,
+            frame,
+            self.scale * size,
+            k * np.abs(where) ** (k - 2) * where / size,
+            # at the flat point itself the gradient is infinite along the radius, and zero across it by symmetry
+            self.hopf_order * where / np.where(r2 > 0, r2, np.inf),
+        )
 
     def metric(self, where: Complexes) -> Floats:
         return np.asarray(self.scale * (1 + np.abs(where) ** (2 * self.order - 2)))
 
-    def log_metric_gradient(self, where: Complexes) -> Complexes:
-        k = 2 * self.order - 2
-        r = np.abs(where)
-        return np.asarray(k * r ** (k - 2) * where / (1 + r**k))
-
     def hopf(self, where: Complexes) -> Complexes:
         return np.asarray(-self.scale * (self.order - 1) * where**self.hopf_order)
-
-    def hopf_log_gradient(self, where: Complexes) -> Complexes:
-        r2 = np.abs(where) ** 2
-        return np.asarray(self.hopf_order * where / np.where(r2 > 0, r2, np.inf))
 
     @property
     def _root(self) -> complex:

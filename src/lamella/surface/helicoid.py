@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamella.surface.closed_form import ClosedForm, Complexes, Floats
+from lamella.surface.closed_form import ClosedForm
 from lamella.surface.outline import Rectangle
+from lamella.surface.points import Complexes, Floats, SurfacePoints
 
 
 class Helicoid(ClosedForm):
@@ -30,24 +31,18 @@ class Helicoid(ClosedForm):
         start, end = np.arcsinh(inner_radius / self._c), np.arcsinh(outer_radius / self._c)
         self.outline = Rectangle(complex(start, 0), float(end - start), 2 * np.pi * turns)
 
-    def position(self, where: Complexes) -> Floats:
-        r = self._c * np.sinh(where.real)
-        return np.column_stack(
-            [r * np.cos(where.imag), r * np.sin(where.imag), self._sense * self._c * where.imag]
-        )
-
-    def frame(self, where: Complexes) -> tuple[Floats, Floats, Floats]:
+    def at(self, where: Complexes) -> SurfacePoints:
         c, s = np.cos(where.imag), np.sin(where.imag)
-        tanh, sech = np.tanh(where.real), self._sense / np.cosh(where.real)
-        zero = np.zeros_like(c)
+        r, cosh = self._c * np.sinh(where.real), np.cosh(where.real)
+        tanh, sech, zero = np.tanh(where.real), self._sense / cosh, np.zeros_like(c)
+        position = np.column_stack([r * c, r * s, self._sense * self._c * where.imag])
+        e_u = np.column_stack([c, s, zero])
         e_v = np.column_stack([-tanh * s, tanh * c, sech])
-        return np.column_stack([c, s, zero]), e_v, np.column_stack([sech * s, -sech * c, tanh])
+        normal = np.column_stack([sech * s, -sech * c, tanh])
+        return self._points(where, (position, e_u, e_v, normal), self._c * cosh, tanh.astype(complex))
 
     def metric(self, where: Complexes) -> Floats:
-        return self._c * np.cosh(where.real)
-
-    def log_metric_gradient(self, where: Complexes) -> Complexes:
-        return np.tanh(where.real).astype(complex)
+        return np.asarray(self._c * np.cosh(where.real))
 
     def hopf(self, where: Complexes) -> Complexes:
         return np.full(len(where), 0.5j * self._sense * self._c)

@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from lamella.surface.closed_form import ClosedForm, Complexes, Floats
+from lamella.surface.closed_form import ClosedForm
 from lamella.surface.outline import Ring
+from lamella.surface.points import Complexes, Floats, SurfacePoints
 
 
 class Profile(NamedTuple):
@@ -39,6 +40,10 @@ class SurfaceOfRevolution(ClosedForm):
     def profile(self, u: Floats) -> Profile:
         """Meridian at the parameter U, arrays of u's shape."""
 
+    @abstractmethod
+    def radius_at(self, u: Floats) -> Floats:
+        """r at the parameter U, without the rest of the profile."""
+
     def parameter_at_height(self, z: float) -> float:
         """U where the meridian has height z (z is monotonic in U on the pieces offered)."""
         if z == 0.0:
@@ -59,24 +64,18 @@ class SurfaceOfRevolution(ClosedForm):
         ends = sorted(self.parameter_at_height(z) for z in (z0, z1))
         return Ring(*ends)
 
-    def position(self, where: Complexes) -> Floats:
-        p = self.profile(where.real)
-        return np.column_stack([p.r * np.cos(where.imag), p.r * np.sin(where.imag), p.z])
-
-    def frame(self, where: Complexes) -> tuple[Floats, Floats, Floats]:
+    def at(self, where: Complexes) -> SurfacePoints:
         p = self.profile(where.real)
         c, s = np.cos(where.imag), np.sin(where.imag)
         out, up = p.r_u / p.r, p.z_u / p.r
+        position = np.column_stack([p.r * c, p.r * s, p.z])
         e_u = np.column_stack([out * c, out * s, up])
         e_v = np.column_stack([-s, c, np.zeros_like(c)])
-        return e_u, e_v, np.column_stack([-up * c, -up * s, out])
+        normal = np.column_stack([-up * c, -up * s, out])
+        return self._points(where, (position, e_u, e_v, normal), p.r, out.astype(complex))
 
     def metric(self, where: Complexes) -> Floats:
-        return self.profile(where.real).r
-
-    def log_metric_gradient(self, where: Complexes) -> Complexes:
-        p = self.profile(where.real)
-        return (p.r_u / p.r).astype(complex)
+        return self.radius_at(where.real)
 
     def hopf(self, where: Complexes) -> Complexes:
         return np.full(len(where), -self.flux / 2, complex)

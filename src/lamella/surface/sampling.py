@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.surface.closed_form import ClosedForm, Complexes
+from lamella.surface.closed_form import ClosedForm
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.outline import Disc, Rectangle, Ring, Square
+from lamella.surface.points import Complexes
 from lamella.surface.scherk import Scherk
 
 Integers = NDArray[np.int64]
@@ -64,9 +65,10 @@ def surface_mesh(surface: ClosedForm, tolerance: float = 1e-3, limit: int = 400)
         Most vertices along either parameter.
     """
     where, _ = places(surface, 33, 33)
-    points = surface.position(where)
+    rough = surface.at(where)
+    points = rough.position
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
-    k1, k2 = surface.principal_curvatures(where)
+    k1, k2 = rough.principal_curvatures
     curvature = float(max(np.abs(k1).max(), np.abs(k2).max()))
     edge = np.sqrt(8 * tolerance * size / curvature)
     grid = points[-33 * 33 :] if len(points) >= 33 * 33 else points[1:]
@@ -75,9 +77,10 @@ def surface_mesh(surface: ClosedForm, tolerance: float = 1e-3, limit: int = 400)
     long_v = np.linalg.norm(np.diff(grid, axis=1, append=grid[:, :1]), axis=2).sum(1).max()
     rows, columns = (int(np.clip(np.ceil(long / edge), 24, limit)) for long in (long_u, long_v))
     where, faces = places(surface, rows, columns)
-    k1, k2 = surface.principal_curvatures(where)
-    mean = np.trace(surface.shape_operator(where), axis1=1, axis2=2) / 2
-    return SurfaceMesh(surface.position(where), surface.normal(where), faces, mean, k1 * k2, k1, k2)
+    at = surface.at(where)
+    k1, k2 = at.principal_curvatures
+    mean = np.trace(at.shape_operator, axis1=1, axis2=2) / 2
+    return SurfaceMesh(at.position, at.normal, faces, mean, k1 * k2, k1, k2)
 
 
 def area(surface: ClosedForm, panels: int = 24) -> float:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamella.surface.closed_form import ClosedForm, Complexes, Floats
+from lamella.surface.closed_form import ClosedForm
 from lamella.surface.elliptic import first_kind, jacobi
 from lamella.surface.outline import Square
+from lamella.surface.points import Complexes, Floats, SurfacePoints
 
 
 def asymptotic_to_conformal(p: Floats) -> Floats:
@@ -39,28 +40,22 @@ class Scherk(ClosedForm):
         self.outline = Square(float(np.arcsinh(np.tan(extent))))
 
     @staticmethod
-    def _hyperbolic(coordinate: Floats) -> tuple[Floats, Floats]:
+    def hyperbolic(coordinate: Floats) -> tuple[Floats, Floats]:
         """cosh and sinh of the asymptotic parameter that belongs to a conformal one."""
         f = jacobi(coordinate / np.sqrt(2.0), 0.5)
         return 1 / f.cn**2, np.sqrt(2.0) * f.sn * f.dn / f.cn**2
-
-    def gudermannian(self, where: Complexes) -> tuple[Floats, Floats]:
-        """X = gd^-1(x), Y = gd^-1(y) at given places."""
-        p, q = (np.arcsinh(self._hyperbolic(c)[1]) for c in (where.imag, where.real))
-        return (p + q) / 2, (p - q) / 2
 
     def from_gudermannian(self, x: Floats, y: Floats) -> Complexes:
         """Places with given X, Y."""
         return np.asarray(asymptotic_to_conformal(x - y) + 1j * asymptotic_to_conformal(x + y))
 
-    def position(self, where: Complexes) -> Floats:
-        x, y = self.gudermannian(where)
-        return self.scale * np.column_stack(
+    def at(self, where: Complexes) -> SurfacePoints:
+        (cosh_p, sinh_p), (cosh_q, sinh_q) = self.hyperbolic(where.imag), self.hyperbolic(where.real)
+        p, q = np.arcsinh(sinh_p), np.arcsinh(sinh_q)
+        x, y = (p + q) / 2, (p - q) / 2
+        position = self.scale * np.column_stack(
             [np.arctan(np.sinh(x)), np.arctan(np.sinh(y)), np.log(np.cosh(x) / np.cosh(y))]
         )
-
-    def frame(self, where: Complexes) -> tuple[Floats, Floats, Floats]:
-        x, y = self.gudermannian(where)
         # derivatives by X and by Y of (gd X, gd Y, ln cosh X - ln cosh Y)
         zero = np.zeros_like(x)
         by_x = np.column_stack([1 / np.cosh(x), zero, np.tanh(x)])
@@ -68,18 +63,15 @@ class Scherk(ClosedForm):
         e_u, e_v = by_x - by_y, by_x + by_y
         e_u /= np.linalg.norm(e_u, axis=1)[:, None]
         e_v /= np.linalg.norm(e_v, axis=1)[:, None]
-        return e_u, e_v, np.cross(e_u, e_v)
-
-    def metric(self, where: Complexes) -> Floats:
-        (cosh_p, _), (cosh_q, _) = self._hyperbolic(where.imag), self._hyperbolic(where.real)
-        return np.asarray(self.scale * np.sqrt(cosh_p * cosh_q / (cosh_p + cosh_q)))
-
-    def log_metric_gradient(self, where: Complexes) -> Complexes:
-        (cosh_p, sinh_p), (cosh_q, sinh_q) = self._hyperbolic(where.imag), self._hyperbolic(where.real)
         total = cosh_p + cosh_q
         by_v = np.sqrt(cosh_p) * (sinh_p / cosh_p - sinh_p / total) / 2
         by_u = np.sqrt(cosh_q) * (sinh_q / cosh_q - sinh_q / total) / 2
-        return np.asarray(by_u + 1j * by_v)
+        metric = self.scale * np.sqrt(cosh_p * cosh_q / total)
+        return self._points(where, (position, e_u, e_v, np.cross(e_u, e_v)), metric, by_u + 1j * by_v)
+
+    def metric(self, where: Complexes) -> Floats:
+        (cosh_p, _), (cosh_q, _) = self.hyperbolic(where.imag), self.hyperbolic(where.real)
+        return np.asarray(self.scale * np.sqrt(cosh_p * cosh_q / (cosh_p + cosh_q)))
 
     def hopf(self, where: Complexes) -> Complexes:
         return np.full(len(where), -0.25j * self.scale)

@@ -1,0 +1,130 @@
+"""How far apart the lamellas are: from `cells` or `spacing` to the step l0."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lamella.errors import InputError
+from lamella.network.domain import Domain, domain_of
+from lamella.network.lattice import build_lattice
+from lamella.surface.closed_form import ClosedForm
+from lamella.surface.outline import Ring
+
+LEAST_CELLS = 3
+# a net of this many nodes takes a few minutes to compute and write
+MOST_NODES = 500_000
+# measured for surface, network and lamellas together, plus a fixed share for the program itself
+BYTES_PER_NODE, BYTES_FIXED = 12_000, 150_000_000
+
+
+@dataclass(frozen=True)
+class Density:
+    """The chosen density.
+
+    Attributes
+    ----------
+    cells : int
+        A lamellas crossed once around the axis, or cells along the longest principal line.
+    step : float
+        l0, sqrt(m).
+    estimated_nodes : int
+        Cells that fit on the surface.
+    requested : str
+        What the project asked for.
+    """
+
+    cells: int
+    step: float
+    estimated_nodes: int
+    requested: str
+
+
+def _whole_length(surface: ClosedForm) -> float:
+    """Isothermic length that has to hold a whole number of cells, sqrt(m)."""
+    if isinstance(surface.outline, Ring):
+        turn = surface.isothermic(np.array([2j * np.pi]))[0]
+        # u + v once around
+        return float(abs(turn.real + turn.imag))
+    return surface.longest_principal_line
+
+
+def _isothermic_area(domain: Domain) -> float:
+    """Cells on the domain, from its lamella lines."""
+    lines = domain.lines()
+    return float(np.maximum(lines.end - lines.start, 0).sum() / 2)
+
+
+def _median_edge(surface: ClosedForm, whole: float) -> float:
+    """Median cell edge divided by the step, sqrt(m): l / l0 = 1 / (sqrt2 mu)."""
+    trial = 64
+    domain = domain_of(surface, whole / trial)
+    lattice = build_lattice(domain, domain.lines())
+    line = lattice.lines
+    point = line.base[lattice.owner] + lattice.t * line.direction[lattice.owner]
+    where = domain.place(line.sheet[lattice.owner], point)
+    where = where[lattice.kinds[lattice.nodes] == 0]
+    return float(np.median(1 / surface.at(where).mu) / np.sqrt(2))
+
+
+def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: float | None = None) -> Density:
+    """The step l0 that holds a whole number of cells and comes nearest to what is asked.
+
+    Parameters
+    ----------
+    surface : ClosedForm
+    cells : int, optional
+        Number of A lamellas that cross a loop once around the axis; on a simply connected surface number of
+        cells along its longest principal line. Default 24 when spacing is not given either.
+    spacing : float, optional
+        Wanted median cell edge, m.
+
+    Raises
+    ------
+    InputError
+        Both given; fewer than 3 cells; a net of more than 500,000 nodes.
+    """
+    if cells is not None and spacing is not None:
+        raise InputError(
+            f"both cells = {cells} and spacing = {spacing:g} m are given", "give one of the two", "network"
+        )
+    whole = _whole_length(surface)
+    requested = f"cells = {cells}"
+    if cells is None and spacing is None:
+        cells, requested = 24, "cells = 24 (default)"
+    key = "network.cells"
+    if spacing is not None:
+        key, requested = "network.spacing", f"spacing = {spacing:g} m"
+        median = _median_edge(surface, whole)
+        exact = whole * median / spacing
+        if exact > 1e9:
+            cells = 10**9
+        else:
+            cells = max(round(exact), 1)
+        if cells < LEAST_CELLS:
+            raise InputError(
+                f"spacing = {spacing:g} m leaves {exact:.2g} cells across the surface, at least {LEAST_CELLS} are "
+                "needed",
+                f"choose a spacing of at most {whole * median / LEAST_CELLS:.3g} m",
+                key,
+            )
+    assert cells is not None
+    if cells < LEAST_CELLS:
+        raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
+    # the number of nodes grows with the square of the cells: an estimate costs nothing
+    trial = 48
+    estimate = _isothermic_area(domain_of(surface, whole / trial)) * (cells / trial) ** 2
+    if estimate > MOST_NODES:
+        most = int(cells * np.sqrt(MOST_NODES / estimate))
+        memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
+        remedy = f"at most {most} cells fit this surface"
+        if spacing is not None:
+            remedy = f"choose a spacing of at least {spacing * cells / max(most, 1):.3g} m"
+        raise InputError(
+            f"{requested} would make about {estimate:,.0f} nodes and take about {memory:,.0f} GB of memory "
+            f"(limit {MOST_NODES:,} nodes)",
+            remedy,
+            key,
+        )
+    return Density(cells, whole / cells, round(estimate), requested)

@@ -1,0 +1,75 @@
+"""What every surface answers about places on it: position, frame, shape operator, gradient of mu."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class SurfacePoints:
+    """Points of a surface in bulk; tangent vectors are complex numbers: h means Re(h) e_u + Im(h) e_v.
+
+    Attributes
+    ----------
+    position : (n, 3)
+        m.
+    e_u, e_v, normal : (n, 3)
+        Orthonormal, normal = e_u x e_v.
+    mean_curvature : (n,)
+        H, 1/m.
+    deviator : (n,) complex
+        Trace-free shape operator [[Re, -Im], [-Im, -Re]] in (e_u, e_v), 1/m; its size is (k1 - k2) / 2.
+    log_mu_gradient : (n,) complex
+        Tangent vector grad ln mu = grad ln(H^2 - K) / 4, 1/m.
+    """
+
+    position: Floats
+    e_u: Floats
+    e_v: Floats
+    normal: Floats
+    mean_curvature: Floats
+    deviator: Complexes
+    log_mu_gradient: Complexes
+
+    def vector(self, components: Complexes) -> Floats:
+        """Tangent vectors in space, (n, 3)."""
+        return np.asarray(components.real[:, None] * self.e_u + components.imag[:, None] * self.e_v)
+
+    def components(self, vectors: Floats) -> Complexes:
+        """Components of tangent vectors given in space (n, 3), as complex numbers (n,)."""
+        return np.asarray(
+            np.einsum("ij,ij->i", vectors, self.e_u) + 1j * np.einsum("ij,ij->i", vectors, self.e_v)
+        )
+
+    @property
+    def shape_operator(self) -> Floats:
+        """Shape operator S as symmetric matrices in space, S t = -dn(t), 1/m, (n, 3, 3)."""
+        uu = self.e_u[:, :, None] * self.e_u[:, None, :]
+        vv = self.e_v[:, :, None] * self.e_v[:, None, :]
+        uv = self.e_u[:, :, None] * self.e_v[:, None, :]
+        h, d = self.mean_curvature, self.deviator
+        diagonal = (h + d.real)[:, None, None] * uu + (h - d.real)[:, None, None] * vv
+        return np.asarray(diagonal - d.imag[:, None, None] * (uv + uv.transpose(0, 2, 1)))
+
+    @property
+    def principal_curvatures(self) -> tuple[Floats, Floats]:
+        """k1 >= k2, 1/m, each (n,)."""
+        half = np.abs(self.deviator)
+        return self.mean_curvature + half, self.mean_curvature - half
+
+    @property
+    def principal_directions(self) -> tuple[Floats, Floats]:
+        """Unit d1, d2 with (d1, d2, n) right-handed, each (n, 3); arbitrary at umbilics."""
+        turn = np.exp(-0.5j * np.angle(self.deviator))
+        return self.vector(turn), self.vector(1j * turn)
+
+    @property
+    def mu(self) -> Floats:
+        """mu = (H^2 - K)^(1/4), 1/sqrt(m), (n,): du = mu <d1, .>, dv = mu <d2, .> (DESIGN section 2)."""
+        return np.sqrt(np.abs(self.deviator))
