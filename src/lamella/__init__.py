@@ -1,2 +1,91 @@
-"""x"""
+"""Strained gridshells from straight or circular lamellas with congruent nodes.
+
+Signs and names, the same everywhere (DESIGN section 2 of the method, paper section 2):
+
+unit tangent t, surface normal n, sideways u = n x t, and
+
+    t' =  kg u + kn n        kg  geodesic curvature
+    u' = -kg t + tg n        kn  normal curvature
+    n' = -kn t - tg u        tg  geodesic torsion
+
+Principal curvatures k1 >= k2 with unit directions (d1, d2, n) right-handed, H = (k1 + k2) / 2, K = k1 k2. A sphere has
+H > 0 for its inward normal. Isothermic coordinates: du = mu <d1, .>, dv = mu <d2, .>, mu = (H^2 - K)^(1/4). Family A
+are the lamellas with tg > 0, along u + v = const; family B those with tg < 0, along u - v = const.
+
+Lengths are metres, angles degrees, stresses Pa.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 __version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from lamella.errors import InputError as InputError
+    from lamella.fabrication import make_parts as make_parts
+    from lamella.fabrication import nest as nest
+    from lamella.network.make import make_network as make_network
+    from lamella.network.network import Network as Network
+    from lamella.pipeline import Results as Results
+    from lamella.pipeline import compute as compute
+    from lamella.pipeline import run as run
+    from lamella.pipeline import write as write
+    from lamella.project import Project as Project
+    from lamella.project import parse_project as parse_project
+    from lamella.project import read_project as read_project
+    from lamella.strip.lamellas import Lamellas as Lamellas
+    from lamella.strip.lamellas import Section as Section
+    from lamella.strip.lamellas import make_lamellas as make_lamellas
+    from lamella.strip.material import Material as Material
+    from lamella.strip.material import find_material as find_material
+    from lamella.surface.catenoid import Catenoid as Catenoid
+    from lamella.surface.cylinder import Cylinder as Cylinder
+    from lamella.surface.delaunay import Nodoid as Nodoid
+    from lamella.surface.delaunay import Unduloid as Unduloid
+    from lamella.surface.enneper import Enneper as Enneper
+    from lamella.surface.helicoid import Helicoid as Helicoid
+    from lamella.surface.sampling import surface_mesh as surface_mesh
+    from lamella.surface.scherk import Scherk as Scherk
+
+# imported on first use: `lamella --help` must not wait for scipy
+_HOMES = {
+    "InputError": "errors",
+    "make_parts": "fabrication",
+    "nest": "fabrication",
+    "make_network": "network.make",
+    "Network": "network.network",
+    "Results": "pipeline",
+    "compute": "pipeline",
+    "run": "pipeline",
+    "write": "pipeline",
+    "Project": "project",
+    "parse_project": "project",
+    "read_project": "project",
+    "Lamellas": "strip.lamellas",
+    "Section": "strip.lamellas",
+    "make_lamellas": "strip.lamellas",
+    "Material": "strip.material",
+    "find_material": "strip.material",
+    "Catenoid": "surface.catenoid",
+    "Cylinder": "surface.cylinder",
+    "Nodoid": "surface.delaunay",
+    "Unduloid": "surface.delaunay",
+    "Enneper": "surface.enneper",
+    "Helicoid": "surface.helicoid",
+    "surface_mesh": "surface.sampling",
+    "Scherk": "surface.scherk",
+}
+
+__all__ = ["__version__", *_HOMES]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'lamella' has no attribute {name!r}")
+    return getattr(import_module(f"lamella.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

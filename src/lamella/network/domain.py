@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.network.network import Period
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.outline import Disc, Rectangle, Ring, Square
 from lamella.surface.scherk import Scherk, asymptotic_to_conformal
@@ -87,6 +88,11 @@ class Domain(ABC):
     @abstractmethod
     def rim(self, where: Complexes) -> Rim:
         """The nearest rim of places zeta."""
+
+    @property
+    def periods(self) -> tuple[Period, ...]:
+        """Cells crossed on a loop around each hole."""
+        return ()
 
     def canonical(self, sheet: Integers, point: Complexes) -> Integers:
         """Name of lattice points, (n, 3) int, the same from every sheet and turn."""
@@ -161,6 +167,11 @@ class Band(PlaneDomain):
         self.outline = surface.outline
         turn = 2j * np.pi / self.slope
         self.period = complex(round(turn.real), round(turn.imag))
+
+    @property
+    def periods(self) -> tuple[Period, ...]:
+        turn = 2j * np.pi / self.slope
+        return (Period("axis", turn.imag, turn.real),)
 
     def extent(self) -> tuple[Floats, Floats]:
         # one turn's worth of lamellas of each family; every other one is a repetition

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,14 @@ Integers = NDArray[np.int64]
 
 NODE_KINDS = ("regular", "boundary", "singular", "seam")
 REGULAR, BOUNDARY, SINGULAR, SEAM = range(4)
+
+
+class Period(NamedTuple):
+    """Lamellas crossed on a loop: (a + b) / l0 and (a - b) / l0 for a period (a, b) of (u, v)."""
+
+    around: str
+    a_cells: float
+    b_cells: float
 
 
 @dataclass(frozen=True)
@@ -29,6 +38,12 @@ class Network:
         H of the surface, 1/m, for the normals given here.
     step : float
         l0, the distance of neighbouring lamellas in u + v and in u - v, sqrt(m).
+    cells : int
+        Cells around the axis, or along the longest principal line.
+    periods : tuple of Period
+        One for each hole.
+    left_out : int
+        Lamellas left out for being short.
     node_points, node_normals : (n, 3)
         Positions (m) and unit surface normals.
     node_kinds : (n,) int
@@ -64,6 +79,9 @@ class Network:
 
     mean_curvature: float
     step: float
+    cells: int
+    periods: tuple[Period, ...]
+    left_out: int
     node_points: Floats
     node_normals: Floats
     node_kinds: Integers
@@ -88,6 +106,31 @@ class Network:
     def lengths(self) -> Floats:
         """Arc length of each lamella, m, shape (m,)."""
         return self.sample_arclengths[self.sample_offsets[1:] - 1]
+
+    @property
+    def stop_owner(self) -> Integers:
+        """Lamella of each stop, (q,)."""
+        return np.repeat(np.arange(len(self.ids)), np.diff(self.stop_offsets))
+
+    @property
+    def cell_edges(self) -> Floats:
+        """Arc length between neighbouring nodes of each lamella, m, one after the other."""
+        owner = self.stop_owner
+        return np.diff(self.stop_arclengths)[owner[1:] == owner[:-1]]
+
+    @property
+    def node_angles(self) -> Floats:
+        """Angle between the A and the B lamella at every regular node, degrees, from their tangents."""
+        owner = self.stop_owner
+        tangents = self.sample_tangents[self.sample_offsets[owner] + self.stop_samples]
+        is_a = self.families[owner] == "A"
+        pair = np.zeros((2, len(self.node_points), 3))
+        pair[0, self.stop_nodes[is_a]] = tangents[is_a]
+        pair[1, self.stop_nodes[~is_a]] = tangents[~is_a]
+        a, b = pair[:, self.node_kinds == REGULAR]
+        across = np.linalg.norm(np.cross(a, b), axis=1)
+        # arctan keeps all digits near 90 degrees
+        return np.degrees(np.arctan2(across, np.abs(np.einsum("ij,ij->i", a, b))))
 
     def node_degrees(self) -> tuple[Integers, Integers]:
         """Number of A and of B lamella stops at each node, two arrays of shape (n,)."""

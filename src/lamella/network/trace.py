@@ -108,7 +108,7 @@ def _rim_directions(points: SurfacePoints, sample: Integers, tangent: Complexes)
 
 def trace_closed_form(
     surface: ClosedForm, density: Density, *, minimum_length: float = 0.5
-) -> tuple[Network, int]:
+) -> Network:
     """The network of a closed-form surface: lamellas u + v = i l0 and u - v = j l0, exactly on it.
 
     Parameters
@@ -121,9 +121,7 @@ def trace_closed_form(
 
     Returns
     -------
-    network : Network
-    left_out : int
-        Number of lamellas left out for being short.
+    Network
 
     Raises
     ------
@@ -188,9 +186,12 @@ def trace_closed_form(
         _loops(lattice),
         _rim_directions(points, node_sample, domain.rim(node_where).tangent),
     )
-    network = Network(
+    return Network(
         mean_curvature=surface.mean_curvature,
         step=density.step,
+        cells=density.cells,
+        periods=domain.periods,
+        left_out=left_out,
         node_points=points.position[node_sample],
         node_normals=points.normal[node_sample],
         node_kinds=lattice.kinds,
@@ -211,7 +212,6 @@ def trace_closed_form(
         face_offsets=face_offsets,
         face_nodes=face_nodes,
     )
-    return network, left_out
 
 
 def _running(values: Floats, owner: Integers) -> Floats:

@@ -36,5 +36,5 @@ def lamella_darboux(points: SurfacePoints, heading: NDArray[np.complex128]) -> D
         in a conformal metric gives kg = u . grad ln mu.
     """
     turned = points.deviator * heading**2
-    kg = (np.conj(points.log_mu_gradient) * 1j * heading).real
+    kg = np.ascontiguousarray((np.conj(points.log_mu_gradient) * 1j * heading).real)
     return Darboux(points.mean_curvature + turned.real, kg, -turned.imag)

@@ -1,0 +1,179 @@
+"""The command line. Heavy parts are imported by the command that needs them: --help is instant."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import FrameType
+
+from lamella import __version__
+from lamella.errors import InputError
+
+_ABOUT = """\
+lamella takes a designer from a surface of constant mean curvature to the net of lamellas on it,
+the flat strips with every slot marked, the drawings for the laser and the stresses that bending and
+twisting leave in the strips.
+
+  lamella new unduloid            write a commented starter project, unduloid.toml
+  lamella run unduloid.toml       compute it and write the folder out/unduloid
+  lamella check unduloid.toml     only look for mistakes
+
+Open out/unduloid/report.html in a browser, model.3dm in Rhino, fabrication/*.dxf at the laser."""
+
+
+def _parser() -> argparse.ArgumentParser:
+    plain = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(prog="lamella", description=_ABOUT, formatter_class=plain)
+    parser.add_argument("--version", action="version", version=f"lamella {__version__}")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+
+    run = commands.add_parser(
+        "run",
+        help="compute a project and write its folder",
+        formatter_class=plain,
+        description="Compute a project and write its folder, whole or not at all.\n\n"
+        "stages and what they write:\n"
+        "  surface      summary.json, project.toml, surface.obj, surface.ply, report.html\n"
+        "  network      + network.json, network.obj, nodes.csv, model.3dm\n"
+        "  lamellas     + lamellas.json, strips in model.3dm\n"
+        "  fabrication  + fabrication/*.dxf, fabrication/schedule.csv",
+    )
+    run.add_argument("project", type=Path, help="project file (.toml); see `lamella new`")
+    run.add_argument("--out", type=Path, metavar="DIR", help="folder to write (default: out/<project file's stem>)")
+    run.add_argument("--until", metavar="STAGE", default="fabrication", help="last stage (default: %(default)s)")
+    run.add_argument("--quiet", action="store_true", help="print nothing but warnings and errors")
+
+    new = commands.add_parser("new", help="write a commented starter project")
+    new.add_argument("kind", help="surface: unduloid, nodoid, catenoid, cylinder, helicoid, enneper or scherk")
+    new.add_argument("--out", type=Path, metavar="FILE", help="file to write (default: <kind>.toml; - for the screen)")
+
+    check = commands.add_parser("check", help="look for mistakes in a project without running it")
+    check.add_argument("project", type=Path, help="project file (.toml)")
+
+    examples = commands.add_parser("examples", help="list the examples, or copy them")
+    examples.add_argument("names", nargs="*", help="examples to copy (default: all)")
+    examples.add_argument("--copy", type=Path, metavar="DIR", help="folder to copy them into")
+
+    schema = commands.add_parser("schema", help="print the JSON schema of the project file or of network.json")
+    schema.add_argument("which", choices=["project", "network"])
+    return parser
+
+
+def _say(message: str) -> None:
+    print(message, file=sys.stderr, flush=True)
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    from lamella.pipeline import run
+
+    quiet = arguments.quiet
+    folder = run(
+        arguments.project,
+        out=arguments.out,
+        until=arguments.until,
+        progress=(lambda message: None) if quiet else _say,
+        warn=lambda message: _say(f"warning: {message}"),
+    )
+    if not quiet:
+        print(f"report: {folder / 'report.html'}")
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    from lamella.pipeline import plan
+    from lamella.project import located, read_project
+
+    project = read_project(arguments.project)
+    try:
+        surface, density = plan(project)
+    except InputError as error:
+        raise located(error, arguments.project) from None
+    print(
+        f"{arguments.project}: a good project. {surface.kind}, H = {surface.mean_curvature:.6g} 1/m, "
+        f"{density.cells} cells, about {density.estimated_nodes:,} nodes"
+    )
+
+
+def _new(arguments: argparse.Namespace) -> None:
+    from lamella.project import explain_kind
+    from lamella.starter import starter
+
+    kind = arguments.kind
+    message, remedy = explain_kind(kind)
+    if message:
+        raise InputError(message, remedy)
+    target: Path = arguments.out or Path(f"{kind}.toml")
+    text = starter(kind, kind if str(target) == "-" else target.stem)
+    if str(target) == "-":
+        print(text, end="")
+        return
+    if target.exists():
+        raise InputError(f"{target} is there already", "name another file with --out, or delete it")
+    from lamella.files.whole import write_whole
+
+    if not target.parent.is_dir():
+        raise InputError(f"{target.parent}: no such folder", "make it first, or name another file with --out")
+    write_whole(target, text.encode())
+    print(f"wrote {target}; next: lamella run {target}")
+
+
+def _examples(arguments: argparse.Namespace) -> None:
+    from lamella.example_files import copy_examples, list_examples
+
+    if arguments.copy is None and not arguments.names:
+        for name, title in list_examples():
+            print(f"{name:24s} {title}")
+        print("\ncopy them with: lamella examples --copy DIR [NAME ...]")
+        return
+    for path in copy_examples(arguments.names, arguments.copy or Path(".")):
+        print(path)
+
+
+def _schema(arguments: argparse.Namespace) -> None:
+    import json
+
+    if arguments.which == "project":
+        from lamella.project import project_schema as schema
+    else:
+        from lamella.files.network_json import network_schema as schema
+    print(json.dumps(schema(), indent=2))
+
+
+_COMMANDS = {"run": _run, "check": _check, "new": _new, "examples": _examples, "schema": _schema}
+
+
+def _terminate(number: int, frame: FrameType | None) -> None:
+    # a polite kill unwinds like an interrupt, so that temporary folders go
+    raise SystemExit(128 + number)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; the exit code is 0, or 2 for what the user can mend."""
+    with contextlib.suppress(ValueError):
+        signal.signal(signal.SIGTERM, _terminate)
+    parsed = _parser().parse_args(arguments)
+    try:
+        _COMMANDS[parsed.command](parsed)
+        sys.stdout.flush()
+    except InputError as error:
+        _say(f"lamella: {error}")
+        return 2
+    except BrokenPipeError:
+        # the reader of our output has gone; there is nobody to tell
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except KeyboardInterrupt:
+        _say("lamella: interrupted, nothing written")
+        return 130
+    except OSError as error:
+        name = f"{error.filename}: " if error.filename else ""
+        _say(f"lamella: {name}{error.strerror or error}; nothing has been changed\n  remedy: free some space or write elsewhere with --out")
+        return 2
+    except MemoryError:
+        _say("lamella: not enough memory; nothing has been changed\n  remedy: choose fewer cells")
+        return 2
+    return 0

@@ -1,0 +1,52 @@
+"""The examples that come with the program."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from lamella.errors import InputError
+from lamella.files.whole import write_whole
+
+
+def _folder() -> Traversable:
+    packaged = files("lamella") / "examples"
+    # an editable install has them beside the sources
+    return packaged if packaged.is_dir() else Path(__file__).parents[2] / "examples"
+
+
+def _all() -> dict[str, Traversable]:
+    return {item.name: item for item in sorted(_folder().iterdir(), key=lambda i: i.name) if item.name.endswith(".toml")}
+
+
+def list_examples() -> list[tuple[str, str]]:
+    """File name and first comment line of every example."""
+    return [(name, item.read_text().partition("\n")[0].lstrip("# ")) for name, item in _all().items()]
+
+
+def copy_examples(names: list[str], target: Path) -> list[Path]:
+    """Copy examples into a folder, which is made if it is not there; files that are there are kept.
+
+    Raises
+    ------
+    InputError
+        Unknown name; a file of that name is there already.
+    """
+    known = _all()
+    wanted = [name if name.endswith(".toml") else f"{name}.toml" for name in names] or list(known)
+    for name in wanted:
+        if name not in known:
+            near = get_close_matches(name, known, 1, 0.3)
+            raise InputError(
+                f"no example {name!r}" + (f", did you mean {near[0]!r}?" if near else ""), f"there are {', '.join(known)}"
+            )
+        if (target / name).exists():
+            raise InputError(f"{target / name} is there already", "name another folder with --copy")
+    if target.exists() and not target.is_dir():
+        raise InputError(f"{target} is a file", "name a folder with --copy")
+    target.mkdir(parents=True, exist_ok=True)
+    for name in wanted:
+        write_whole(target / name, known[name].read_bytes())
+    return [target / name for name in wanted]

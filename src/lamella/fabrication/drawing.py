@@ -1,0 +1,108 @@
+"""The drawings a laser takes: both families' parts, and all pieces on their sheets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from lamella.fabrication.dxf_text import Block, BlockWriter, DxfFile, Placed
+from lamella.fabrication.engraving import engrave
+from lamella.fabrication.part import Part, Parts
+from lamella.fabrication.sheet import Nesting
+from lamella.fabrication.stroke_font import text_strokes
+
+MM = 1e3
+# between sheets in the drawing, as a share of their length
+SHEET_SPACE = 0.05
+
+
+def write_drawings(
+    folder: Path, parts: Parts, nesting: Nesting, *, name: str, version: str
+) -> tuple[Path, ...]:
+    """Write ``A.dxf``, ``B.dxf`` (each part once, in rows) and ``sheets.dxf`` (every piece in its place).
+
+    Layer CUT holds closed outlines with slots as notches, MARK node centre lines (LINE) and orientation
+    triangles (closed LWPOLYLINE), TEXT ids as strokes, SHEET outlines and numbers of the sheets, which are
+    not to be cut. Entities of a part carry extended data of the application "LAMELLA": the part's id and
+    the number of the copy.
+
+    Parameters
+    ----------
+    folder : Path
+        An existing folder.
+    parts : Parts
+    nesting : Nesting
+        Of those parts.
+    name, version : str
+        Of the project and of the program, for the header.
+
+    Returns
+    -------
+    tuple of Path
+        The files written.
+
+    Raises
+    ------
+    OSError
+        Where a file cannot be written whole.
+    """
+    file = DxfFile(name=name, version=version)
+    blocks = [_part_block(part, file.owner) for part in parts.parts]
+    paths = []
+    for family in "AB":
+        rows = [
+            (part, block) for part, block in zip(parts.parts, blocks, strict=True) if part.family == family
+        ]
+        paths.append(folder / f"{family}.dxf")
+        file.write(paths[-1], _rows(rows, nesting.gap))
+    paths.append(folder / "sheets.dxf")
+    file.write(paths[-1], _sheets(nesting, blocks, file.owner))
+    return tuple(paths)
+
+
+def _part_block(part: Part, owner: str) -> Block:
+    """A part's entities in its own frame, mm."""
+    engraving = engrave(part)
+    writer = BlockWriter(owner)
+    writer.polyline("CUT", part.outline * (MM, MM, 1.0), closed=True, tag=part.id)
+    writer.lines("MARK", MM * engraving.nodes, tag=part.id)
+    writer.polyline("MARK", MM * engraving.arrow, closed=True, tag=part.id)
+    for stroke in engraving.strokes:
+        writer.polyline("TEXT", MM * stroke, closed=False, tag=part.id)
+    return writer.block()
+
+
+def _rows(rows: list[tuple[Part, Block]], gap: float) -> Iterator[Placed]:
+    """Parts below each other, aligned at the left."""
+    top = 0.0
+    for part, block in rows:
+        left, low, _, high = part.bounds
+        yield Placed(block, -MM * left, MM * (top - high))
+        top -= high - low + gap
+
+
+def _sheets(nesting: Nesting, blocks: list[Block], owner: str) -> Iterator[Placed]:
+    """Sheets from left to right and the pieces on them."""
+    lengths = nesting.sizes[:, 0] * (1 + SHEET_SPACE)
+    left = np.cumsum(lengths) - lengths
+    sizes = nesting.sizes.tolist()
+    for number, ((length, width), corner) in enumerate(zip(sizes, left.tolist(), strict=True)):
+        writer = BlockWriter(owner)
+        corners = np.array([(0.0, 0.0), (length, 0.0), (length, width), (0.0, width)])
+        writer.polyline("SHEET", MM * corners, closed=True, tag="")
+        size = 0.05 * width
+        for stroke in text_strokes(f"SHEET {number + 1}"):
+            writer.polyline("SHEET", MM * (size * stroke + (0.0, width + 0.5 * size)), closed=False, tag="")
+        yield Placed(writer.block(), MM * corner, 0.0)
+    x = MM * (left[nesting.sheets] + nesting.x)
+    for index, copy, x_mm, y_mm, turned in zip(
+        nesting.parts.tolist(),
+        nesting.copies.tolist(),
+        x.tolist(),
+        (MM * nesting.y).tolist(),
+        (nesting.rotations == 180.0).tolist(),
+        strict=True,
+    ):
+        yield Placed(blocks[index], x_mm, y_mm, turned, copy)

@@ -1,0 +1,221 @@
+"""From the lamellas of a network to flat parts: ends, slots, splits and what the user should know of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.fabrication.flat import outline, outline_area
+from lamella.fabrication.notes import Notes
+from lamella.fabrication.part import Part, Parts
+from lamella.fabrication.rules import ROUNDING, Rules
+from lamella.fabrication.splitting import cut_stations
+from lamella.network.network import SINGULAR, Network
+from lamella.strip.lamellas import Lamellas
+
+Floats = NDArray[np.float64]
+
+
+def make_parts(
+    network: Network,
+    lamellas: Lamellas,
+    *,
+    density: float,
+    end_distance: float = 0.05,
+    hub_radius: float = 0.02,
+    slot_width: float | None = None,
+    sheet: tuple[float, float] = (12.0, 2.0),
+    gap: float = 0.01,
+) -> Parts:
+    """Flat parts of every lamella.
+
+    Parameters
+    ----------
+    network : Network
+    lamellas : Lamellas
+        Of that network.
+    density : float
+        kg/m3.
+    end_distance : float
+        From the outermost slot's axis, or the rim's node where that lies further out, to the strip's end, m.
+    hub_radius : float
+        From a singular node to the strip's end, m.
+    slot_width : float, optional
+        m; twice the thickness if not given.
+    sheet : (float, float)
+        Length and width of the sheets parts are cut from, m.
+    gap : float
+        Between parts, and from parts to the sheet's edge, m.
+
+    Returns
+    -------
+    Parts
+
+    Raises
+    ------
+    InputError
+        Where the measures contradict each other.
+    """
+    section = lamellas.section
+    rules = Rules(
+        layers=section.layers,
+        offset=section.offset,
+        height=section.height,
+        thickness=section.thickness,
+        curvature=float(network.mean_curvature),
+        density=density,
+        end_distance=end_distance,
+        hub_radius=hub_radius,
+        slot_width=2 * section.thickness if slot_width is None else slot_width,
+        sheet=sheet,
+        gap=gap,
+    )
+    rules.check()
+    longest = rules.longest_on_sheet
+    degree_a, degree_b = network.node_degrees()
+    crossing = (degree_a > 0) & (degree_b > 0) & (network.node_kinds != SINGULAR)
+    notes = Notes()
+    parts: list[Part] = []
+    for index in range(len(network.ids)):
+        stops = slice(int(network.stop_offsets[index]), int(network.stop_offsets[index + 1]))
+        nodes = network.stop_nodes[stops]
+        hub = network.node_kinds[nodes] == SINGULAR
+        stations = lamellas.stop_stations[stops]
+        parts.extend(
+            _lamella_parts(
+                network.ids[index],
+                index,
+                str(network.families[index]),
+                bool(network.closed[index]),
+                stations,
+                crossing[nodes],
+                hub,
+                rules,
+                longest,
+                notes,
+            )
+        )
+    return Parts(tuple(parts), tuple(notes.sentences(rules, len(network.ids), len(parts))))
+
+
+def _lamella_parts(
+    name: str,
+    index: int,
+    family: str,
+    closed: bool,
+    stations: Floats,
+    crossing: NDArray[np.bool_],
+    hub: NDArray[np.bool_],
+    rules: Rules,
+    longest: float,
+    notes: Notes,
+) -> Iterator[Part]:
+    """Parts of one lamella."""
+    if closed:
+        # the ring opens in the middle of its last cell, so that no slot lies at the cut
+        half = 0.5 * float(stations[-1] - stations[-2])
+        start, end = float(stations[0]) - half, float(stations[-1]) - half
+        stations, crossing = stations[:-1], crossing[:-1]
+    else:
+        # slots of a crossing close to the rim can reach beyond the rim's node
+        slots = stations[crossing]
+        first = np.min(np.append(slots + rules.spread[0], stations[0]))
+        last = np.max(np.append(slots + rules.spread[-1], stations[-1]))
+        start = float(stations[0] + rules.hub_radius if hub[0] else first - rules.end_distance)
+        end = float(stations[-1] - rules.hub_radius if hub[-1] else last + rules.end_distance)
+    if end - start <= rules.slot_width:
+        notes.left_out.append(name)
+        return
+    cuts = _cuts(name, start, end, stations, rules, longest, notes)
+    if end - start > rules.longest_ring and not len(cuts):
+        notes.left_out.append(name)
+        return
+    bounds = np.concatenate(([start], cuts, [end]))
+    for piece, (low, high) in enumerate(zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)):
+        # a hub's node lies beyond the strip's end but belongs to its first or last piece
+        inside = (stations > (low if piece else -np.inf)) & (
+            stations < (high if piece < len(cuts) else np.inf)
+        )
+        yield _part(
+            f"{name}.{piece + 1}" if len(cuts) else name,
+            index,
+            family,
+            low,
+            high,
+            stations[inside],
+            crossing[inside],
+            rules,
+            notes,
+        )
+
+
+def _cuts(
+    name: str,
+    start: float,
+    end: float,
+    stations: Floats,
+    rules: Rules,
+    longest: float,
+    notes: Notes,
+) -> Floats:
+    """Where a lamella is split; notes why."""
+    cuts = cut_stations(start, end, stations, min(longest, rules.longest_ring))
+    if cuts is None:
+        notes.oversize.append((name, end - start))
+        cuts = cut_stations(start, end, stations, rules.longest_ring)
+    if cuts is None:
+        return np.empty(0)
+    if len(cuts):
+        notes.pieces += len(cuts) + 1
+        if end - start > rules.longest_ring:
+            notes.too_round += 1
+        else:
+            notes.too_long.append(end - start)
+    return cuts
+
+
+def _part(
+    name: str,
+    index: int,
+    family: str,
+    start: float,
+    end: float,
+    nodes: Floats,
+    crossing: NDArray[np.bool_],
+    rules: Rules,
+    notes: Notes,
+) -> Part:
+    """One part with its slots, or without where they would come too close."""
+    slots = np.sort((nodes[crossing, None] + rules.spread).ravel())
+    edge = 0.5 * rules.height if family == "A" else -0.5 * rules.height
+    scale = min(1.0, 1.0 - rules.curvature * edge)
+    left_out = 0
+    if len(slots):
+        between = scale * np.diff(slots)
+        outside = scale * min(slots[0] - start, end - slots[-1])
+        needed = 2 * rules.slot_width - ROUNDING
+        if outside < 0.75 * needed or (len(between) and between.min() < needed):
+            left_out, slots = len(slots), slots[:0]
+            notes.unslotted.append((name, float(np.diff(nodes).min()) if len(nodes) > 1 else np.inf))
+    vertices = outline(start, end, rules.height, rules.curvature, slots, rules.slot_width, family == "A")
+    area = outline_area(vertices)
+    return Part(
+        id=name,
+        lamella=index,
+        family=family,
+        quantity=rules.layers,
+        height=rules.height,
+        thickness=rules.thickness,
+        curvature=rules.curvature,
+        start=start,
+        end=end,
+        nodes=nodes,
+        slots=slots,
+        slot_width=rules.slot_width,
+        slots_left_out=left_out,
+        outline=vertices,
+        area=area,
+        mass=rules.density * rules.thickness * area,
+    )

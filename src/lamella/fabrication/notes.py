@@ -1,0 +1,84 @@
+"""What happened while parts were made, in a few sentences for the user."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from lamella.fabrication.rules import Rules
+
+
+@dataclass
+class Notes:
+    """Lamellas and parts that did not come out as plain strips.
+
+    Attributes
+    ----------
+    too_long : list of float
+        Lengths (m) of the lamellas split to fit the sheet.
+    too_round : int
+        Lamellas split since they would overlap themselves.
+    pieces : int
+        Pieces of all the split lamellas.
+    oversize : list of (str, float)
+        Id and length (m) of the lamellas with a cell too long for the sheet.
+    left_out : list of str
+        Ids of the lamellas no part is made of.
+    unslotted : list of (str, float)
+        Id and smallest cell edge (m) of the parts without slots.
+    """
+
+    too_long: list[float] = field(default_factory=list)
+    too_round: int = 0
+    pieces: int = 0
+    oversize: list[tuple[str, float]] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    unslotted: list[tuple[str, float]] = field(default_factory=list)
+
+    def sentences(self, rules: Rules, lamellas: int, parts: int) -> Iterator[str]:
+        """One warning a matter, given the numbers of all lamellas and parts."""
+        sheet = f"{max(rules.sheet):g} x {min(rules.sheet):g} m"
+        if self.pieces:
+            reasons = []
+            if self.too_long:
+                longest = f"the longest has {max(self.too_long):.3f} m"
+                reasons.append(f"{len(self.too_long)} do not fit the sheet of {sheet} ({longest})")
+            if self.too_round:
+                reasons.append(f"{self.too_round} turn through more than 1.9 pi and would overlap themselves")
+            yield (
+                f"{len(self.too_long) + self.too_round} of {lamellas} lamellas were split midway between "
+                f"nodes into {self.pieces} pieces: {'; '.join(reasons)}"
+            )
+        if self.oversize:
+            name, length = max(self.oversize, key=lambda item: item[1])
+            yield (
+                f"{len(self.oversize)} of {lamellas} lamellas do not fit the sheet of {sheet} even if cut at "
+                f"every cell (the longest is {name} with {length:.3f} m): drawn alone on over-size sheets"
+            )
+        if self.left_out:
+            yield (
+                f"{len(self.left_out)} of {lamellas} lamellas are left out of the parts "
+                f"({_few(self.left_out)}): nothing remains of them between hubs of radius "
+                f"{1e3 * rules.hub_radius:g} mm, or a single cell turns through more than 1.9 pi"
+            )
+        if self.unslotted:
+            between = 2 * rules.slot_width / rules.edge_scale
+            spread = float(rules.spread[-1])
+            edge = min(edge for _, edge in self.unslotted)
+            smallest = f"their smallest cell edge is {1e3 * edge:.1f} mm; " if np.isfinite(edge) else ""
+            offset = f", an offset of {1e3 * between:.1f} mm" if rules.layers > 1 else ""
+            layers = f"{rules.layers} layer{'s' if rules.layers > 1 else ''}"
+            yield (
+                f"{len(self.unslotted)} of {parts} parts are drawn without slots, with marks only "
+                f"({_few([name for name, _ in self.unslotted])}): less than one slot width "
+                f"({1e3 * rules.slot_width:g} mm) would be left between slots or to an end; {smallest}"
+                f"{layers} at {1e3 * rules.offset:g} mm need {1e3 * (2 * spread + between):.1f} mm from node "
+                f"to node{offset} and {1e3 * (spread + 0.75 * between):.1f} mm from a node to an end"
+            )
+
+
+def _few(names: Sequence[str]) -> str:
+    """The first names of a list."""
+    return ", ".join(names[:5]) + (", ..." if len(names) > 5 else "")

@@ -1,0 +1,115 @@
+"""The measures that every part of a structure shares, and which of them no part can be made with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.errors import InputError
+from lamella.fabrication.flat import longest_fitting
+
+Floats = NDArray[np.float64]
+
+# a flat ring closer to a full turn than this would leave its ends no room
+LARGEST_TURN = 1.9 * np.pi
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Rules:
+    """Measures of every part, m, kg.
+
+    Attributes
+    ----------
+    layers : int
+        Parallel strips of a lamella.
+    offset : float
+        Distance of neighbouring layers, m.
+    height, thickness : float
+        Of a strip, m.
+    curvature : float
+        Of the developed centre line, 1/m.
+    density : float
+        kg/m3.
+    end_distance : float
+        From the last slot's axis or the rim's node to the strip's end, m.
+    hub_radius : float
+        From a singular node to the strip's end, m.
+    slot_width : float
+        m.
+    sheet : (float, float)
+        Length and width, m.
+    gap : float
+        Between parts and to the sheet's edge, m.
+    """
+
+    layers: int
+    offset: float
+    height: float
+    thickness: float
+    curvature: float
+    density: float
+    end_distance: float
+    hub_radius: float
+    slot_width: float
+    sheet: tuple[float, float]
+    gap: float
+
+    @property
+    def spread(self) -> Floats:
+        """Stations of a crossing's slots from its node, m, (layers,)."""
+        steps = np.arange(self.layers, dtype=np.float64) - 0.5 * (self.layers - 1)
+        return np.asarray(steps * self.offset, dtype=np.float64)
+
+    @property
+    def edge_scale(self) -> float:
+        """Length along the shorter edge for each length along the centre line."""
+        return 1.0 - 0.5 * abs(self.curvature) * self.height
+
+    @property
+    def longest_ring(self) -> float:
+        """Length that turns through `LARGEST_TURN`, m."""
+        return LARGEST_TURN / abs(self.curvature) if self.curvature else np.inf
+
+    @property
+    def longest_on_sheet(self) -> float:
+        """Length of the longest strip that fits the sheet, m."""
+        length, width = max(self.sheet) - 2 * self.gap, min(self.sheet) - 2 * self.gap
+        return longest_fitting(length, width, self.height, self.curvature, LARGEST_TURN)
+
+    def check(self) -> None:
+        """Raise an `InputError` for measures that no part can be made with."""
+        least = (
+            ("density", self.density, 0.0),
+            ("gap", self.gap, 0.0),
+            ("sheet", min(self.sheet), 2 * self.gap),
+        )
+        for name, value, bound in least:
+            if not (np.isfinite(value) and value > bound):
+                raise InputError(f"{name} is {value:g}, it has to be more than {bound:g}", f"raise {name}")
+        if not (np.isfinite(self.hub_radius) and self.hub_radius >= 0):
+            raise InputError(
+                f"hub_radius is {self.hub_radius:g} m, it cannot be less than 0", "give 0 or more"
+            )
+        if not (np.isfinite(self.slot_width) and self.slot_width >= self.thickness):
+            raise InputError(
+                f"slot_width is {self.slot_width:g} m, less than the thickness {self.thickness:g} m "
+                "of the strip that goes in",
+                f"raise slot_width to {2 * self.thickness:g} m, twice the thickness",
+            )
+        # a tighter circle's inner edge would be narrower than the slots and their distances
+        if self.edge_scale <= 0.5 or abs(self.curvature) * self.slot_width >= self.edge_scale:
+            raise InputError(
+                f"the lamellas' circle has a radius of {1 / abs(self.curvature):g} m, too little for a strip "
+                f"{self.height:g} m high with slots {self.slot_width:g} m wide",
+                f"lower the lamella's height below {1 / abs(self.curvature):g} m, and the slot width",
+            )
+        nearest = 1.5 * self.slot_width / self.edge_scale
+        if not (np.isfinite(self.end_distance) and self.end_distance >= nearest - ROUNDING):
+            raise InputError(
+                f"end_distance is {self.end_distance:g} m, which leaves less than one slot width "
+                f"({self.slot_width:g} m) beyond the last slot",
+                f"raise end_distance to {nearest:.6f} m or more",
+            )

@@ -1,0 +1,68 @@
+"""lamellas.json: curvatures and stresses along every lamella, and its developed node marks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import orjson
+
+from lamella.files.whole import write_whole
+from lamella.network.network import Network
+from lamella.strip.lamellas import Lamellas
+
+SCHEMA = "lamella/lamellas/1"
+
+
+def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: str, version: str) -> None:
+    """Write lamellas.json: lengths in m, curvatures in 1/m, stresses in Pa, one list item a sample.
+
+    Parameters
+    ----------
+    path : Path
+    network : Network
+    lamellas : Lamellas
+    name, version : str
+        Of the project and of the program.
+    """
+    section = lamellas.section
+    along = {
+        "arclength": network.sample_arclengths,
+        "normal_curvature": network.sample_darboux.kn,
+        "geodesic_curvature": network.sample_darboux.kg,
+        "geodesic_torsion": network.sample_darboux.tg,
+        "stress_bending": lamellas.bending,
+        "stress_torsion": lamellas.torsion,
+        "stress_helix_edge": lamellas.helix_edge,
+        "stress_helix_centre": lamellas.helix_centre,
+        "stress_restraint": lamellas.restraint,
+        "von_mises": lamellas.von_mises,
+        "utilisation": lamellas.utilisation,
+        "planarity": lamellas.planarity,
+    }
+    samples, stops = network.sample_offsets.tolist(), network.stop_offsets.tolist()
+    content = {
+        "schema": SCHEMA,
+        "version": version,
+        "name": name,
+        "units": {"length": "m", "curvature": "1/m", "stress": "Pa"},
+        "section": {
+            "height": section.height,
+            "thickness": section.thickness,
+            "layers": section.layers,
+            "offset": section.offset,
+            "marks": section.marks,
+        },
+        "development": {"curvature": network.mean_curvature},
+        "lamellas": [
+            {
+                "id": lamella,
+                "family": str(network.families[i]),
+                "developed_length": float(lamellas.developed_lengths[i]),
+                "nodes": network.stop_nodes[stops[i] : stops[i + 1]],
+                "node_stations": lamellas.stop_stations[stops[i] : stops[i + 1]],
+            }
+            | {key: values[samples[i] : samples[i + 1]] for key, values in along.items()}
+            for i, lamella in enumerate(network.ids)
+        ],
+    }
+    write_whole(path, orjson.dumps(content, option=orjson.OPT_SERIALIZE_NUMPY))

@@ -1,0 +1,226 @@
+"""model.3dm: surface, centre lines, strips, nodes on named layers, in metres, for Rhino and Grasshopper."""
+
+from __future__ import annotations
+
+import base64
+import uuid
+from pathlib import Path
+
+import numpy as np
+import rhino3dm
+from numpy.typing import NDArray
+
+from lamella.files.splines import RELATIVE_TOLERANCE, fit_spline
+from lamella.files.text import one_line, require_finite
+from lamella.files.whole import write_whole
+from lamella.network.network import NODE_KINDS, Network
+from lamella.strip.lamellas import Lamellas, Section, twisted_strip
+from lamella.surface.mesh import SurfaceMesh
+
+Floats = NDArray[np.float64]
+
+COLOURS = {
+    "surface": (200, 200, 200),
+    "lamellas A": (200, 60, 40),
+    "lamellas B": (30, 90, 170),
+    "strips A": (230, 150, 130),
+    "strips B": (130, 170, 220),
+    "nodes regular": (60, 60, 60),
+    "nodes boundary": (20, 140, 70),
+    "nodes singular": (220, 0, 160),
+    "nodes seam": (240, 160, 0),
+}
+POINT_OBJECTS = 20_000
+"""Nodes up to this number are points named by their index; above, one point cloud a layer."""
+
+IDENTITIES = uuid.uuid5(uuid.NAMESPACE_URL, "lamella/model.3dm")
+
+
+def model_bytes(
+    *, name: str, version: str, surface: SurfaceMesh, network: Network, lamellas: Lamellas | None = None
+) -> bytes:
+    """Return the Rhino model.
+
+    Parameters
+    ----------
+    name, version : str
+        Of the project and of the program; kept as document text ``lamella\\project``, ``lamella\\version``.
+    surface : SurfaceMesh
+        Goes to layer "surface".
+    network : Network
+        Centre lines go to "lamellas A" and "lamellas B" as cubic curves with the arc length as parameter,
+        within `RELATIVE_TOLERANCE` of the length from every sample; nodes to "nodes regular",
+        "nodes boundary", "nodes singular" and "nodes seam".
+    lamellas : Lamellas, optional
+        Twisted strips go to "strips A" and "strips B" as surfaces of degree 3 x 1, ruled along the normals.
+
+    Returns
+    -------
+    bytes
+        The same for the same input: ids of layers and objects come from project name, layer and object name.
+    """
+    require_finite(network.sample_points, network.sample_normals, network.sample_tangents)
+    require_finite(network.sample_arclengths, network.node_points, surface.points, surface.normals)
+    return _Model(name, version).filled(surface, network, lamellas).encoded()
+
+
+def write_model(
+    path: Path,
+    *,
+    name: str,
+    version: str,
+    surface: SurfaceMesh,
+    network: Network,
+    lamellas: Lamellas | None = None,
+) -> None:
+    """Write `model_bytes`; OSError if it cannot be written whole."""
+    content = model_bytes(name=name, version=version, surface=surface, network=network, lamellas=lamellas)
+    # rhino3dm's own Write says nothing of a full disk.
+    write_whole(path, content)
+
+
+class _Model:
+    """A .3dm file being filled."""
+
+    def __init__(self, name: str, version: str) -> None:
+        self.name, self.version = name, version
+        self.file = rhino3dm.File3dm()
+        self.layers: dict[str, int] = {}
+        self.file.ApplicationName = "lamella"
+        self.file.ApplicationDetails = f"lamella {one_line(version)}, project {one_line(name)}"
+        # openNURBS stamps the time, and on Windows the user's name, into a file of revision 0 only.
+        self.file.Revision = 1
+        self.file.Strings["lamella\\project"] = name
+        self.file.Strings["lamella\\version"] = version
+        settings = self.file.Settings
+        settings.ModelUnitSystem = rhino3dm.UnitSystem.Meters
+        settings.PageUnitSystem = rhino3dm.UnitSystem.Millimeters
+        settings.ModelAbsoluteTolerance = 1e-5
+
+    def filled(self, surface: SurfaceMesh, network: Network, lamellas: Lamellas | None) -> _Model:
+        for layer in COLOURS:
+            if lamellas is not None or not layer.startswith("strips"):
+                self._add_layer(layer)
+        self._add_mesh(surface)
+        for k in range(len(network.ids)):
+            self._add_centre_line(network, k)
+        if lamellas is not None:
+            require_finite(network.sample_darboux.kn, network.sample_darboux.tg)
+            edges = np.hstack(twisted_strip(network, lamellas.section.height))
+            for k in range(len(network.ids)):
+                self._add_strip(network, lamellas.section, edges, k)
+        self._add_nodes(network)
+        return self
+
+    def encoded(self) -> bytes:
+        return base64.b64decode(self.file.Encode())
+
+    def _identity(self, *names: str) -> uuid.UUID:
+        return uuid.uuid5(IDENTITIES, "\n".join((self.name, *names)))
+
+    def _add_layer(self, name: str) -> None:
+        layer = rhino3dm.Layer()
+        layer.Name = name
+        layer.Id = self._identity(name)
+        layer.Color = (*COLOURS[name], 255)
+        self.layers[name] = self.file.Layers.Add(layer)
+
+    def _attributes(self, layer: str, name: str, **text: str) -> rhino3dm.ObjectAttributes:
+        attributes = rhino3dm.ObjectAttributes()
+        attributes.Id = self._identity(layer, name)
+        attributes.Name = name
+        attributes.LayerIndex = self.layers[layer]
+        for key, value in text.items():
+            attributes.SetUserString(key, value)
+        return attributes
+
+    def _add_mesh(self, surface: SurfaceMesh) -> None:
+        mesh = rhino3dm.Mesh()
+        vertices, normals, faces = mesh.Vertices, mesh.Normals, mesh.Faces
+        vertices.UseDoublePrecisionVertices = True
+        for x, y, z in surface.points.tolist():
+            vertices.AddPoint3d(x, y, z)
+        for x, y, z in surface.normals.tolist():
+            normals.Add(x, y, z)
+        for a, b, c, d in surface.faces.tolist():
+            if c == d:
+                faces.AddFace(a, b, c)
+            else:
+                faces.AddFace(a, b, c, d)
+        self.file.Objects.AddMesh(mesh, self._attributes("surface", "surface", version=self.version))
+
+    def _add_centre_line(self, network: Network, k: int) -> None:
+        span = slice(network.sample_offsets[k], network.sample_offsets[k + 1])
+        arclengths = network.sample_arclengths[span]
+        length = float(arclengths[-1])
+        tangents = network.sample_tangents[span]
+        spline = fit_spline(
+            arclengths, network.sample_points[span], tangents[[0, -1]], RELATIVE_TOLERANCE * length / 3**0.5
+        )
+        family = str(network.families[k])
+        attributes = self._attributes(
+            f"lamellas {family}",
+            network.ids[k],
+            id=network.ids[k],
+            family=family,
+            length_m=repr(length),
+            version=self.version,
+        )
+        self.file.Objects.AddCurve(_curve(spline.knots, spline.controls), attributes)
+
+    def _add_strip(self, network: Network, section: Section, edges: Floats, k: int) -> None:
+        span = slice(network.sample_offsets[k], network.sample_offsets[k + 1])
+        arclengths = network.sample_arclengths[span]
+        length = float(arclengths[-1])
+        slopes = _edge_slopes(network, section.height, span)
+        spline = fit_spline(arclengths, edges[span], slopes, RELATIVE_TOLERANCE * length / 3**0.5)
+        lower, upper = (_curve(spline.knots, spline.controls[:, side]) for side in (slice(0, 3), slice(3, 6)))
+        strip = rhino3dm.NurbsSurface.CreateRuledSurface(lower, upper)
+        strip.SetDomain(1, rhino3dm.Interval(-section.height / 2, section.height / 2))
+        family = str(network.families[k])
+        attributes = self._attributes(
+            f"strips {family}",
+            network.ids[k],
+            id=network.ids[k],
+            family=family,
+            length_m=repr(length),
+            height_m=repr(float(section.height)),
+            thickness_m=repr(float(section.thickness)),
+            version=self.version,
+        )
+        self.file.Objects.AddSurface(strip, attributes)
+
+    def _add_nodes(self, network: Network) -> None:
+        points = network.node_points.tolist()
+        for kind, kind_name in enumerate(NODE_KINDS):
+            members = np.flatnonzero(network.node_kinds == kind).tolist()
+            layer = f"nodes {kind_name}"
+            if len(points) > POINT_OBJECTS:
+                if members:
+                    cloud = rhino3dm.PointCloud([rhino3dm.Point3d(*points[i]) for i in members])
+                    self.file.Objects.AddPointCloud(
+                        cloud, self._attributes(layer, layer, version=self.version)
+                    )
+                continue
+            for i in members:
+                point = rhino3dm.Point(rhino3dm.Point3d(*points[i]))
+                self.file.Objects.Add(point, self._attributes(layer, str(i)))
+
+
+def _edge_slopes(network: Network, height: float, span: slice) -> Floats:
+    """Derivatives of the edges c -+ h/2 n by the arc length of c, at first and last sample, (2, 6)."""
+    tangents, normals = network.sample_tangents[span][[0, -1]], network.sample_normals[span][[0, -1]]
+    kn = network.sample_darboux.kn[span][[0, -1], None]
+    tg = network.sample_darboux.tg[span][[0, -1], None]
+    turning = height / 2 * (-kn * tangents - tg * np.cross(normals, tangents))
+    return np.hstack((tangents - turning, tangents + turning))
+
+
+def _curve(knots: Floats, controls: Floats) -> rhino3dm.NurbsCurve:
+    points = [rhino3dm.Point3d(x, y, z) for x, y, z in controls.tolist()]
+    curve = rhino3dm.NurbsCurve.Create(False, 3, points)
+    # openNURBS leaves out the first and the last knot, which no basis function needs.
+    curve_knots = curve.Knots
+    for i, knot in enumerate(knots[1:-1].tolist()):
+        curve_knots[i] = knot
+    return curve

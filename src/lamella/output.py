@@ -1,0 +1,117 @@
+"""The files of a run, stage by stage (DESIGN section 7)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from lamella import __version__
+from lamella.fabrication import write_drawings, write_schedule
+from lamella.files.lamellas_json import write_lamellas
+from lamella.files.mesh_files import write_network_obj, write_surface_obj, write_surface_ply
+from lamella.files.model_3dm import write_model
+from lamella.files.network_json import write_network
+from lamella.files.nodes_csv import write_nodes_csv
+from lamella.files.whole import write_whole
+from lamella.view.report import ReportData, write_report
+
+if TYPE_CHECKING:
+    from lamella.pipeline import Results
+
+
+def write_files(results: Results, folder: Path, *, progress: Callable[[str], None]) -> None:
+    """Write all files but summary.json into an existing folder.
+
+    Parameters
+    ----------
+    results : Results
+    folder : Path
+    progress : callable
+        Is told each file's name.
+    """
+    project, network, lamellas = results.project, results.network, results.lamellas
+    signed: Any = {"name": project.name, "version": __version__}
+
+    def put(file: str, write: Callable[..., None], *content: Any, **more: Any) -> None:
+        progress(f"  {file}")
+        write(folder / file, *content, **more)
+
+    heading = f"# {' '.join(project.name.split())}, all defaults filled in by lamella {__version__}\n"
+    put("project.toml", write_whole, (heading + project.to_toml()).encode())
+    put("surface.obj", write_surface_obj, results.mesh, **signed)
+    put("surface.ply", write_surface_ply, results.mesh, **signed)
+    if network:
+        put("network.json", write_network, network, **signed)
+        put("network.obj", write_network_obj, network, **signed)
+        put("nodes.csv", write_nodes_csv, network, **signed)
+        put("model.3dm", write_model, surface=results.mesh, network=network, lamellas=lamellas, **signed)
+    if network and lamellas:
+        put("lamellas.json", write_lamellas, network, lamellas, **signed)
+    if network and lamellas and results.parts and results.nesting:
+        (folder / "fabrication").mkdir()
+        put("fabrication", write_drawings, results.parts, results.nesting, **signed)
+        put("fabrication/schedule.csv", write_schedule, results.parts, results.nesting, network, lamellas, **signed)
+    put("report.html", write_report, report_data(results))
+
+
+def report_data(results: Results) -> ReportData:
+    """What the report shows of a run."""
+    return ReportData(
+        name=results.project.name,
+        version=__version__,
+        kind=results.surface.kind,
+        figures=tuple(_figures(results.summary)),
+        warnings=tuple(results.summary["warnings"]),
+        surface=results.mesh,
+        network=results.network,
+        lamellas=results.lamellas,
+        material=results.project.lamella.material,
+    )
+
+
+def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
+    """Key figures of the summary as (section, label, value, unit)."""
+    figures: list[tuple[str, str, str, str]] = []
+
+    def add(section: str, label: str, value: float, unit: str = "", scale: float = 1.0, form: str = ".4g") -> None:
+        figures.append((section, label, format(value * scale if scale != 1 else value, form), unit))
+
+    s, n, m, f = (summary[stage] for stage in ("surface", "network", "lamellas", "fabrication"))
+    add("Surface", "Mean curvature H", s["mean_curvature"], "1/m")
+    add("Surface", "Area", s["area"], "m²")
+    figures.append(("Surface", "Size", " × ".join(f"{x:.3g}" for x in s["size"]), "m"))
+    add("Surface", "Largest k1", s["k1_max"], "1/m")
+    add("Surface", "Smallest k2", s["k2_min"], "1/m")
+    if n:
+        add("Network", "Lamellas", n["lamellas"], form=",")
+        add("Network", "Nodes", n["nodes"], form=",")
+        add("Network", "Singular nodes", len(n["singular_nodes"]), form="d")
+        add("Network", "Cells around or across", n["cells"], form="d")
+        add("Network", "Cell edge, smallest", n["cell_edge_min"], "m")
+        add("Network", "Cell edge, median", n["cell_edge_median"], "m")
+        add("Network", "Cell edge, largest", n["cell_edge_max"], "m")
+        add("Network", "Node angle off 90°, largest", n["node_angle_deviation_max_deg"], "°", form=".2g")
+        add("Network", "Normal curvature off H, largest", n["normal_curvature_deviation_max"], "1/m", form=".2g")
+    if m:
+        add("Lamellas", "Length, one layer", m["total_length"], "m")
+        add("Lamellas", "Geodesic curvature, largest", m["geodesic_curvature_max"], "1/m")
+        add("Lamellas", "Geodesic torsion, largest", m["geodesic_torsion_max"], "1/m")
+        add("Lamellas", "Planarity score, median", m["planarity_score"]["twisted"]["median"], form=".2g")
+        add("Lamellas", "Planarity score, largest", m["planarity_score"]["twisted"]["max"], form=".2g")
+        add("Lamellas", "Off the straight or round development", m["development_deviation_max"], "mm", 1e3, ".2g")
+        for key, label in (
+            ("stress_bending_max", "Bending stress, largest"),
+            ("stress_torsion_max", "Torsion stress, largest"),
+            ("stress_helix_max", "Helix stress, largest"),
+            ("stress_restraint_max", "Restraint stress, largest"),
+            ("von_mises_max", "Von Mises stress, largest"),
+        ):
+            add("Lamellas", label, m[key], "MPa", 1e-6)
+        add("Lamellas", "Utilisation, largest", m["utilisation_max"], form=".2f")
+    if f:
+        add("Fabrication", "Parts", f["parts"], form=",")
+        add("Fabrication", "Sheets", f["sheets"], form="d")
+        add("Fabrication", "Mass", f["mass"], "kg")
+        add("Fabrication", "Mass per area of surface", f["surface_weight"], "kg/m²")
+    return figures

@@ -1,0 +1,255 @@
+"""The stages in order: compute, then write a folder that appears whole or not at all."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+
+from lamella import __version__, cautions, summary
+from lamella.errors import InputError
+from lamella.fabrication import Nesting, Parts, make_parts, nest
+from lamella.network.density import Density, choose_density
+from lamella.network.network import Network
+from lamella.network.trace import trace_closed_form
+from lamella.project import Project, located, read_project
+from lamella.strip.lamellas import Lamellas, Section, make_lamellas
+from lamella.surface.closed_form import ClosedForm
+from lamella.surface.closed_forms import CLOSED_FORMS
+from lamella.surface.mesh import SurfaceMesh
+from lamella.surface.sampling import surface_mesh
+
+STAGES = ("surface", "network", "lamellas", "fabrication", "structure")
+LAST_STAGE = "fabrication"
+
+Progress = Callable[[str], None]
+
+
+def _silent(message: str) -> None:
+    """Tell nobody."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """Everything a run has computed; what was not asked for is None.
+
+    Attributes
+    ----------
+    project : Project
+    surface : ClosedForm
+    mesh : SurfaceMesh
+        The surface sampled for files and pictures.
+    network : Network or None
+    lamellas : Lamellas or None
+    parts : Parts or None
+    nesting : Nesting or None
+    summary : dict
+        The content of summary.json, without the time spent on files.
+    """
+
+    project: Project
+    surface: ClosedForm
+    mesh: SurfaceMesh
+    network: Network | None
+    lamellas: Lamellas | None
+    parts: Parts | None
+    nesting: Nesting | None
+    summary: dict[str, Any] = field(repr=False)
+
+
+class _Clock:
+    """CPU seconds of each stage."""
+
+    def __init__(self, progress: Progress) -> None:
+        self.seconds: dict[str, float] = {}
+        self._progress, self._start, self._wall = progress, 0.0, 0.0
+
+    def start(self, message: str) -> None:
+        self._progress(message)
+        self._start = time.process_time()
+
+    def stop(self, stage: str, result: str) -> None:
+        self.seconds[stage] = round(time.process_time() - self._start, 4)
+        self._progress(f"  {result} ({self.seconds[stage]:.2f} s)")
+
+
+def make_surface(project: Project) -> ClosedForm:
+    """The surface a project describes.
+
+    Raises
+    ------
+    InputError
+        No such surface, or every point of it is umbilic.
+    """
+    values = project.surface.model_dump(exclude={"kind"})
+    return CLOSED_FORMS[project.surface.kind](**values)
+
+
+def plan(project: Project) -> tuple[ClosedForm, Density]:
+    """Surface and density of a project: all that can be refused before any work is done."""
+    surface = make_surface(project)
+    return surface, choose_density(surface, cells=project.network.cells, spacing=project.network.spacing)
+
+
+def compute(project: Project, *, until: str = LAST_STAGE, progress: Progress = _silent) -> Results:
+    """Run the stages of a project up to `until`, in memory.
+
+    Parameters
+    ----------
+    project : Project
+    until : str
+        Last stage, one of `STAGES`.
+    progress : callable
+        Is told what is being done, a line at a time.
+
+    Raises
+    ------
+    InputError
+    """
+    depth = _depth(until)
+    clock = _Clock(progress)
+    warnings: list[str] = []
+
+    clock.start(f"surface: {project.surface.kind}")
+    surface, density = plan(project)
+    mesh = surface_mesh(surface)
+    figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh)}
+    clock.stop("surface", f"area {figures['surface']['area']:.4g} m2, H = {surface.mean_curvature:.6g} 1/m")
+    warnings += [*surface.warnings(), *cautions.size_cautions(mesh, project.lamella.height)]
+
+    network = lamellas = parts = nesting = None
+    if depth >= STAGES.index("network"):
+        clock.start(f"network: {density.requested}, about {density.estimated_nodes:,} nodes")
+        network = trace_closed_form(surface, density, minimum_length=project.network.minimum_length)
+        figures["network"] = f = summary.network_summary(network, density.requested)
+        clock.stop(
+            "network",
+            f"{density.cells} cells: {f['lamellas']} lamellas, {f['nodes']:,} nodes, cell edge "
+            f"{f['cell_edge_min']:.3g} to {f['cell_edge_max']:.3g} m (median {f['cell_edge_median']:.3g} m)",
+        )
+        warnings += cautions.network_cautions(network, project.lamella.height)
+    if network and depth >= STAGES.index("lamellas"):
+        table = project.lamella
+        clock.start(f"lamellas: {table.height * 1000:g} x {table.thickness * 1000:g} mm, {table.material}")
+        section = Section(table.height, table.thickness, table.layers, table.offset, table.marks)
+        lamellas = make_lamellas(network, section, project.material())
+        figures["lamellas"] = f = summary.lamella_summary(network, lamellas)
+        clock.stop("lamellas", f"{f['total_length']:.4g} m of lamella, utilisation up to {f['utilisation_max']:.2f}")
+        warnings += cautions.lamella_cautions(mesh, network, lamellas)
+    if network and lamellas and depth >= STAGES.index("fabrication"):
+        cut = project.fabrication
+        clock.start("fabrication: parts and sheets")
+        parts = make_parts(
+            network,
+            lamellas,
+            density=project.material().density,
+            end_distance=cut.end_distance,
+            hub_radius=cut.hub_radius,
+            slot_width=cut.slot_width,
+            sheet=cut.sheet,
+            gap=cut.gap,
+        )
+        nesting = nest(parts, sheet=cut.sheet, gap=cut.gap)
+        figures["fabrication"] = f = summary.fabrication_summary(parts, nesting, figures["surface"]["area"])
+        clock.stop("fabrication", f"{f['parts']:,} parts, {f['mass']:.4g} kg, {f['sheets']} sheets")
+        warnings += parts.warnings
+
+    content = {"schema": "lamella/summary/1", "version": __version__, "name": project.name}
+    content |= {stage: figures.get(stage) for stage in STAGES}
+    content |= {"warnings": warnings, "seconds": clock.seconds}
+    return Results(project, surface, mesh, network, lamellas, parts, nesting, content)
+
+
+def _depth(until: str) -> int:
+    if until not in STAGES:
+        raise InputError(f"unknown stage {until!r}", f"choose one of {', '.join(STAGES)}", "--until")
+    if STAGES.index(until) > STAGES.index(LAST_STAGE):
+        raise InputError(
+            f"stage {until!r} is not part of version {__version__} yet",
+            f"the last stage there is: {LAST_STAGE}",
+            "--until",
+        )
+    return STAGES.index(until)
+
+
+def run(
+    project_file: Path,
+    *,
+    out: Path | None = None,
+    until: str = LAST_STAGE,
+    progress: Progress = _silent,
+    warn: Progress = _silent,
+) -> Path:
+    """Run a project file and write its folder.
+
+    Parameters
+    ----------
+    project_file : Path
+    out : Path, optional
+        Default ``out/<project file's stem>``.
+    until : str
+        Last stage.
+    progress, warn : callable
+        Are told what is being done, and every warning.
+
+    Returns
+    -------
+    Path
+        The folder written.
+
+    Raises
+    ------
+    InputError
+        What the user can mend; nothing has been written then.
+    OSError
+        The disk is full, for instance; an earlier folder is whole still.
+    """
+    from lamella.files.folder import check_target
+
+    _depth(until)
+    project = read_project(project_file)
+    target = out if out is not None else Path("out") / project_file.stem
+    check_target(target)
+    try:
+        results = compute(project, until=until, progress=progress)
+    except InputError as error:
+        raise located(error, project_file) from None
+    write(results, target, progress=progress)
+    for message in results.summary["warnings"]:
+        warn(message)
+    return target
+
+
+def write(results: Results, target: Path, *, progress: Progress = _silent) -> None:
+    """Write the folder of a run; it appears whole or not at all.
+
+    Parameters
+    ----------
+    results : Results
+    target : Path
+        Made if it is not there; an earlier run's folder is replaced.
+    progress : callable
+    """
+    from lamella.files.folder import staged_folder
+    from lamella.output import write_files
+
+    start = time.process_time()
+    progress(f"writing {target}")
+    with staged_folder(target) as folder:
+        write_files(results, folder, progress=progress)
+        seconds = results.summary["seconds"] | {"files": round(time.process_time() - start, 4)}
+        _write_json(folder / "summary.json", results.summary | {"seconds": seconds})
+
+
+def _write_json(path: Path, content: dict[str, Any]) -> None:
+    import orjson
+
+    from lamella.files.whole import write_whole
+
+    write_whole(path, orjson.dumps(content, option=orjson.OPT_INDENT_2 | orjson.OPT_SERIALIZE_NUMPY) + b"\n")
+
+
+__all__ = ["STAGES", "Results", "compute", "make_surface", "plan", "run", "write"]

@@ -1,0 +1,68 @@
+"""A commented project file to start from, generated from the schema."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import Any
+
+import tomli_w
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from lamella.project import (
+    SURFACE_TABLES,
+    FabricationTable,
+    LamellaTable,
+    NetworkTable,
+)
+
+# keys that come with a value of their own in a new project
+_ACTIVE = {"cells"}
+
+
+def _key(name: str, field: FieldInfo) -> str:
+    extra = field.json_schema_extra
+    unit = extra.get("unit", "") if isinstance(extra, dict) else ""
+    about = (field.description or "") + (f" [{unit}]" if unit else "")
+    lines = textwrap.wrap(about, 98, initial_indent="# ", subsequent_indent="# ")
+    required = field.is_required()
+    value: Any = field.examples[0] if field.examples else field.default
+    if value is None:
+        return "\n".join([*lines, f"# {name} ="])
+    line = f"{name} = " + tomli_w.dumps({"x": value}, indent=0).partition(" = ")[2].strip().replace("\n", " ")
+    line = line.replace("[ ", "[").replace(", ]", "]")
+    active = required or name in _ACTIVE or (bool(field.examples) and name == "scale")
+    return "\n".join([*lines, line if active else f"# {line}"])
+
+
+def _table(name: str, model: type[BaseModel], skip: frozenset[str] = frozenset()) -> str:
+    keys = [_key(key, field) for key, field in model.model_fields.items() if key not in skip]
+    about = textwrap.wrap((model.__doc__ or "").strip(), 98, initial_indent="# ", subsequent_indent="# ")
+    return "\n".join([*about, f"[{name}]", *keys])
+
+
+def starter(kind: str, name: str) -> str:
+    """A project file for a kind of surface; keys with a default are there as comments.
+
+    Parameters
+    ----------
+    kind : str
+        One of `lamella.project.SURFACE_TABLES`.
+    name : str
+        Name of the project.
+    """
+    model = SURFACE_TABLES[kind]
+    surface = _table("surface", model, frozenset({"kind"}))
+    surface = surface.replace("[surface]", f'[surface]\nkind = "{kind}"', 1)
+    parts = [
+        "# A lamella project. Lengths in metres, angles in degrees, stresses in Pa.\n"
+        f"# Run it with:  lamella run FILE\n{tomli_w.dumps({'name': name}).strip()}",
+        surface,
+        _table("network", NetworkTable),
+        _table("lamella", LamellaTable),
+        _table("fabrication", FabricationTable),
+        "# A material of your own (SI units), named in lamella.material:\n"
+        '# [materials."my steel"]\n# density = 7850\n# youngs_modulus = 210e9\n# shear_modulus = 81e9\n'
+        "# strength = 420e6",
+    ]
+    return "\n\n".join(parts) + "\n"

@@ -1,0 +1,73 @@
+"""Materials of lamellas, with the sources of their figures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from lamella.errors import InputError
+
+
+@dataclass(frozen=True)
+class Material:
+    """Elastic constants and strength, SI.
+
+    Attributes
+    ----------
+    density : float
+        kg/m^3.
+    youngs_modulus, shear_modulus : float
+        E and G, Pa (along the grain for timber).
+    strength : float
+        Limit of normal stress, Pa: 0.2 % yield strength of metals, characteristic bending strength of timber. No
+        partial factors are applied.
+    shear_strength : float or None
+        Limit of shear stress, Pa, where it is not that of von Mises (timber).
+    source : str
+    """
+
+    density: float
+    youngs_modulus: float
+    shear_modulus: float
+    strength: float
+    shear_strength: float | None = None
+    source: str = "project file"
+
+
+_STAINLESS = "EN 1993-1-4 table 2.1 (cold-rolled strip), density EN 10088-1"
+_STEEL = "EN 1993-1-1 3.2.6 and table 3.1 (t <= 40 mm)"
+_TIMBER = "EN 338:2016 table 1 (characteristic strengths, mean stiffness and density)"
+
+MATERIALS: dict[str, Material] = {
+    "1.4301": Material(7900, 200e9, 77e9, 230e6, source=_STAINLESS),
+    "1.4404": Material(8000, 200e9, 77e9, 240e6, source=_STAINLESS),
+    "1.4462": Material(7800, 200e9, 77e9, 500e6, source=_STAINLESS),
+    "S235": Material(7850, 210e9, 81e9, 235e6, source=_STEEL),
+    "S355": Material(7850, 210e9, 81e9, 355e6, source=_STEEL),
+    "S700MC": Material(7850, 210e9, 81e9, 700e6, source="EN 10149-2 table 2; constants EN 1993-1-1 3.2.6"),
+    "EN AW-6082 T6": Material(2700, 70e9, 27e9, 260e6, source="EN 1999-1-1 table 3.2a (sheet, t <= 6 mm)"),
+    "C24": Material(420, 11.0e9, 0.69e9, 24e6, 4.0e6, source=_TIMBER),
+    "D40": Material(660, 13.0e9, 0.81e9, 40e6, 4.2e6, source=_TIMBER),
+    "GL24h": Material(420, 11.5e9, 0.65e9, 24e6, 3.5e6, source="EN 14080:2013 table 5"),
+}
+
+
+def find_material(name: str, own: dict[str, Material] | None = None) -> Material:
+    """A material by name: the project's own first, then the table.
+
+    Raises
+    ------
+    InputError
+        Unknown name; the message lists what there is.
+    """
+    known = MATERIALS | (own or {})
+    if name in known:
+        return known[name]
+    from difflib import get_close_matches
+
+    near = get_close_matches(name, known, 1, 0.5)
+    raise InputError(
+        f"unknown material {name!r}" + (f", did you mean {near[0]!r}?" if near else ""),
+        f"use one of {', '.join(known)}, or add a table [materials.{name!r}] with density, youngs_modulus, "
+        "shear_modulus and strength",
+        "lamella.material",
+    )

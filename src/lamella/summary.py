@@ -1,0 +1,102 @@
+"""summary.json: the figures of a run, computed from the surface itself."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from lamella.fabrication.part import Parts
+from lamella.fabrication.sheet import Nesting
+from lamella.network.network import SINGULAR, Network
+from lamella.strip.lamellas import Lamellas
+from lamella.strip.unroll import development_deviation
+from lamella.surface.closed_form import ClosedForm
+from lamella.surface.mesh import SurfaceMesh
+from lamella.surface.sampling import area
+
+
+def surface_summary(surface: ClosedForm, mesh: SurfaceMesh) -> dict[str, Any]:
+    """The surface's figures; stability is not asked of closed forms."""
+    size = np.ptp(mesh.points, axis=0)
+    return {
+        "kind": surface.kind,
+        "mean_curvature": surface.mean_curvature,
+        "mean_curvature_deviation_max": float(np.abs(mesh.mean_curvature - surface.mean_curvature).max()),
+        "area": area(surface),
+        "size": size.tolist(),
+        "k1_max": float(mesh.k1.max()),
+        "k2_min": float(mesh.k2.min()),
+        "stability": None,
+    } | surface.describe()
+
+
+def network_summary(network: Network, requested: str) -> dict[str, Any]:
+    """The network's figures."""
+    deviation = np.abs(90 - network.node_angles)
+    edges = network.cell_edges
+    a, b = network.node_degrees()
+    rays = a + b
+    periods = [p._asdict() for p in network.periods]
+    return {
+        "nodes": len(network.node_points),
+        "lamellas": len(network.ids),
+        "lamellas_left_out": network.left_out,
+        "faces": len(network.face_offsets) - 1,
+        "requested": requested,
+        "cells": network.cells,
+        "step": network.step,
+        "singular_nodes": [
+            {"point": network.node_points[i].tolist(), "order": int(rays[i]) // 2 - 2, "rays": int(rays[i])}
+            for i in np.flatnonzero(network.node_kinds == SINGULAR).tolist()
+        ],
+        "node_angle_deviation_max_deg": float(deviation.max()),
+        "node_angle_deviation_mean_deg": float(deviation.mean()),
+        "normal_curvature_deviation_max": float(
+            np.abs(network.sample_darboux.kn - network.mean_curvature).max()
+        ),
+        "cell_edge_min": float(edges.min()),
+        "cell_edge_median": float(np.median(edges)),
+        "cell_edge_max": float(edges.max()),
+        "periods": periods,
+        "closed": all(abs(c - round(c)) <= 1e-3 for p in network.periods for c in (p.a_cells, p.b_cells)),
+    }
+
+
+def lamella_summary(network: Network, lamellas: Lamellas) -> dict[str, Any]:
+    """The lamellas' figures."""
+    quads = np.ones(len(lamellas.planarity), bool)
+    quads[network.sample_offsets[1:] - 1] = False
+    deviation = development_deviation(
+        network.sample_points, network.sample_normals, network.sample_offsets, network.mean_curvature
+    )
+    return {
+        "total_length": float(network.lengths.sum()),
+        "marks": lamellas.section.marks,
+        "geodesic_curvature_max": float(np.abs(network.sample_darboux.kg).max()),
+        "geodesic_torsion_max": float(np.abs(network.sample_darboux.tg).max()),
+        "planarity_score": {
+            "twisted": {
+                "median": float(np.median(lamellas.planarity[quads])),
+                "max": float(lamellas.planarity[quads].max()),
+            },
+            "developable": None,
+        },
+        "development_deviation_max": float(deviation.max()),
+        "stress_bending_max": float(lamellas.bending.max()),
+        "stress_torsion_max": float(lamellas.torsion.max()),
+        "stress_helix_max": float(lamellas.helix_edge.max()),
+        "stress_restraint_max": float(lamellas.restraint.max()),
+        "von_mises_max": float(lamellas.von_mises.max()),
+        "utilisation_max": float(lamellas.utilisation.max()),
+    }
+
+
+def fabrication_summary(parts: Parts, nesting: Nesting, surface_area: float) -> dict[str, Any]:
+    """The parts' figures; mass in kg, surface weight in kg per m2 of surface."""
+    return {
+        "mass": parts.mass,
+        "surface_weight": parts.mass / surface_area,
+        "parts": parts.pieces,
+        "sheets": nesting.sheet_count,
+    }

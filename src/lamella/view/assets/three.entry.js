@@ -1,0 +1,24 @@
+// What report.js uses of three.js; README.md tells how three.min.js is made of it.
+export {
+  AmbientLight,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DirectionalLight,
+  DoubleSide,
+  Group,
+  Mesh,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  Points,
+  PointsMaterial,
+  Raycaster,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+export { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+export { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
+export { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
+export { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";

@@ -1,0 +1,362 @@
+"""One self-contained HTML file that shows a surface, its network and its lamellas in any browser, offline."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import re
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import orjson
+from numpy.typing import NDArray
+
+from lamella.network.network import Network
+from lamella.strip.lamellas import Lamellas
+from lamella.surface.mesh import SurfaceMesh
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Spec = dict[str, Any]
+
+SAMPLE_LIMIT = 100_000
+"""Centre line samples in a report; at 50 bytes each this keeps a large net's file at a few MB."""
+
+VERTEX_LIMIT = 30_000
+"""Surface vertices in a report."""
+
+PASCAL_TO_MEGAPASCAL = 1e-6
+MISSING = 65535
+
+
+@dataclass(frozen=True)
+class ReportData:
+    """What a report shows.
+
+    Attributes
+    ----------
+    name : str
+        The project's name.
+    version : str
+        The program's version.
+    kind : str
+        Kind of surface, "unduloid".
+    figures : tuple of (section, label, value, unit)
+        Key figures, already formatted; sections appear in the order of their first figure.
+    warnings : tuple of str
+        Shown above everything else.
+    surface : SurfaceMesh
+    network : Network or None
+        None after the stage "surface". Without lamellas its curvatures are still shown.
+    lamellas : Lamellas or None
+        None after the stages "surface" and "network".
+    material : str
+        Name of the lamellas' material, shown with their section.
+    """
+
+    name: str
+    version: str
+    kind: str
+    figures: tuple[tuple[str, str, str, str], ...]
+    warnings: tuple[str, ...]
+    surface: SurfaceMesh
+    network: Network | None
+    lamellas: Lamellas | None
+    material: str
+
+
+def write_report(path: Path, data: ReportData) -> None:
+    """Write the report to `path`.
+
+    Parameters
+    ----------
+    path : Path
+        The file, replaced if it exists.
+    data : ReportData
+        What to show.
+    """
+    path.write_bytes(report_html(data).encode())
+
+
+def report_html(data: ReportData) -> str:
+    """Return the report as the text of one HTML file.
+
+    Parameters
+    ----------
+    data : ReportData
+        What to show.
+
+    Returns
+    -------
+    str
+        HTML that asks for nothing outside itself; the same for the same data.
+    """
+    payload, notes = _payload(data)
+    three, script = _asset("three.min.js"), _asset("report.js")
+    return _filled(
+        _asset("report.html"),
+        {
+            "policy": _policy(three, script),
+            "name": html.escape(data.name),
+            "version": html.escape(data.version),
+            "subtitle": html.escape(_subtitle(data)),
+            "warnings": _warnings_html(data.warnings),
+            "figures": _figures_html(data.figures),
+            "notes": "".join(f'<p class="note">{html.escape(note)}</p>' for note in notes),
+            "css": _asset("report.css"),
+            "data": _json_for_html(payload),
+            "three": three,
+            "script": script,
+        },
+    )
+
+
+def _asset(name: str) -> str:
+    return files("lamella.view").joinpath("assets", name).read_text(encoding="utf-8")
+
+
+def _filled(template: str, values: dict[str, str]) -> str:
+    # One pass, so that a project named "{{css}}" stays just a name.
+    return re.sub(r"\{\{(\w+)\}\}", lambda match: values[match[1]], template)
+
+
+def _policy(*scripts: str) -> str:
+    """Content security policy: these scripts by their hashes, no other, and no request to anywhere."""
+    hashes = " ".join(
+        f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'" for script in scripts
+    )
+    return (
+        f"default-src 'none'; script-src {hashes}; style-src 'unsafe-inline'; img-src data:; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
+def _subtitle(data: ReportData) -> str:
+    parts = [data.kind]
+    if data.lamellas is not None:
+        section = data.lamellas.section
+        text = f"lamellas {section.height * 1e3:.6g} × {section.thickness * 1e3:.6g} mm"
+        if section.layers > 1:
+            text += f", {section.layers} layers {section.offset * 1e3:.6g} mm apart"
+        parts += [text, data.material]
+    return " · ".join(part for part in parts if part)
+
+
+def _warnings_html(warnings: tuple[str, ...]) -> str:
+    if not warnings:
+        return ""
+    title = "Warning" if len(warnings) == 1 else f"{len(warnings)} warnings"
+    items = "".join(f"<li>{html.escape(warning)}</li>" for warning in warnings)
+    return f'<section class="warnings" aria-label="Warnings"><h2>{title}</h2><ul>{items}</ul></section>'
+
+
+def _figures_html(figures: tuple[tuple[str, str, str, str], ...]) -> str:
+    sections: dict[str, list[str]] = {}
+    for section, label, value, unit in figures:
+        suffix = f" <span>{html.escape(unit)}</span>" if unit else ""
+        sections.setdefault(section, []).append(
+            f'<tr><th scope="row">{html.escape(label)}</th><td>{html.escape(value)}{suffix}</td></tr>'
+        )
+    return "\n".join(
+        f"<table><caption>{html.escape(section)}</caption><tbody>{''.join(rows)}</tbody></table>"
+        for section, rows in sections.items()
+    )
+
+
+def _json_for_html(payload: Spec) -> str:
+    # "<" is all that can end a script element or open a comment in it.
+    return orjson.dumps(payload).decode().replace("<", "\\u003c")
+
+
+def _payload(data: ReportData) -> tuple[Spec, list[str]]:
+    """Return what report.js reads, and remarks on what was left out of it."""
+    notes: list[str] = []
+    clouds = [data.surface.points]
+    if data.network is not None:
+        clouds += [data.network.sample_points, data.network.node_points]
+    centre = _centre(clouds)
+    payload: Spec = {
+        "schema": "lamella/report/1",
+        "name": data.name,
+        "centre": centre.tolist(),
+        "surface": _surface_payload(data.surface, centre, notes),
+        "network": None,
+        "lamellas": None,
+    }
+    if data.network is not None:
+        kept = _kept_samples(data.network, SAMPLE_LIMIT)
+        total = len(data.network.sample_points)
+        if len(kept) < total:
+            notes.append(
+                f"Drawn and plotted with {len(kept):,} of {total:,} centre line samples, every node among them."
+            )
+        payload["network"] = _network_payload(data.network, centre, kept)
+        if data.lamellas is not None:
+            payload["lamellas"] = _lamellas_payload(data.network, data.lamellas, kept)
+    return payload, notes
+
+
+def _centre(clouds: list[Floats]) -> Floats:
+    filled = [cloud for cloud in clouds if len(cloud)]
+    if not filled:
+        return np.zeros(3)
+    low = np.min([cloud.min(axis=0) for cloud in filled], axis=0)
+    high = np.max([cloud.max(axis=0) for cloud in filled], axis=0)
+    return np.asarray((low + high) / 2, dtype=np.float64)
+
+
+def _surface_payload(surface: SurfaceMesh, centre: Floats, notes: list[str]) -> Spec:
+    triangles = np.concatenate([surface.faces[:, [0, 1, 2]], surface.faces[:, [0, 2, 3]]])
+    kept, labels = _clusters(surface.points, VERTEX_LIMIT)
+    if len(kept) < len(surface.points):
+        notes.append(
+            f"Surface drawn with {len(kept):,} of {len(surface.points):,} vertices; "
+            "the other files hold all of them."
+        )
+        triangles = labels[triangles]
+    return {
+        "points": _float32(surface.points[kept] - centre),
+        "normals": _direction16(surface.normals[kept]),
+        "triangles": _integers(_distinct_triangles(triangles, len(kept))),
+        "H": _quantised(surface.mean_curvature[kept]),
+        "K": _quantised(surface.gaussian_curvature[kept]),
+        "k1": _quantised(surface.k1[kept]),
+        "k2": _quantised(surface.k2[kept]),
+    }
+
+
+def _clusters(points: Floats, limit: int) -> tuple[Integers, Integers]:
+    """Return one vertex for each occupied cell of a cubic grid, and each vertex's place among those."""
+    if len(points) <= limit:
+        identity = np.arange(len(points))
+        return identity, identity
+    low, span = points.min(axis=0), float(np.ptp(points, axis=0).max())
+    size = span / np.sqrt(limit)
+    while True:
+        cells = np.floor((points - low) / size).astype(np.int64)
+        side = int(cells.max()) + 1
+        keys = (cells[:, 0] * side + cells[:, 1]) * side + cells[:, 2]
+        _, first, labels = np.unique(keys, return_index=True, return_inverse=True)
+        if len(first) <= limit:
+            return first, labels
+        size *= max(1.02, np.sqrt(len(first) / limit))
+
+
+def _distinct_triangles(triangles: Integers, count: int) -> Integers:
+    """Drop triangles without area and repeated ones; the winding stays."""
+    a, b, c = triangles.T
+    triangles = triangles[(a != b) & (b != c) & (c != a)]
+    if not len(triangles):
+        return triangles
+    turn = np.argmin(triangles, axis=1)[:, None]
+    turned = np.take_along_axis(triangles, (turn + np.arange(3)) % 3, axis=1)
+    _, first = np.unique((turned[:, 0] * count + turned[:, 1]) * count + turned[:, 2], return_index=True)
+    return np.asarray(turned[np.sort(first)], dtype=np.int64)
+
+
+def _kept_samples(network: Network, limit: int) -> Integers:
+    """Return indices of all samples, or of every so many in each lamella with all nodes and ends."""
+    offsets = network.sample_offsets
+    total = int(offsets[-1])
+    if total <= limit:
+        return np.arange(total)
+    stops = _stop_indices(network)
+    stride = -(-total // max(limit - len(stops), 1))
+    within = np.arange(total) - np.repeat(offsets[:-1], np.diff(offsets))
+    keep = within % stride == 0
+    keep[stops] = True
+    keep[offsets[1:] - 1] = True
+    return np.flatnonzero(keep)
+
+
+def _stop_indices(network: Network) -> Integers:
+    """Return the sample of each stop, counted over all lamellas."""
+    starts = np.repeat(network.sample_offsets[:-1], np.diff(network.stop_offsets))
+    return np.asarray(starts + network.stop_samples, dtype=np.int64)
+
+
+def _network_payload(network: Network, centre: Floats, kept: Integers) -> Spec:
+    offsets = np.searchsorted(kept, network.sample_offsets)
+    stops = np.searchsorted(kept, _stop_indices(network))
+    return {
+        "ids": list(network.ids),
+        "families": "".join(network.families.tolist()),
+        "lengths": _float32(network.lengths if len(network.ids) else np.zeros(0)),
+        "offsets": _integers(offsets),
+        "points": _float32(network.sample_points[kept] - centre),
+        "normals": _direction16(network.sample_normals[kept]),
+        "arclengths": _float32(network.sample_arclengths[kept]),
+        "normalCurvature": _quantised(network.sample_darboux.kn[kept]),
+        "geodesicCurvature": _quantised(network.sample_darboux.kg[kept]),
+        "geodesicTorsion": _quantised(network.sample_darboux.tg[kept]),
+        "stopOffsets": _integers(network.stop_offsets),
+        "stopNodes": _integers(network.stop_nodes),
+        "stopSamples": _integers(stops - np.repeat(offsets[:-1], np.diff(network.stop_offsets))),
+        "nodePoints": _float32(network.node_points - centre),
+        "nodeKinds": _integers(network.node_kinds),
+    }
+
+
+def _lamellas_payload(network: Network, strips: Lamellas, kept: Integers) -> Spec:
+    stresses = {
+        "bending": strips.bending,
+        "torsion": strips.torsion,
+        "helixEdge": strips.helix_edge,
+        "helixCentre": strips.helix_centre,
+        "restraint": strips.restraint,
+        "vonMises": strips.von_mises,
+    }
+    return {
+        "height": strips.section.height,
+        "developedLengths": _float32(strips.developed_lengths),
+        "utilisation": _quantised(strips.utilisation[kept]),
+        "planarity": _quantised(_planarity(network, strips, kept)),
+        **{key: _quantised(stress[kept] * PASCAL_TO_MEGAPASCAL) for key, stress in stresses.items()},
+    }
+
+
+def _planarity(network: Network, strips: Lamellas, kept: Integers) -> Floats:
+    """Return the worst score between a kept sample and the next; an end takes its neighbour's."""
+    if not len(kept):
+        return np.zeros(0)
+    worst = np.maximum.reduceat(strips.planarity, kept)
+    ends = np.searchsorted(kept, network.sample_offsets[1:] - 1)
+    worst[ends] = worst[ends - 1]
+    return np.asarray(worst, dtype=np.float64)
+
+
+def _encoded(kind: str, values: NDArray[Any]) -> Spec:
+    return {"type": kind, "data": base64.b64encode(np.ascontiguousarray(values).tobytes()).decode()}
+
+
+def _float32(values: Floats) -> Spec:
+    return _encoded("f4", values.astype("<f4"))
+
+
+def _integers(values: Integers) -> Spec:
+    """Encode non-negative integers in as few bytes as the largest needs."""
+    largest = int(values.max(initial=0))
+    kind = "u1" if largest < 2**8 else "u2" if largest < 2**16 else "u4"
+    return _encoded(kind, values.astype(f"<{kind}"))
+
+
+def _direction16(vectors: Floats) -> Spec:
+    """Encode unit vectors to 2e-5."""
+    return _encoded("i2", np.rint(vectors * 32767).astype("<i2"))
+
+
+def _quantised(values: Floats) -> Spec:
+    """Encode numbers to colour and plot with to 1/65534 of their range; anything not finite is missing."""
+    finite = np.isfinite(values)
+    if not finite.any():
+        return {"type": "constant", "value": None, "count": len(values)}
+    low, high = float(values[finite].min()), float(values[finite].max())
+    if low == high and finite.all():
+        return {"type": "constant", "value": low, "count": len(values)}
+    step = (high - low) / (MISSING - 1) or 1.0
+    levels = np.where(finite, np.rint((np.where(finite, values, low) - low) / step), MISSING)
+    return {**_encoded("u2", levels.astype("<u2")), "low": low, "step": step}
