@@ -55,9 +55,7 @@ def test_distances_read_back_are_arc_lengths(tmp_path, curvature, layers):
             np.testing.assert_allclose(found, np.diff(arcs[crossing]), atol=1e-6)
         if layers > 1:
             np.testing.assert_allclose(np.diff(reading.slots[:layers]), 25.0, atol=1e-6)
-        np.testing.assert_allclose(
-            np.diff(reading.marks), np.diff(arcs[network.node_kinds[nodes] != 2]), atol=1e-6
-        )
+        np.testing.assert_allclose(np.diff(reading.marks), np.diff(arcs[network.node_kinds[nodes] != 2]), atol=1e-6)
         part = parts.parts[index]
         assert reading.length == pytest.approx(1e3 * part.length, abs=1e-6)
         assert reading.height == pytest.approx(100.0, abs=1e-6)
@@ -74,7 +72,7 @@ def test_ring_and_pieces_read_back(tmp_path):
     assert list(readings) == ["B1.1", "B1.2"]
     for part in parts.parts:
         np.testing.assert_allclose(readings[part.id].slots, 1e3 * (part.slots - part.start), atol=1e-6)
-        assert readings[part.id].length > 2000.0
+        assert readings[part.id].length > 3000.0
 
 
 @pytest.mark.parametrize("layers", [1, 2, 3])
@@ -91,12 +89,10 @@ def test_engraving_lies_in_the_material(curvature, layers):
     parts = make_parts(network, lamellas, density=7900.0)
     for part in parts.parts:
         engraving = engrave(part)
-        material = Polygon(sampled(part.outline, 1e-4))
-        t = np.linspace(0.002, 0.998, 199)[:, None]
+        material = Polygon(sampled(part.outline, 1e-3))
+        t = np.linspace(0.002, 0.998, 59)[:, None]
         lines = [line[0] + t * (line[1] - line[0]) for line in engraving.nodes]
-        lines += [
-            a + t * (b - a) for a, b in zip(engraving.arrow, np.roll(engraving.arrow, 1, 0), strict=True)
-        ]
+        lines += [a + t * (b - a) for a, b in zip(engraving.arrow, np.roll(engraving.arrow, 1, 0), strict=True)]
         strokes = [a + t * (b - a) for stroke in engraving.strokes for a, b in pairwise(stroke)]
         assert len(strokes) > len(part.id)
         assert material.contains_points(np.concatenate(lines + strokes)).all(), part.id
@@ -141,9 +137,7 @@ def test_layers_units_and_names(tmp_path):
         assert all(e.dxftype() == "LWPOLYLINE" and e.closed for e in cut)
         expected = parts.pieces if file == "sheets.dxf" else len(parts.parts) // 2
         assert len(cut) == expected
-        assert {layer for layer, _ in kinds} == {"CUT", "MARK", "TEXT"} | (
-            {"SHEET"} if file == "sheets.dxf" else set()
-        )
+        assert {layer for layer, _ in kinds} == {"CUT", "MARK", "TEXT"} | ({"SHEET"} if file == "sheets.dxf" else set())
         handles = [e.dxf.handle for e in document.entitydb.values() if e.dxf.hasattr("handle")]
         assert int(str(document.header["$HANDSEED"]), 16) > max(int(handle, 16) for handle in handles)
         points = np.concatenate([np.array(e.get_points("xy")) for e in cut])
@@ -255,9 +249,7 @@ def run_in_process(code, folder, seed="0"):
 def test_same_input_same_bytes(tmp_path):
     for number in (1, 2):
         (tmp_path / str(number)).mkdir()
-        run = run_in_process(
-            "written(Path(sys.argv[1]), random_strips(1), 0.6)", tmp_path / str(number), str(number)
-        )
+        run = run_in_process("written(Path(sys.argv[1]), random_strips(1), 0.6)", tmp_path / str(number), str(number))
         assert run.returncode == 0, run.stderr
         time.sleep(1.1)
     for file in ("A.dxf", "B.dxf", "sheets.dxf"):

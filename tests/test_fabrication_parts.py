@@ -104,9 +104,7 @@ def test_arcs_are_exact_and_slots_radial(curvature, family):
         assert (np.hypot(*(a - centre)) > np.hypot(*radial)) == ((family == "A") == (curvature < 0))
 
 
-@pytest.mark.parametrize(
-    ("layers", "spread"), [(1, [0.0]), (2, [-0.0125, 0.0125]), (3, [-0.025, 0.0, 0.025])]
-)
+@pytest.mark.parametrize(("layers", "spread"), [(1, [0.0]), (2, [-0.0125, 0.0125]), (3, [-0.025, 0.0, 0.025])])
 def test_slots_and_ends(layers, spread):
     strip = Strip("A", (0.0, 0.2, 0.45, 0.6), "+oo|")
     parts = parts_of([strip], section={"layers": layers}, end_distance=0.04)

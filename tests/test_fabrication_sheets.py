@@ -96,9 +96,7 @@ def test_oversize_part_lies_alone(curvature):
     assert nesting.sheets.tolist() == [1, 2, 0, 0]
     assert nesting.sizes[0].tolist() == [2.0, 1.0]
     low_x, low_y, high_x, high_y = parts.parts[0].bounds
-    assert nesting.sizes[1].tolist() == pytest.approx(
-        [high_x - low_x + 0.02, max(1.0, high_y - low_y + 0.02)]
-    )
+    assert nesting.sizes[1].tolist() == pytest.approx([high_x - low_x + 0.02, max(1.0, high_y - low_y + 0.02)])
 
 
 def rows_of(path):

@@ -49,9 +49,7 @@ def build(strips, curvature=0.0, *, layers=2, height=0.1, thickness=0.0015, offs
         stop_nodes += own
         arcs.append(stations)
         offsets.append(offsets[-1] + len(own))
-        grid = np.concatenate(
-            [np.linspace(a, b, 9)[:-1] for a, b in itertools.pairwise(stations)] + [stations[-1:]]
-        )
+        grid = np.concatenate([np.linspace(a, b, 9)[:-1] for a, b in itertools.pairwise(stations)] + [stations[-1:]])
         stop_samples += list(range(0, len(grid), 8))
         sample_arcs.append(grid)
         sample_offsets.append(sample_offsets[-1] + len(grid))
@@ -138,6 +136,4 @@ def test_synthetic_networks_are_consistent(curvature):
     network, lamellas = build(random_strips(3), curvature)
     assert len(network.stop_nodes) == network.stop_offsets[-1] == len(lamellas.stop_stations)
     first = network.sample_offsets[:-1].repeat(np.diff(network.stop_offsets))
-    np.testing.assert_array_equal(
-        network.sample_arclengths[first + network.stop_samples], network.stop_arclengths
-    )
+    np.testing.assert_array_equal(network.sample_arclengths[first + network.stop_samples], network.stop_arclengths)

@@ -58,8 +58,8 @@ def lamella_cautions(mesh: SurfaceMesh, network: Network, lamellas: Lamellas) ->
         over = np.add.reduceat(lamellas.utilisation > 1, network.sample_offsets[:-1]) > 0
         yield (
             f"utilisation reaches {lamellas.utilisation[worst]:.2f} in lamella {network.ids[lamella]} at ({point}) m "
-            f"({int(over.sum())} of {len(network.ids)} lamellas are over 1): a thinner or lower strip, a stronger material "
-            "or a flatter surface helps"
+            f"({int(over.sum())} of {len(network.ids)} lamellas are over 1): a thinner or lower strip, a stronger "
+            "material or a flatter surface helps"
         )
     half = lamellas.section.height / 2
     curvature = float(max(np.abs(mesh.k1).max(), np.abs(mesh.k2).max()))

@@ -18,7 +18,9 @@ def _folder() -> Traversable:
 
 
 def _all() -> dict[str, Traversable]:
-    return {item.name: item for item in sorted(_folder().iterdir(), key=lambda i: i.name) if item.name.endswith(".toml")}
+    return {
+        item.name: item for item in sorted(_folder().iterdir(), key=lambda i: i.name) if item.name.endswith(".toml")
+    }
 
 
 def list_examples() -> list[tuple[str, str]]:
@@ -40,7 +42,8 @@ def copy_examples(names: list[str], target: Path) -> list[Path]:
         if name not in known:
             near = get_close_matches(name, known, 1, 0.3)
             raise InputError(
-                f"no example {name!r}" + (f", did you mean {near[0]!r}?" if near else ""), f"there are {', '.join(known)}"
+                f"no example {name!r}" + (f", did you mean {near[0]!r}?" if near else ""),
+                f"there are {', '.join(known)}",
             )
         if (target / name).exists():
             raise InputError(f"{target / name} is there already", "name another folder with --copy")

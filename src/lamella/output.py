@@ -33,7 +33,7 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
     project, network, lamellas = results.project, results.network, results.lamellas
     signed: Any = {"name": project.name, "version": __version__}
 
-    def put(file: str, write: Callable[..., None], *content: Any, **more: Any) -> None:
+    def put(file: str, write: Callable[..., object], *content: Any, **more: Any) -> None:
         progress(f"  {file}")
         write(folder / file, *content, **more)
 

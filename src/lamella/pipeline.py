@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-
 from lamella import __version__, cautions, summary
 from lamella.errors import InputError
 from lamella.fabrication import Nesting, Parts, make_parts, nest
@@ -157,7 +156,7 @@ def compute(project: Project, *, until: str = LAST_STAGE, progress: Progress = _
         clock.stop("fabrication", f"{f['parts']:,} parts, {f['mass']:.4g} kg, {f['sheets']} sheets")
         warnings += parts.warnings
 
-    content = {"schema": "lamella/summary/1", "version": __version__, "name": project.name}
+    content: dict[str, Any] = {"schema": "lamella/summary/1", "version": __version__, "name": project.name}
     content |= {stage: figures.get(stage) for stage in STAGES}
     content |= {"warnings": warnings, "seconds": clock.seconds}
     return Results(project, surface, mesh, network, lamellas, parts, nesting, content)

@@ -76,9 +76,7 @@ class NodoidTable(_WithHeight):
 
     kind: Literal["nodoid"]
     neck_radius: float = _number("Smallest radius, at z = 0.", "m", gt=0, examples=[3.0])
-    bulge_radius: float = _number(
-        "Largest radius of the whole nodoid; above neck_radius.", "m", gt=0, examples=[9.0]
-    )
+    bulge_radius: float = _number("Largest radius of the whole nodoid; above neck_radius.", "m", gt=0, examples=[9.0])
     height: Range = _number(
         "Heights [z0, z1] of the rims, z = 0 at the neck, |z| below the fold.", "m", examples=[[-1.5, 1.5]]
     )
@@ -155,9 +153,7 @@ SURFACE_TABLES: dict[str, type[Table]] = {
     "enneper": EnneperTable,
     "scherk": ScherkTable,
 }
-SurfaceTable = (
-    UnduloidTable | NodoidTable | CatenoidTable | CylinderTable | HelicoidTable | EnneperTable | ScherkTable
-)
+SurfaceTable = UnduloidTable | NodoidTable | CatenoidTable | CylinderTable | HelicoidTable | EnneperTable | ScherkTable
 
 
 class NetworkTable(Table):
@@ -177,7 +173,9 @@ class NetworkTable(Table):
         gt=0,
         default=None,
     )
-    angle: float = _number("Angle between the families at the nodes; other than 90 is not offered yet.", "deg", default=90.0)
+    angle: float = _number(
+        "Angle between the families at the nodes; other than 90 is not offered yet.", "deg", default=90.0
+    )
     closing: Literal["open", "round", "adjust"] = Field(
         default="open",
         description="What to do where a net does not close by itself; every net of a closed-form surface closes.",
@@ -307,7 +305,8 @@ def read_project(path: Path) -> Project:
             raise InputError(f"{path} is a folder, not a project file", "name the .toml file inside it")
         if path.stat().st_size > MOST_BYTES:
             raise InputError(
-                f"{path} has {path.stat().st_size / 1e6:.1f} MB (limit {MOST_BYTES / 1e6:g} MB)", "is it a project file?"
+                f"{path} has {path.stat().st_size / 1e6:.1f} MB (limit {MOST_BYTES / 1e6:g} MB)",
+                "is it a project file?",
             )
         raw = path.read_bytes()
     except FileNotFoundError:
@@ -448,9 +447,13 @@ def _explain(error: ErrorDetails, values: dict[str, Any]) -> tuple[str, str, str
     if kind == "missing" and key == "surface":
         return key, "missing: which surface the lamellas lie on", "add a table [surface] with kind = ..."
     if kind == "missing":
-        return key, "missing" + (f": {about}" if about else ""), f"add {leaf} =" + (f" ... (in{unit})" if unit else " ...")
+        return (
+            key,
+            "missing" + (f": {about}" if about else ""),
+            f"add {leaf} =" + (f" ... (in{unit})" if unit else " ..."),
+        )
     if kind == "extra_forbidden":
-        known = [name for name in parent]
+        known = list(parent)
         return key, "unknown key" + _nearest(leaf, known), f"known here: {', '.join(known)}"
     if kind in ("float_type", "int_type", "string_type", "int_from_float"):
         wanted = {"float_type": "a number", "string_type": "text in quotes"}.get(kind, "a whole number")

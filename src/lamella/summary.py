@@ -52,9 +52,7 @@ def network_summary(network: Network, requested: str) -> dict[str, Any]:
         ],
         "node_angle_deviation_max_deg": float(deviation.max()),
         "node_angle_deviation_mean_deg": float(deviation.mean()),
-        "normal_curvature_deviation_max": float(
-            np.abs(network.sample_darboux.kn - network.mean_curvature).max()
-        ),
+        "normal_curvature_deviation_max": float(np.abs(network.sample_darboux.kn - network.mean_curvature).max()),
         "cell_edge_min": float(edges.min()),
         "cell_edge_median": float(np.median(edges)),
         "cell_edge_max": float(edges.max()),

@@ -18,9 +18,7 @@ MM = 1e3
 SHEET_SPACE = 0.05
 
 
-def write_drawings(
-    folder: Path, parts: Parts, nesting: Nesting, *, name: str, version: str
-) -> tuple[Path, ...]:
+def write_drawings(folder: Path, parts: Parts, nesting: Nesting, *, name: str, version: str) -> tuple[Path, ...]:
     """Write ``A.dxf``, ``B.dxf`` (each part once, in rows) and ``sheets.dxf`` (every piece in its place).
 
     Layer CUT holds closed outlines with slots as notches, MARK node centre lines (LINE) and orientation
@@ -52,9 +50,7 @@ def write_drawings(
     blocks = [_part_block(part, file.owner) for part in parts.parts]
     paths = []
     for family in "AB":
-        rows = [
-            (part, block) for part, block in zip(parts.parts, blocks, strict=True) if part.family == family
-        ]
+        rows = [(part, block) for part, block in zip(parts.parts, blocks, strict=True) if part.family == family]
         paths.append(folder / f"{family}.dxf")
         file.write(paths[-1], _rows(rows, nesting.gap))
     paths.append(folder / "sheets.dxf")

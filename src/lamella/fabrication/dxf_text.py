@@ -86,9 +86,7 @@ class BlockWriter:
         return Block("".join(self._text), points, self._entities)
 
     def _begin(self, kind: str, layer: str, subclass: str) -> None:
-        self._text.append(
-            f"  0\n{kind}\n  5\n%X\n330\n{self._owner}\n100\nAcDbEntity\n  8\n{layer}\n100\n{subclass}\n"
-        )
+        self._text.append(f"  0\n{kind}\n  5\n%X\n330\n{self._owner}\n100\nAcDbEntity\n  8\n{layer}\n100\n{subclass}\n")
 
     def _end(self, points: Floats, tag: str) -> None:
         if tag:

@@ -46,9 +46,7 @@ def engrave(part: Part) -> Engraving:
     cuts = (part.slots - reach, part.slots + reach)
     upper = _gaps(part, (marks, cuts) if part.from_above else (marks,), part.start)
     arrow_at, arrow_size = _room(upper, 0.05 * part.height, 0.25 * part.height)
-    arrow = part.place(
-        arrow_at + arrow_size * np.array([0.0, 1.0, 0.0]), part.height * np.array([0.12, 0.245, 0.37])
-    )
+    arrow = part.place(arrow_at + arrow_size * np.array([0.0, 1.0, 0.0]), part.height * np.array([0.12, 0.245, 0.37]))
     # the half without slots; on B that is the arrow's half too
     begin = part.start if part.from_above else arrow_at + arrow_size
     strokes = _id_strokes(part, _gaps(part, (marks,), begin), begin)
@@ -103,6 +101,5 @@ def _id_strokes(part: Part, gaps: Floats, begin: float) -> tuple[Floats, ...]:
     size = min(full, room / ratio)
     middle = -0.25 * part.height if part.from_above else 0.25 * part.height
     return tuple(
-        part.place(at + size * stroke[:, 0], middle + size * (stroke[:, 1] - 0.5))
-        for stroke in text_strokes(part.id)
+        part.place(at + size * stroke[:, 0], middle + size * (stroke[:, 1] - 0.5)) for stroke in text_strokes(part.id)
     )

@@ -93,9 +93,7 @@ def outline(
     return np.concatenate((below, back))
 
 
-def _chain(
-    start: float, end: float, z: float, curvature: float, slots: Floats, width: float, origin: float
-) -> Floats:
+def _chain(start: float, end: float, z: float, curvature: float, slots: Floats, width: float, origin: float) -> Floats:
     """One edge from start to end with its notches, (v, 3) as in `outline`."""
     p = 0.5 * width
     scale = 1 - curvature * z

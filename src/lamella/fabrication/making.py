@@ -135,9 +135,7 @@ def _lamella_parts(
     bounds = np.concatenate(([start], cuts, [end]))
     for piece, (low, high) in enumerate(zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)):
         # a hub's node lies beyond the strip's end but belongs to its first or last piece
-        inside = (stations > (low if piece else -np.inf)) & (
-            stations < (high if piece < len(cuts) else np.inf)
-        )
+        inside = (stations > (low if piece else -np.inf)) & (stations < (high if piece < len(cuts) else np.inf))
         yield _part(
             f"{name}.{piece + 1}" if len(cuts) else name,
             index,

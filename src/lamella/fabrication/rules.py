@@ -90,9 +90,7 @@ class Rules:
             if not (np.isfinite(value) and value > bound):
                 raise InputError(f"{name} is {value:g}, it has to be more than {bound:g}", f"raise {name}")
         if not (np.isfinite(self.hub_radius) and self.hub_radius >= 0):
-            raise InputError(
-                f"hub_radius is {self.hub_radius:g} m, it cannot be less than 0", "give 0 or more"
-            )
+            raise InputError(f"hub_radius is {self.hub_radius:g} m, it cannot be less than 0", "give 0 or more")
         if not (np.isfinite(self.slot_width) and self.slot_width >= self.thickness):
             raise InputError(
                 f"slot_width is {self.slot_width:g} m, less than the thickness {self.thickness:g} m "

@@ -98,10 +98,7 @@ def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: fl
         key, requested = "network.spacing", f"spacing = {spacing:g} m"
         median = _median_edge(surface, whole)
         exact = whole * median / spacing
-        if exact > 1e9:
-            cells = 10**9
-        else:
-            cells = max(round(exact), 1)
+        cells = max(round(min(exact, 1e9)), 1)
         if cells < LEAST_CELLS:
             raise InputError(
                 f"spacing = {spacing:g} m leaves {exact:.2g} cells across the surface, at least {LEAST_CELLS} are "

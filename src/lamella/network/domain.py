@@ -212,7 +212,7 @@ class RectangleDomain(PlaneDomain):
         high = complex(corners.real.max(), corners.imag.max())
 
         def margin(length: float) -> float:
-            return (length - np.floor(length + RIM_TOLERANCE)) / 2
+            return float(length - np.floor(length + RIM_TOLERANCE)) / 2
 
         span = high - low
         self.origin = low + complex(margin(span.real), margin(span.imag))
@@ -328,19 +328,17 @@ class StarDomain(Domain):
 
     def lines(self) -> Lines:
         pieces: list[list[Lines]] = [[], []]
-        constants = np.arange(1, int(np.floor(self.reach + RIM_TOLERANCE)) + 1).astype(complex)
+        constants: Complexes = np.arange(1, int(np.floor(self.reach + RIM_TOLERANCE)) + 1).astype(np.complex128)
         half = np.sqrt(np.maximum(self.reach**2 - constants.real**2, 0))
         m = len(constants)
         for k in range(self.sheets):
             ray, crossing = (A, B) if k % 2 == 0 else (B, A)
-            one = np.ones(1)
+            one, unit = np.ones(1), np.ones(1, np.complex128)
             pieces[ray].append(
-                Lines(np.full(1, ray), np.full(1, k), 0j * one, one + 0j, 0 * one, self.reach * one, one > 0)
+                Lines(np.full(1, ray), np.full(1, k), 0 * unit, unit, 0 * one, self.reach * one, one > 0)
             )
             pieces[crossing].append(
-                Lines(
-                    np.full(m, crossing), np.full(m, k), constants, np.full(m, 1j), -half, half, np.zeros(m, bool)
-                )
+                Lines(np.full(m, crossing), np.full(m, k), constants, np.full(m, 1j), -half, half, np.zeros(m, bool))
             )
         return _join(pieces[A] + pieces[B])
 

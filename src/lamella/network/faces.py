@@ -61,7 +61,6 @@ def trace_faces(
     angle = np.where(angle < -1e-6, angle + 2 * np.pi, angle)
 
     tail = np.r_[tails, free_tail, free_head]
-    head = np.r_[heads, free_head, free_tail]
     angle = np.r_[angle, np.full(len(free_tail), -1.0), np.full(len(free_tail), 7.0)]
     outside = np.zeros(len(tail), bool)
     outside[len(tails) + len(free_tail) :] = True

@@ -116,8 +116,8 @@ def build_lattice(domain: Domain, lines: Lines) -> Lattice:
 
     representative = np.empty(len(used), np.int64)
     representative[rank] = at
-    where = domain.place(
-        lines.sheet[stop_line], lines.base[stop_line] + stop_t * lines.direction[stop_line]
-    )[representative]
+    where = domain.place(lines.sheet[stop_line], lines.base[stop_line] + stop_t * lines.direction[stop_line])[
+        representative
+    ]
     offsets = np.r_[0, np.cumsum(np.bincount(stop_line, minlength=len(count)))]
     return Lattice(lines, offsets, stop_t, nodes, kinds, domain.rim(where))

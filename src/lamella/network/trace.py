@@ -61,13 +61,13 @@ class _Segments:
         # einsum, not BLAS: starting its threads takes longer than this product
         transform = (basis * weight[:, None]) * ((2 * degree + 1) / 2)
         coefficients = np.einsum("pd,sp->ds", transform, speed)
-        integral = np.polynomial.legendre.legint(coefficients, lbnd=-1, axis=0) / 2
+        integral = np.asarray(np.polynomial.legendre.legint(coefficients, lbnd=-1, axis=0) / 2, np.float64)
         return np.einsum("sp,p->s", speed, weight) / 2, integral
 
 
 def _equal_arcs(integral: Floats, length: Floats, segment: Integers, fraction: Floats) -> Floats:
     """sigma where the given fraction of each segment's arc length is reached (Newton from equal parameters)."""
-    slope = np.polynomial.legendre.legder(integral, axis=0)
+    slope: Floats = np.polynomial.legendre.legder(integral, axis=0)
     x = 2 * fraction - 1
     for _ in range(3):
         miss = _clenshaw(integral, segment, x) - fraction * length[segment]
@@ -79,7 +79,8 @@ def _clenshaw(coefficients: Floats, segment: Integers, x: Floats) -> Floats:
     """Legendre series, one per segment, each at its own arguments."""
     after, now = np.zeros_like(x), np.zeros_like(x)
     for n in range(len(coefficients) - 1, -1, -1):
-        after, now = now, coefficients[n, segment] + (2 * n + 1) / (n + 1) * x * now - (n + 1) / (n + 2) * after
+        term: Floats = (2 * n + 1) / (n + 1) * x * now - (n + 1) / (n + 2) * after
+        after, now = now, coefficients[n, segment] + term
     return now
 
 
@@ -106,9 +107,7 @@ def _rim_directions(points: SurfacePoints, sample: Integers, tangent: Complexes)
     return tangent.real[:, None] * points.e_u[sample] + tangent.imag[:, None] * points.e_v[sample]
 
 
-def trace_closed_form(
-    surface: ClosedForm, density: Density, *, minimum_length: float = 0.5
-) -> Network:
+def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: float = 0.5) -> Network:
     """The network of a closed-form surface: lamellas u + v = i l0 and u - v = j l0, exactly on it.
 
     Parameters
@@ -219,4 +218,4 @@ def _running(values: Floats, owner: Integers) -> Floats:
     position = np.arange(len(values)) - np.searchsorted(owner, owner)
     wide = np.zeros((owner[-1] + 1, position.max() + 1))
     wide[owner, position] = values
-    return (np.cumsum(wide, axis=1) - wide)[owner, position]
+    return np.asarray((np.cumsum(wide, axis=1) - wide)[owner, position])

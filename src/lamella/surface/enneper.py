@@ -26,6 +26,7 @@ class Enneper(ClosedForm):
 
     kind = "enneper"
     mean_curvature = 0.0
+    outline: Disc
 
     def __init__(self, order: int, radius: float, scale: float = 1.0) -> None:
         self.order, self.scale = order, scale

@@ -24,6 +24,7 @@ class Helicoid(ClosedForm):
 
     kind = "helicoid"
     mean_curvature = 0.0
+    outline: Rectangle
 
     def __init__(self, pitch: float, inner_radius: float, outer_radius: float, turns: float) -> None:
         self._c = abs(pitch) / (2 * np.pi)

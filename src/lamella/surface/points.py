@@ -43,9 +43,7 @@ class SurfacePoints:
 
     def components(self, vectors: Floats) -> Complexes:
         """Components of tangent vectors given in space (n, 3), as complex numbers (n,)."""
-        return np.asarray(
-            np.einsum("ij,ij->i", vectors, self.e_u) + 1j * np.einsum("ij,ij->i", vectors, self.e_v)
-        )
+        return np.asarray(np.einsum("ij,ij->i", vectors, self.e_u) + 1j * np.einsum("ij,ij->i", vectors, self.e_v))
 
     @property
     def shape_operator(self) -> Floats:

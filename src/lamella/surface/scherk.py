@@ -34,6 +34,7 @@ class Scherk(ClosedForm):
 
     kind = "scherk"
     mean_curvature = 0.0
+    outline: Square
 
     def __init__(self, extent: float, scale: float = 1.0) -> None:
         self.extent, self.scale = extent, scale

@@ -295,6 +295,8 @@
     );
 
     const cell = network ? meanCell(network) : 0;
+    // The named view that still fits the picture, until the reader turns or moves it.
+    let standpoint = "iso";
     let dark = isDark;
     let pending = false;
     const listeners = [];
@@ -331,6 +333,7 @@
     }
 
     function lookFrom(name) {
+      standpoint = name;
       const direction = new THREE.Vector3(...VIEWS[name]).normalize();
       controls.target.set(0, 0, 0);
       camera.position.copy(direction);
@@ -403,6 +406,7 @@
     }
 
     function turn(azimuth, elevation) {
+      standpoint = null;
       const away = camera.position.clone().sub(controls.target);
       const distance = away.length();
       const polar = Math.min(Math.max(Math.acos(away.z / distance) - elevation, 0.01), Math.PI - 0.01);
@@ -414,6 +418,7 @@
     }
 
     function zoom(factor) {
+      standpoint = null;
       const away = camera.position.clone().sub(controls.target);
       const distance = Math.min(Math.max(away.length() * factor, controls.minDistance), controls.maxDistance);
       camera.position.copy(controls.target).addScaledVector(away.normalize(), distance);
@@ -422,9 +427,13 @@
     }
 
     controls.addEventListener("change", redraw);
+    controls.addEventListener("start", () => {
+      standpoint = null;
+    });
     // At once, not in the next frame: resizing has emptied the canvas.
     new ResizeObserver(() => {
       resize();
+      if (standpoint) lookFrom(standpoint);
       draw();
     }).observe(stage);
     resize();
@@ -753,6 +762,8 @@
 
   const MARGIN = { left: 52, right: 12, top: 10, bottom: 42 };
   const PLOT_HEIGHT = 240;
+  // Below this (1/m, MPa) a plotted value is rounding.
+  const ROUNDING = 1e-9;
 
   const PLOTS = [
     {
@@ -838,7 +849,7 @@
       drawing.querySelector(".cursor-group")?.remove();
       spec.series.forEach((series, k) => {
         const value = sample === null ? frame.peaks[k] : quantities[series.key][sample];
-        values[k].textContent = format(value, spec.digits);
+        values[k].textContent = Math.abs(value) < ROUNDING ? "≈ 0" : format(value, spec.digits);
       });
       place.textContent = sample === null ? "peak values" : whereabouts(network, frame.lamella, sample);
       frame.held = sample;
@@ -876,7 +887,7 @@
     let low = Math.min(0, ...bounds.map(([least]) => least));
     let high = Math.max(0, ...bounds.map(([, most]) => most));
     // Curvatures that are zero up to rounding stay a flat line.
-    if (high - low < 1e-9) [low, high] = [low - 0.5, high + 0.5];
+    if (high - low < ROUNDING) [low, high] = [low - 0.5, high + 0.5];
     const pad = 0.05 * (high - low);
     [low, high] = [low < 0 ? low - pad : low, high > 0 ? high + pad : high];
     const [inner, tall] = [width - MARGIN.left - MARGIN.right, PLOT_HEIGHT - MARGIN.top - MARGIN.bottom];

@@ -1,0 +1,39 @@
+# The two commands of the README are `make demo` and `make test`; both set up everything they need.
+PYTHON ?= python3
+BIN := .venv/bin
+
+.PHONY: demo test slow lint types bench docs clean
+
+demo: .venv/ready
+	$(BIN)/lamella run examples/01_unduloid.toml
+	@echo "open $(CURDIR)/out/01_unduloid/report.html in a browser"
+
+test: .venv/ready
+	$(BIN)/python -m pytest -m "not slow"
+
+slow: .venv/ready
+	$(BIN)/python -m pytest -m slow
+
+lint: .venv/ready
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: .venv/ready
+	$(BIN)/mypy
+
+bench: .venv/ready
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/growth.py
+
+docs: .venv/ready
+	$(BIN)/python docs/build.py
+
+clean:
+	rm -rf .venv out build dist
+
+# pinned versions, then the program itself with the pinned build tool
+.venv/ready: pins.txt pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "lamella needs Python 3.11 or newer; say which with: make demo PYTHON=python3.12")'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r pins.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --editable .
+	touch $@
