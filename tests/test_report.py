@@ -203,26 +203,27 @@ def test_lists_of_lamellas_and_nodes_come_back(full):
     ],
 )
 def test_words_of_the_project_stay_words(full, evil):
-    harmless = Page(report_html(full))
-    page = Page(
-        report_html(
-            replace(
-                full,
-                name=evil,
-                version=evil,
-                kind=evil,
-                material=evil,
-                warnings=(evil, evil),
-                figures=tuple((section, evil, evil, evil) for section, *_ in FIGURES),
-                network=replace(full.network, ids=(evil, *full.network.ids[1:])),
+    def page_of(word):
+        return Page(
+            report_html(
+                replace(
+                    full,
+                    name=word,
+                    version=word,
+                    kind=word,
+                    material=word,
+                    warnings=(word, word),
+                    figures=tuple((word, word, word, word) for _ in FIGURES),
+                    network=replace(full.network, ids=(word, *full.network.ids[1:])),
+                )
             )
         )
-    )
+
+    page, harmless = page_of(evil), page_of("harmless")
     assert page.tags == harmless.tags
     assert not [key for _, key, _ in page.attributes if key.startswith("on")]
-    assert page.text.count(evil) == 3 + 1 + 2 + 9 + 1  # title, heading, version; material; and kind in one line
-    data = payload(report_html(replace(full, name=evil)))
-    assert data["name"] == evil
+    assert page.text == harmless.text.replace("harmless", evil)
+    assert payload(report_html(replace(full, name=evil)))["name"] == evil
 
 
 def test_same_input_same_bytes(full, tmp_path):
@@ -247,9 +248,8 @@ def test_big_nets_are_thinned_but_keep_their_nodes(full, monkeypatch):
     assert f"{len(points):,} of {len(net.sample_points):,} centre line samples" in Page(text).text
     starts = np.repeat(decode(data["offsets"])[:-1], np.diff(decode(data["stopOffsets"])))
     stops = starts + decode(data["stopSamples"])
-    np.testing.assert_array_equal(
-        points[stops], decode(data["nodePoints"]).reshape(-1, 3)[decode(data["stopNodes"])]
-    )
+    nodes = decode(data["nodePoints"]).reshape(-1, 3)
+    np.testing.assert_allclose(points[stops], nodes[decode(data["stopNodes"])], atol=1e-9)
     lengths = decode(data["arclengths"])[decode(data["offsets"])[1:].astype(int) - 1]
     np.testing.assert_allclose(lengths, net.lengths, rtol=1e-6)
     # The worst strip quad is still seen.

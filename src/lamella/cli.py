@@ -171,9 +171,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
     except OSError as error:
         name = f"{error.filename}: " if error.filename else ""
-        _say(
-            f"lamella: {name}{error.strerror or error}; nothing has been changed\n  remedy: free some space or write elsewhere with --out"
-        )
+        _say(f"lamella: {name}{error.strerror or error}; nothing has been changed")
+        _say("  remedy: free some space, or write elsewhere with --out")
         return 2
     except MemoryError:
         _say("lamella: not enough memory; nothing has been changed\n  remedy: choose fewer cells")

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import orjson
 
+from lamella.files.text import require_finite
 from lamella.files.whole import write_whole
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
@@ -39,6 +40,7 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
         "utilisation": lamellas.utilisation,
         "planarity": lamellas.planarity,
     }
+    require_finite(*along.values(), lamellas.stop_stations)
     samples, stops = network.sample_offsets.tolist(), network.stop_offsets.tolist()
     content = {
         "schema": SCHEMA,

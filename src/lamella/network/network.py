@@ -116,7 +116,7 @@ class Network:
     def cell_edges(self) -> Floats:
         """Arc length between neighbouring nodes of each lamella, m, one after the other."""
         owner = self.stop_owner
-        return np.diff(self.stop_arclengths)[owner[1:] == owner[:-1]]
+        return np.asarray(np.diff(self.stop_arclengths)[owner[1:] == owner[:-1]])
 
     @property
     def node_angles(self) -> Floats:
@@ -130,7 +130,7 @@ class Network:
         a, b = pair[:, self.node_kinds == REGULAR]
         across = np.linalg.norm(np.cross(a, b), axis=1)
         # arctan keeps all digits near 90 degrees
-        return np.degrees(np.arctan2(across, np.abs(np.einsum("ij,ij->i", a, b))))
+        return np.asarray(np.degrees(np.arctan2(across, np.abs(np.einsum("ij,ij->i", a, b)))))
 
     def node_degrees(self) -> tuple[Integers, Integers]:
         """Number of A and of B lamella stops at each node, two arrays of shape (n,)."""

@@ -59,15 +59,15 @@ class _Segments:
         degree = np.arange(POINTS)
         basis = np.polynomial.legendre.legvander(x, POINTS - 1)
         # einsum, not BLAS: starting its threads takes longer than this product
-        transform = (basis * weight[:, None]) * ((2 * degree + 1) / 2)
+        transform: Floats = (basis * weight[:, None]) * ((2 * degree + 1) / 2)
         coefficients = np.einsum("pd,sp->ds", transform, speed)
-        integral = np.asarray(np.polynomial.legendre.legint(coefficients, lbnd=-1, axis=0) / 2, np.float64)
+        integral: Floats = np.asarray(np.polynomial.legendre.legint(coefficients, lbnd=-1, axis=0) / 2, np.float64)
         return np.einsum("sp,p->s", speed, weight) / 2, integral
 
 
 def _equal_arcs(integral: Floats, length: Floats, segment: Integers, fraction: Floats) -> Floats:
     """sigma where the given fraction of each segment's arc length is reached (Newton from equal parameters)."""
-    slope: Floats = np.polynomial.legendre.legder(integral, axis=0)
+    slope: Floats = np.asarray(np.polynomial.legendre.legder(integral, axis=0), np.float64)
     x = 2 * fraction - 1
     for _ in range(3):
         miss = _clenshaw(integral, segment, x) - fraction * length[segment]

@@ -214,8 +214,7 @@ def _surface_payload(surface: SurfaceMesh, centre: Floats, notes: list[str]) -> 
     kept, labels = _clusters(surface.points, VERTEX_LIMIT)
     if len(kept) < len(surface.points):
         notes.append(
-            f"Surface drawn with {len(kept):,} of {len(surface.points):,} vertices; "
-            "the other files hold all of them."
+            f"Surface drawn with {len(kept):,} of {len(surface.points):,} vertices; the other files hold all of them."
         )
         triangles = labels[triangles]
     return {
