@@ -55,7 +55,7 @@ def build(strips, curvature=0.0, *, layers=2, height=0.1, thickness=0.0015, offs
         sample_offsets.append(sample_offsets[-1] + len(grid))
     stops = np.array(stop_nodes)
     owners = np.repeat(families, np.diff(offsets))
-    crossing = np.array([letter in "o+" for strip in strips for letter in strip.nodes], int)
+    crossing = np.array([letter in "o+*" for strip in strips for letter in strip.nodes], int)
     degree_a, degree_b = (
         np.maximum(np.bincount(stops[owners == family], minlength=len(kinds)), crossing) for family in "AB"
     )

@@ -158,8 +158,10 @@ def _figures_html(figures: tuple[tuple[str, str, str, str], ...]) -> str:
     sections: dict[str, list[str]] = {}
     for section, label, value, unit in figures:
         suffix = f" <span>{html.escape(unit)}</span>" if unit else ""
+        # "3.4e-15" would break at its sign, yet a long text has to break somewhere.
+        kind = "short" if len(value) + len(unit) < 24 else "long"
         sections.setdefault(section, []).append(
-            f'<tr><th scope="row">{html.escape(label)}</th><td>{html.escape(value)}{suffix}</td></tr>'
+            f'<tr><th scope="row">{html.escape(label)}</th><td class="{kind}">{html.escape(value)}{suffix}</td></tr>'
         )
     return "\n".join(
         f"<table><caption>{html.escape(section)}</caption><tbody>{''.join(rows)}</tbody></table>"

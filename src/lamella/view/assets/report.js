@@ -217,6 +217,8 @@
     const round = niceTicks(low, high, 5);
     for (const value of round.ticks) {
       const place = (value - low) / (high - low);
+      // The last label of a capped scale is longer.
+      if (capped && place > 0.75 && place < 0.999) continue;
       const tick = element(
         "span",
         { class: place < 0.02 ? "first" : place > 0.96 ? "last" : "" },
@@ -353,7 +355,7 @@
       parts.marker.material.color.set(themed(["#111418", "#ffffff"], dark));
       for (const lines of parts.highlight.children)
         lines.material.color.set(themed(["#111418", "#ffffff"], dark));
-      draw();
+      redraw();
     }
 
     function colourLamellas(colouring) {
@@ -443,6 +445,7 @@
       camera,
       colourLamellas,
       colourSurface,
+      draw,
       highlight,
       lookFrom,
       mark,
@@ -1348,7 +1351,10 @@
       view.setTheme(isDark());
       recolour();
     });
-    window.addEventListener("beforeprint", () => view.setTheme(false));
+    window.addEventListener("beforeprint", () => {
+      view.setTheme(false);
+      view.draw();
+    });
     window.addEventListener("afterprint", () => view.setTheme(isDark()));
   }
 
