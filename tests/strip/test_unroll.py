@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from conftest import draw_surface
 
+from conftest import draw_surface
 from lamella import Section, Unduloid, find_material, make_lamellas, make_network
 from lamella.strip.planarity import planarity_score
 from lamella.strip.unroll import develop, developed_line, development_deviation

@@ -7,6 +7,7 @@
 
 import numpy as np
 import pytest
+
 from conftest import KINDS, draw_places, draw_surface
 from lamella import Catenoid, Cylinder, Enneper, Helicoid, InputError, Nodoid, Scherk, Unduloid
 from lamella.surface.sampling import area, surface_mesh
@@ -23,9 +24,9 @@ def _errors(surface, where, h):
     size = metric.max()
     found = {}
     by_u, by_v = _central(lambda d: surface.at(where + d).position, h)
-    found["position"] = max(
-        np.abs(by_u - metric[:, None] * at.e_u).max(), np.abs(by_v - metric[:, None] * at.e_v).max()
-    ) / size
+    found["position"] = (
+        max(np.abs(by_u - metric[:, None] * at.e_u).max(), np.abs(by_v - metric[:, None] * at.e_v).max()) / size
+    )
     n_u, n_v = _central(lambda d: surface.at(where + d).normal, h)
     s = at.shape_operator
     found["shape operator"] = max(
@@ -98,7 +99,9 @@ def test_delaunay_radii_heights_and_curvature():
     assert nodoid.flux == pytest.approx(-0.5 * 1.6 / 1.1)
 
 
-@pytest.mark.parametrize("surface", [Unduloid(0.3, 1.7, (-5, 11)), Nodoid(0.5, 1.6, (-0.3, 0.3)), Catenoid(0.7, (-1, 2))])
+@pytest.mark.parametrize(
+    "surface", [Unduloid(0.3, 1.7, (-5, 11)), Nodoid(0.5, 1.6, (-0.3, 0.3)), Catenoid(0.7, (-1, 2))]
+)
 def test_flux_and_arc_length_of_the_meridian(surface):
     """r_U^2 + z_U^2 = r^2 and the first integral z_U = H r^2 + T (force balance of a soap film)."""
     u = np.linspace(surface.outline.start, surface.outline.end, 101)
@@ -144,7 +147,9 @@ def test_classical_positions():
 def test_largest_torsion_of_the_classical_surfaces():
     """|tg| = sqrt(H^2 - K): catenoid 1/(c cosh^2 u), Enneper 2/(1 + r^2)^2, Scherk 1 at its saddle."""
     u = np.linspace(-1, 1, 9) + 0.3j
-    np.testing.assert_allclose(np.abs(Catenoid(0.7, (-1, 1)).at(u).deviator), 1 / (0.7 * np.cosh(u.real) ** 2), rtol=1e-13)
+    np.testing.assert_allclose(
+        np.abs(Catenoid(0.7, (-1, 1)).at(u).deviator), 1 / (0.7 * np.cosh(u.real) ** 2), rtol=1e-13
+    )
     np.testing.assert_allclose(np.abs(Enneper(2, 1.5).at(u).deviator), 2 / (1 + np.abs(u) ** 2) ** 2, rtol=1e-13)
     assert np.abs(Scherk(1.0).at(np.array([0j])).deviator)[0] == pytest.approx(1)
     np.testing.assert_allclose(np.abs(Cylinder(2.0, (0, 1)).at(u).deviator), 0.25, rtol=1e-13)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.errors import InputError
-from lamella.network.domain import Domain, domain_of
+from lamella.network.domain import domain_of
 from lamella.network.lattice import build_lattice
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.outline import Ring
@@ -30,7 +30,7 @@ class Density:
     step : float
         l0, sqrt(m).
     estimated_nodes : int
-        Cells that fit on the surface.
+        From the number of cells that fit on the surface.
     requested : str
         What the project asked for.
     """
@@ -50,10 +50,12 @@ def _whole_length(surface: ClosedForm) -> float:
     return surface.longest_principal_line
 
 
-def _isothermic_area(domain: Domain) -> float:
-    """Cells on the domain, from its lamella lines."""
-    lines = domain.lines()
-    return float(np.maximum(lines.end - lines.start, 0).sum() / 2)
+def _estimate_nodes(surface: ClosedForm, whole: float, cells: int) -> float:
+    """Nodes of a net, from a coarse one's lamella lines: a crossing a cell and two ends a lamella."""
+    trial = 48
+    lines = domain_of(surface, whole / trial).lines()
+    area = float(np.maximum(lines.end - lines.start, 0).sum() / 2)
+    return area * (cells / trial) ** 2 + 2 * len(lines.start) * cells / trial
 
 
 def _median_edge(surface: ClosedForm, whole: float) -> float:
@@ -109,9 +111,7 @@ def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: fl
     assert cells is not None
     if cells < LEAST_CELLS:
         raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
-    # the number of nodes grows with the square of the cells: an estimate costs nothing
-    trial = 48
-    estimate = _isothermic_area(domain_of(surface, whole / trial)) * (cells / trial) ** 2
+    estimate = _estimate_nodes(surface, whole, cells)
     if estimate > MOST_NODES:
         most = int(cells * np.sqrt(MOST_NODES / estimate))
         memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9

@@ -136,10 +136,11 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         segments = _Segments(domain, lattice)
         length, integral = segments.arcs()
         if not len(length) or not (lattice.kinds == 0).any():
+            reach = float((lines.end - lines.start).max(initial=0.0))
             raise InputError(
-                "no lamella crosses another one: the surface is smaller than a cell",
-                "raise network.cells (or lower network.spacing)",
-                "network",
+                f"no two lamellas cross: with {density.cells} cells the longest one runs over {reach:.2g} cells",
+                f"raise network.cells to about {int(np.ceil(2 * density.cells / max(reach, 1e-3)))}, or lower the spacing",
+                "network.cells",
             )
         whole = length[segments.span > 1 - 1e-9]
         total = np.bincount(segments.owner, length, minlength=len(lines.family))
@@ -150,7 +151,9 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         lines = lines.take(~short)
 
     per_cell = FINE if len(lattice.kinds) <= FINE_LIMIT else COARSE
-    count = np.maximum(np.ceil(segments.span * per_cell - 1e-6), 1).astype(np.int64)
+    # a lamella shorter than a cell is sampled as finely as a whole cell
+    cells = np.minimum(np.bincount(segments.owner, segments.span), 1.0)[segments.owner]
+    count = np.maximum(np.ceil(segments.span / cells * per_cell - 1e-6), 1).astype(np.int64)
     # every segment gives the samples from its start on; a line's last segment also gives its end
     last = np.r_[segments.owner[1:] != segments.owner[:-1], True]
     given = count + last
