@@ -7,6 +7,7 @@ the strip's height long; distances of feet along a circle are chords of radius 1
 import ezdxf
 import numpy as np
 import pytest
+
 from conftest import load
 
 SURFACES = [

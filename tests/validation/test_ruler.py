@@ -54,7 +54,8 @@ def test_ruler_agrees_on_many(kind):
     for seed in range(40):
         rng = np.random.default_rng([seed, 72])
         surface, cells = draw_surface(kind, rng), int(rng.integers(10, 80))
-        if choose_density(surface, cells=cells).estimated_nodes < 4000:
+        # neither a band so low that hardly any lamellas cross nor a net the ruler takes minutes for
+        if 6 * cells < choose_density(surface, cells=cells).estimated_nodes < 4000:
             _check(surface, cells)
             seen += 1
     assert seen >= 10
