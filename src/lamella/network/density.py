@@ -15,8 +15,8 @@ from lamella.surface.outline import Ring
 LEAST_CELLS = 3
 # a net of this many nodes takes a few minutes to compute and write
 MOST_NODES = 500_000
-# measured for surface, network and lamellas together, plus a fixed share for the program itself
-BYTES_PER_NODE, BYTES_FIXED = 12_000, 150_000_000
+# measured at 100,000 nodes for computing and writing, plus a fixed share for the program itself
+BYTES_PER_NODE, BYTES_FIXED = 9_000, 150_000_000
 
 
 @dataclass(frozen=True)

@@ -58,8 +58,8 @@ class Lines:
     end: Floats
     singular: NDArray[np.bool_]
 
-    def take(self, keep: NDArray[np.bool_]) -> Lines:
-        """The lines where `keep`."""
+    def take(self, keep: NDArray[np.bool_] | Integers) -> Lines:
+        """Some of the lines, by mask or by index."""
         return Lines(*(getattr(self, name)[keep] for name in self.__dataclass_fields__))
 
 
@@ -340,7 +340,11 @@ class StarDomain(Domain):
             pieces[crossing].append(
                 Lines(np.full(m, crossing), np.full(m, k), constants, np.full(m, 1j), -half, half, np.zeros(m, bool))
             )
-        return _join(pieces[A] + pieces[B])
+        lines = _join(pieces[A] + pieces[B])
+        # each family in order along the rim
+        t = np.where(lines.singular, lines.end, lines.start)
+        place = self.rim(self.place(lines.sheet, lines.base + t * lines.direction)).place
+        return lines.take(np.lexsort((place, lines.family)))
 
     def canonical(self, sheet: Integers, point: Complexes) -> Integers:
         # below the ray a point belongs to the quadrant above the previous ray
