@@ -5,6 +5,7 @@ Run with ``make bench`` (one thread). Every size runs in a process of its own, s
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import resource
@@ -59,11 +60,12 @@ def main() -> None:
         rows.append(json.loads(done.stdout))
         row = rows[-1]
         print(
-            f"{row['cells']:4d} cells {row['nodes']:8,} nodes {row['samples']:10,} samples: {row['seconds']:6.2f} s CPU "
+            f"{row['cells']:4d} cells {row['nodes']:8,} nodes {row['samples']:10,} samples: "
+            f"{row['seconds']:6.2f} s CPU "
             f"(surface {row['surface']:.2f}, network {row['network']:.2f}, lamellas {row['lamellas']:.2f}), "
             f"{row['seconds'] / row['surface evaluation']:.1f} x one evaluation of the surface, {row['GB']:.2f} GB"
         )
-    for one, other in zip(rows, rows[1:], strict=False):
+    for one, other in itertools.pairwise(rows):
         exponent = math.log(other["seconds"] / one["seconds"]) / math.log(other["nodes"] / one["nodes"])
         print(f"{one['nodes']:,} to {other['nodes']:,} nodes: exponent {exponent:.2f}")
 

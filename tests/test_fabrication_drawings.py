@@ -26,7 +26,7 @@ SHEET = (2.0, 1.0)
 
 def written(folder, strips, curvature=0.0, *, sheet=SHEET, section=None, **options):
     network, lamellas = build(strips, curvature, **(section or {}))
-    parts = make_parts(network, lamellas, density=7900.0, sheet=sheet, **options)
+    parts = make_parts(network, lamellas, rim_overhang=0.05, density=7900.0, sheet=sheet, **options)
     nesting = nest(parts, sheet=sheet)
     write_drawings(folder, parts, nesting, name="Pavilion", version="1.2.3")
     return network, lamellas, parts, nesting
@@ -86,7 +86,7 @@ def test_engraving_lies_in_the_material(curvature, layers):
         Strip("B", (0.0, 0.1, 0.2, 0.3), "+oo+"),
     ]
     network, lamellas = build(strips, curvature, layers=layers)
-    parts = make_parts(network, lamellas, density=7900.0)
+    parts = make_parts(network, lamellas, rim_overhang=0.05, density=7900.0)
     for part in parts.parts:
         engraving = engrave(part)
         material = Polygon(sampled(part.outline, 1e-3))
@@ -108,7 +108,7 @@ def test_engraving_lies_in_the_material(curvature, layers):
 
 def test_arrow_shows_start_and_upper_side():
     network, lamellas = build(random_strips(2), 0.5)
-    for part in make_parts(network, lamellas, density=7900.0).parts:
+    for part in make_parts(network, lamellas, rim_overhang=0.05, density=7900.0).parts:
         base, tip, other = engrave(part).arrow
         up = np.array([0.0, 2.0]) - (base + other) / 2
         up /= np.hypot(*up)

@@ -17,7 +17,13 @@ STEEL = 7900.0
 
 def parts_of(strips, curvature=0.0, *, relax=1.0, section=None, **options):
     network, lamellas = build(strips, curvature, relax=relax, **(section or {}))
-    return make_parts(network, lamellas, density=STEEL, **options)
+    return make_parts(
+        network,
+        lamellas,
+        rim_overhang=options.pop("rim_overhang", np.nan_to_num(options.get("end_distance", 0.05))),
+        density=STEEL,
+        **options,
+    )
 
 
 def polygon_area(points):

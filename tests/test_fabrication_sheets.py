@@ -18,7 +18,7 @@ DENSITY = 8000.0
 
 def nested(strips, curvature=0.0, *, sheet, gap=0.01, section=None):
     network, lamellas = build(strips, curvature, **(section or {}))
-    parts = make_parts(network, lamellas, density=DENSITY, sheet=sheet, gap=gap)
+    parts = make_parts(network, lamellas, rim_overhang=0.05, density=DENSITY, sheet=sheet, gap=gap)
     return network, lamellas, parts, nest(parts, sheet=sheet, gap=gap)
 
 
@@ -101,18 +101,19 @@ def test_oversize_part_lies_alone(curvature):
 
 def rows_of(path):
     with path.open(newline="", encoding="utf-8") as file:
-        first, columns, *rows = csv.reader(file)
+        first = file.readline().rstrip("\n")
+        columns, *rows = csv.reader(file)
     return first, [dict(zip(columns, row, strict=True)) for row in rows]
 
 
 def scheduled(folder, strips, curvature=0.0, *, sheet=(2.0, 1.0), **options):
     network, lamellas = build(strips, curvature, **options)
-    parts = make_parts(network, lamellas, density=DENSITY, sheet=sheet)
+    parts = make_parts(network, lamellas, rim_overhang=0.05, density=DENSITY, sheet=sheet)
     nesting = nest(parts, sheet=sheet)
     path = folder / "schedule.csv"
     write_schedule(path, parts, nesting, network, lamellas, name='Café, "B"', version="1.2.3")
     first, rows = rows_of(path)
-    assert first == ["# lamella", "1.2.3", 'Café, "B"']
+    assert first == '# lamella 1.2.3 · project Café, "B"'
     assert len(rows) == len(parts.parts)
     return network, lamellas, nesting, rows
 
@@ -184,7 +185,7 @@ def test_congruence_agrees_with_trying_all(seed):
     base = np.array([0.0, 0.2, 0.45])
     strips = [Strip("A", tuple(base + rng.integers(-2, 3, 3) * 6e-6), "|o|") for _ in range(40)]
     network, lamellas = build(strips)
-    parts = make_parts(network, lamellas, density=DENSITY)
+    parts = make_parts(network, lamellas, rim_overhang=0.05, density=DENSITY)
     profiles = [np.append(part.nodes - part.start, part.length) for part in parts.parts]
     expected = []
     for i, profile in enumerate(profiles):
@@ -200,7 +201,7 @@ def test_two_thousand_parts_of_two_hundred_slots(tmp_path, curvature):
     strips = random_strips(1, count=1000, cells=101, low=0.15, high=0.25)
     network, lamellas = build(strips, curvature)
     start = time.process_time()
-    parts = make_parts(network, lamellas, density=DENSITY, sheet=(30.0, 5.0))
+    parts = make_parts(network, lamellas, rim_overhang=0.05, density=DENSITY, sheet=(30.0, 5.0))
     nesting = nest(parts, sheet=(30.0, 5.0))
     write_drawings(tmp_path, parts, nesting, name="x", version="0")
     write_schedule(tmp_path / "schedule.csv", parts, nesting, network, lamellas, name="x", version="0")

@@ -68,7 +68,11 @@ def build(strips, curvature=0.0, *, layers=2, height=0.1, thickness=0.0015, offs
     samples = sample_offsets[-1]
     # any distinct numbers do for curvatures and stresses: they are only looked up
     ramp = np.arange(1.0, samples + 1)
+    # in space the strips are straight and a kilometre apart
+    row = 1000.0 * np.repeat(np.arange(len(ids)), np.diff(sample_offsets))
     known = {
+        "sample_points": np.column_stack((np.concatenate(sample_arcs), row, np.zeros(samples))),
+        "sample_tangents": np.tile([1.0, 0.0, 0.0], (samples, 1)),
         "mean_curvature": curvature,
         "node_kinds": np.array(kinds),
         "ids": tuple(ids),

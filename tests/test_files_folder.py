@@ -109,9 +109,7 @@ def test_this_system_exchanges_folders(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("error", [ValueError, OSError, KeyboardInterrupt, SystemExit])
 @pytest.mark.parametrize("before", ["missing", "earlier run", "missing parents"])
-def test_a_failed_run_leaves_everything_as_it_was(
-    tmp_path: Path, error: type[BaseException], before: str
-) -> None:
+def test_a_failed_run_leaves_everything_as_it_was(tmp_path: Path, error: type[BaseException], before: str) -> None:
     target = tmp_path / "a" / "b" / "out"
     if before != "missing parents":
         target.parent.mkdir(parents=True)
@@ -280,10 +278,7 @@ def test_a_killed_run_leaves_the_old_folder_and_the_next_run_clears_up(tmp_path:
     target = tmp_path / "out"
     earlier_run(target)
     killed = child(
-        "with staged_folder(target) as stage:\n"
-        "    fill(stage)\n"
-        "    print('filled', flush=True)\n"
-        "    time.sleep(60)\n",
+        "with staged_folder(target) as stage:\n    fill(stage)\n    print('filled', flush=True)\n    time.sleep(60)\n",
         target,
         "killed",
     )
@@ -355,14 +350,10 @@ def test_a_write_size_limit_raises_and_leaves_the_old_folder(tmp_path: Path) -> 
 
 
 @POSIX
-@pytest.mark.parametrize(
-    "way", ["", "import lamella.files.folder as f; f.exchange = lambda one, other: False\n"]
-)
+@pytest.mark.parametrize("way", ["", "import lamella.files.folder as f; f.exchange = lambda one, other: False\n"])
 def test_runs_at_once_leave_one_whole_folder(tmp_path: Path, way: str) -> None:
     target = tmp_path / "a" / "out"
-    loop = way + (
-        "for _ in range(25):\n    with staged_folder(target) as stage:\n        fill(stage)\nprint('done')\n"
-    )
+    loop = way + ("for _ in range(25):\n    with staged_folder(target) as stage:\n        fill(stage)\nprint('done')\n")
     runs = [child(loop, target, mark) for mark in ("one", "two", "three")]
     assert [run.communicate(timeout=60)[0] for run in runs] == ["done\n"] * 3
     contents = {path.read_text() for path in target.iterdir()}

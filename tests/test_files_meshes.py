@@ -106,8 +106,7 @@ def test_network_obj(tmp_path: Path) -> None:
     lines = {place: [int(i) - 1 for i in fields] for place, key, fields in elements if key == "l"}
     stops = np.split(network.stop_nodes, network.stop_offsets[1:-1])
     assert lines == {
-        f"lamellas_{identity[0]}/{identity}": stop.tolist()
-        for identity, stop in zip(network.ids, stops, strict=True)
+        f"lamellas_{identity[0]}/{identity}": stop.tolist() for identity, stop in zip(network.ids, stops, strict=True)
     }
 
 

@@ -92,9 +92,7 @@ def cylinder_net(cells: int = 6, rows: int = 4, per_cell: int = 8) -> tuple[Netw
 
 def cylinder_mesh(around: int = 12, up: int = 5) -> SurfaceMesh:
     """Return quads and, in the lowest row, triangles."""
-    angle, height = np.meshgrid(
-        2 * np.pi * np.arange(around) / around, np.linspace(0, 2 / 3, up), indexing="ij"
-    )
+    angle, height = np.meshgrid(2 * np.pi * np.arange(around) / around, np.linspace(0, 2 / 3, up), indexing="ij")
     points = np.column_stack((RADIUS * np.cos(angle.ravel()), RADIUS * np.sin(angle.ravel()), height.ravel()))
     i, j = np.meshgrid(np.arange(around), np.arange(up - 1), indexing="ij")
     a, b = i * up + j, (i + 1) % around * up + j

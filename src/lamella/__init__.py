@@ -1,6 +1,7 @@
 """Strained gridshells from straight or circular lamellas with congruent nodes.
 
-Signs and names, the same everywhere (DESIGN section 2 of the method, paper section 2):
+Signs and names, the same everywhere (Schling, Kilian, Wang, Schikore, Pottmann: Design and
+Construction of Curved Support Structures with Repetitive Parameters, AAG 2018, section 2; docs/sign-conventions.md):
 
 unit tangent t, surface normal n, sideways u = n x t, and
 
@@ -33,8 +34,8 @@ if TYPE_CHECKING:
     from lamella.pipeline import run as run
     from lamella.pipeline import write as write
     from lamella.project import Project as Project
-    from lamella.project import parse_project as parse_project
-    from lamella.project import read_project as read_project
+    from lamella.project_file import parse_project as parse_project
+    from lamella.project_file import read_project as read_project
     from lamella.strip.lamellas import Lamellas as Lamellas
     from lamella.strip.lamellas import Section as Section
     from lamella.strip.lamellas import make_lamellas as make_lamellas
@@ -61,8 +62,8 @@ _HOMES = {
     "run": "pipeline",
     "write": "pipeline",
     "Project": "project",
-    "parse_project": "project",
-    "read_project": "project",
+    "parse_project": "project_file",
+    "read_project": "project_file",
     "Lamellas": "strip.lamellas",
     "Section": "strip.lamellas",
     "make_lamellas": "strip.lamellas",

@@ -16,6 +16,8 @@ LARGE = 250.0
 SLENDER = 2500.0
 # share of the radius of curvature beyond which half the strip's height is no small strip any more
 DEEP = 0.5
+# m; the drawings' own accuracy
+WORTH_TELLING = 1e-5
 
 
 def size_cautions(mesh: SurfaceMesh, height: float) -> Iterator[str]:
@@ -33,8 +35,10 @@ def size_cautions(mesh: SurfaceMesh, height: float) -> Iterator[str]:
         )
 
 
-def network_cautions(network: Network, height: float) -> Iterator[str]:
-    """Lamellas left out, and cells too small for the strip."""
+def network_cautions(network: Network, height: float, closing: str = "open") -> Iterator[str]:
+    """Lamellas left out, cells too small for the strip, and a wish to close a net that closes anyway."""
+    if closing != "open":
+        yield f"network.closing = {closing!r} has nothing to do: every net of a closed-form surface closes by itself"
     if network.left_out:
         yield (
             f"{network.left_out} lamellas shorter than network.minimum_length are left out"
@@ -49,17 +53,17 @@ def network_cautions(network: Network, height: float) -> Iterator[str]:
         )
 
 
-def lamella_cautions(mesh: SurfaceMesh, network: Network, lamellas: Lamellas) -> Iterator[str]:
-    """Overstress, and strips too high for the surface's curvature."""
+def lamella_cautions(mesh: SurfaceMesh, network: Network, lamellas: Lamellas, slot_width: float) -> Iterator[str]:
+    """Overstress, strips too high for the surface's curvature, layers that differ by more than their slots allow."""
     worst = int(np.argmax(lamellas.utilisation))
     if lamellas.utilisation[worst] > 1:
         lamella = int(np.searchsorted(network.sample_offsets, worst, "right")) - 1
         point = ", ".join(f"{x:.3g}" for x in network.sample_points[worst])
-        over = np.add.reduceat(lamellas.utilisation > 1, network.sample_offsets[:-1]) > 0
+        over = int((np.add.reduceat(lamellas.utilisation > 1, network.sample_offsets[:-1]) > 0).sum())
         yield (
             f"utilisation reaches {lamellas.utilisation[worst]:.2f} in lamella {network.ids[lamella]} at ({point}) m "
-            f"({int(over.sum())} of {len(network.ids)} lamellas are over 1): a thinner or lower strip, a stronger "
-            "material or a flatter surface helps"
+            f"({over} of {len(network.ids)} lamellas {'is' if over == 1 else 'are'} over 1): a thinner or lower strip, "
+            "a stronger material or a flatter surface helps"
         )
     half = lamellas.section.height / 2
     curvature = float(max(np.abs(mesh.k1).max(), np.abs(mesh.k2).max()))
@@ -75,9 +79,17 @@ def lamella_cautions(mesh: SurfaceMesh, network: Network, lamellas: Lamellas) ->
         turn = np.append(0.0, np.cumsum((kg[1:] + kg[:-1]) / 2 * np.diff(s)))
         owner = network.stop_owner
         at = turn[network.sample_offsets[owner] + network.stop_samples]
-        cell = np.abs(np.diff(at))[owner[1:] == owner[:-1]].max()
-        yield (
-            f"the {layers} layers are cut alike, with the centre line's node distances; on their own curves, "
-            f"{offset * (layers - 1) / 2 * 1000:g} mm to the side, a cell differs by up to "
-            f"{cell * offset * (layers - 1) / 2 * 1000:.2g} mm"
-        )
+        cell = np.abs(np.diff(at))[owner[1:] == owner[:-1]].max() * offset * (layers - 1) / 2
+        play = slot_width - lamellas.section.thickness
+        if cell >= WORTH_TELLING:
+            verdict = (
+                f"within the slots' play of {play * 1000:.3g} mm"
+                if cell <= play
+                else f"more than the slots' play of {play * 1000:.3g} mm: choose one layer, a smaller offset "
+                "or wider slots"
+            )
+            yield (
+                f"the {layers} layers are cut alike, with the centre line's node distances; on their own curves, "
+                f"{offset * (layers - 1) / 2 * 1000:g} mm to the side, a cell differs by up to {cell * 1000:.2g} mm, "
+                f"{verdict}"
+            )

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import errno
+import io
 import os
 import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 from types import FrameType
+from typing import NoReturn
 
 from lamella import __version__
 from lamella.errors import InputError
@@ -26,11 +29,18 @@ twisting leave in the strips.
 Open out/unduloid/report.html in a browser, model.3dm in Rhino, fabrication/*.dxf at the laser."""
 
 
+class _Parser(argparse.ArgumentParser):
+    """Mistakes in the arguments read like all others: what, and the remedy."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message}\n  remedy: see {self.prog} --help\n")
+
+
 def _parser() -> argparse.ArgumentParser:
     plain = argparse.RawDescriptionHelpFormatter
-    parser = argparse.ArgumentParser(prog="lamella", description=_ABOUT, formatter_class=plain)
+    parser = _Parser(prog="lamella", description=_ABOUT, formatter_class=plain)
     parser.add_argument("--version", action="version", version=f"lamella {__version__}")
-    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND")
 
     run = commands.add_parser(
         "run",
@@ -56,7 +66,7 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument("project", type=Path, help="project file (.toml)")
 
     examples = commands.add_parser("examples", help="list the examples, or copy them")
-    examples.add_argument("names", nargs="*", help="examples to copy (default: all)")
+    examples.add_argument("names", nargs="*", metavar="NAME", help="with --copy: the examples to copy (default: all)")
     examples.add_argument("--copy", type=Path, metavar="DIR", help="folder to copy them into")
 
     schema = commands.add_parser("schema", help="print the JSON schema of the project file or of network.json")
@@ -85,7 +95,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
 def _check(arguments: argparse.Namespace) -> None:
     from lamella.pipeline import plan
-    from lamella.project import located, read_project
+    from lamella.project_file import located, read_project
 
     project = read_project(arguments.project)
     try:
@@ -99,7 +109,7 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _new(arguments: argparse.Namespace) -> None:
-    from lamella.project import explain_kind
+    from lamella.project_errors import explain_kind
     from lamella.starter import starter
 
     kind = arguments.kind
@@ -124,12 +134,14 @@ def _new(arguments: argparse.Namespace) -> None:
 def _examples(arguments: argparse.Namespace) -> None:
     from lamella.example_files import copy_examples, list_examples
 
-    if arguments.copy is None and not arguments.names:
+    if arguments.copy is None and arguments.names:
+        raise InputError("no folder to copy into", f"lamella examples --copy DIR {' '.join(arguments.names)}")
+    if arguments.copy is None:
         for name, title in list_examples():
             print(f"{name:24s} {title}")
         print("\ncopy them with: lamella examples --copy DIR [NAME ...]")
         return
-    for path in copy_examples(arguments.names, arguments.copy or Path(".")):
+    for path in copy_examples(arguments.names, arguments.copy):
         print(path)
 
 
@@ -151,11 +163,26 @@ def _terminate(number: int, frame: FrameType | None) -> None:
     raise SystemExit(128 + number)
 
 
+def _mend(error: OSError) -> str:
+    if error.errno in (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)):
+        return "free some space on the disk, or write to another one"
+    if error.errno in (errno.EACCES, errno.EPERM, errno.EROFS):
+        return "write to another folder, or have the rights changed"
+    return "check the path, or write to another folder"
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code is 0, or 2 for what the user can mend."""
     with contextlib.suppress(ValueError):
         signal.signal(signal.SIGTERM, _terminate)
-    parsed = _parser().parse_args(arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # a file name or a unit the terminal cannot show must not end a run
+        sys.stdout.reconfigure(errors="backslashreplace")
+    parser = _parser()
+    parsed = parser.parse_args(arguments)
+    if parsed.command is None:
+        parser.print_help(sys.stderr)
+        return 2
     try:
         _COMMANDS[parsed.command](parsed)
         sys.stdout.flush()
@@ -164,17 +191,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     except BrokenPipeError:
         # the reader of our output has gone; there is nobody to tell
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for stream in (sys.stdout, sys.stderr):
+            os.dup2(nowhere, stream.fileno())
         return 1
     except KeyboardInterrupt:
         _say("lamella: interrupted, nothing written")
         return 130
     except OSError as error:
         name = f"{error.filename}: " if error.filename else ""
-        _say(f"lamella: {name}{error.strerror or error}; nothing has been changed")
-        _say("  remedy: free some space, or write elsewhere with --out")
+        _say(f"lamella: {name}{error.strerror or error}; what was there before is unchanged")
+        _say(f"  remedy: {_mend(error)}")
         return 2
     except MemoryError:
-        _say("lamella: not enough memory; nothing has been changed\n  remedy: choose fewer cells")
+        _say("lamella: not enough memory; what was there before is unchanged\n  remedy: choose fewer cells")
         return 2
     return 0

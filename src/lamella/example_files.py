@@ -25,7 +25,7 @@ def _all() -> dict[str, Traversable]:
 
 def list_examples() -> list[tuple[str, str]]:
     """File name and first comment line of every example."""
-    return [(name, item.read_text().partition("\n")[0].lstrip("# ")) for name, item in _all().items()]
+    return [(name, item.read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")) for name, item in _all().items()]
 
 
 def copy_examples(names: list[str], target: Path) -> list[Path]:
@@ -40,9 +40,9 @@ def copy_examples(names: list[str], target: Path) -> list[Path]:
     wanted = [name if name.endswith(".toml") else f"{name}.toml" for name in names] or list(known)
     for name in wanted:
         if name not in known:
-            near = get_close_matches(name, known, 1, 0.3)
+            near = get_close_matches(name, known, 1, 0.6)
             raise InputError(
-                f"no example {name!r}" + (f", did you mean {near[0]!r}?" if near else ""),
+                f"no example {name[:80]!r}" + (f", did you mean {near[0]!r}?" if near else ""),
                 f"there are {', '.join(known)}",
             )
         if (target / name).exists():

@@ -1,4 +1,4 @@
-"""The files of a run, stage by stage (DESIGN section 7)."""
+"""The files of a run, stage by stage (docs/files.md)."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from lamella.files.mesh_files import write_network_obj, write_surface_obj, write
 from lamella.files.model_3dm import write_model
 from lamella.files.network_json import write_network
 from lamella.files.nodes_csv import write_nodes_csv
+from lamella.files.text import one_line
 from lamella.files.whole import write_whole
 from lamella.view.report import ReportData, write_report
 
@@ -37,7 +38,7 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
         progress(f"  {file}")
         write(folder / file, *content, **more)
 
-    heading = f"# {' '.join(project.name.split())}, all defaults filled in by lamella {__version__}\n"
+    heading = f"# {one_line(project.name)}, all defaults filled in by lamella {__version__}\n"
     put("project.toml", write_whole, (heading + project.to_toml()).encode())
     put("surface.obj", write_surface_obj, results.mesh, **signed)
     put("surface.ply", write_surface_ply, results.mesh, **signed)
@@ -50,7 +51,8 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
         put("lamellas.json", write_lamellas, network, lamellas, **signed)
     if network and lamellas and results.parts and results.nesting:
         (folder / "fabrication").mkdir()
-        put("fabrication", write_drawings, results.parts, results.nesting, **signed)
+        progress("  fabrication/A.dxf, B.dxf, sheets.dxf")
+        write_drawings(folder / "fabrication", results.parts, results.nesting, **signed)
         put("fabrication/schedule.csv", write_schedule, results.parts, results.nesting, network, lamellas, **signed)
     put("report.html", write_report, report_data(results))
 

@@ -5,16 +5,19 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 from lamella import __version__, cautions, summary
 from lamella.errors import InputError
 from lamella.fabrication import Nesting, Parts, make_parts, nest
+from lamella.fabrication.rules import LEAST_END, Rules, edge_scale
 from lamella.network.density import Density, choose_density
 from lamella.network.network import Network
 from lamella.network.trace import trace_closed_form
-from lamella.project import Project, located, read_project
+from lamella.project import FabricationTable, Project
+from lamella.project_file import located, read_project
 from lamella.strip.lamellas import Lamellas, Section, make_lamellas
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.closed_forms import CLOSED_FORMS
@@ -38,6 +41,7 @@ class Results:
     Attributes
     ----------
     project : Project
+        With all defaults filled in.
     surface : ClosedForm
     mesh : SurfaceMesh
         The surface sampled for files and pictures.
@@ -87,10 +91,44 @@ def make_surface(project: Project) -> ClosedForm:
     return CLOSED_FORMS[project.surface.kind](**values)
 
 
-def plan(project: Project) -> tuple[ClosedForm, Density]:
+def plan(project: Project, *, until: str = LAST_STAGE) -> tuple[ClosedForm, Density]:
     """Surface and density of a project: all that can be refused before any work is done."""
     surface = make_surface(project)
+    if _depth(until) >= STAGES.index("fabrication"):
+        _check_fabrication(fill_in(project, surface.mean_curvature), surface.mean_curvature)
     return surface, choose_density(surface, cells=project.network.cells, spacing=project.network.spacing)
+
+
+def fill_in(project: Project, mean_curvature: float) -> Project:
+    """The project with those defaults filled in that follow from its other values."""
+    cut, strip = project.fabrication, project.lamella
+    slot_width = 2 * strip.thickness if cut.slot_width is None else cut.slot_width
+    end_distance = cut.end_distance
+    if end_distance is None:
+        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(mean_curvature, strip.height))
+    filled = cut.model_copy(update={"slot_width": slot_width, "end_distance": float(end_distance)})
+    return project.model_copy(update={"fabrication": filled})
+
+
+def _check_fabrication(project: Project, mean_curvature: float) -> None:
+    """Refuse measures that no part can be made with, by the key in the project."""
+    strip, cut = project.lamella, project.fabrication
+    rules = Rules(
+        layers=strip.layers,
+        offset=strip.offset,
+        height=strip.height,
+        thickness=strip.thickness,
+        curvature=float(mean_curvature),
+        density=project.material().density,
+        **cut.model_dump(),
+    )
+    try:
+        rules.check()
+    except InputError as error:
+        # its messages begin with the measure, but for the one about strips too high for their circle
+        measure = error.message.partition(" ")[0]
+        key = f"fabrication.{measure}" if measure in FabricationTable.model_fields else "lamella.height"
+        raise InputError(error.message, error.remedy, key) from None
 
 
 def compute(project: Project, *, until: str = LAST_STAGE, progress: Progress = _silent) -> Results:
@@ -113,7 +151,8 @@ def compute(project: Project, *, until: str = LAST_STAGE, progress: Progress = _
     warnings: list[str] = []
 
     clock.start(f"surface: {project.surface.kind}")
-    surface, density = plan(project)
+    surface, density = plan(project, until=until)
+    project = fill_in(project, surface.mean_curvature)
     mesh = surface_mesh(surface)
     figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh)}
     clock.stop("surface", f"area {figures['surface']['area']:.4g} m2, H = {surface.mean_curvature:.6g} 1/m")
@@ -129,28 +168,19 @@ def compute(project: Project, *, until: str = LAST_STAGE, progress: Progress = _
             f"{density.cells} cells: {f['lamellas']} lamellas, {f['nodes']:,} nodes, cell edge "
             f"{f['cell_edge_min']:.3g} to {f['cell_edge_max']:.3g} m (median {f['cell_edge_median']:.3g} m)",
         )
-        warnings += cautions.network_cautions(network, project.lamella.height)
+        warnings += cautions.network_cautions(network, project.lamella.height, project.network.closing)
     if network and depth >= STAGES.index("lamellas"):
         table = project.lamella
         clock.start(f"lamellas: {table.height * 1000:g} x {table.thickness * 1000:g} mm, {table.material}")
         section = Section(table.height, table.thickness, table.layers, table.offset, table.marks)
         lamellas = make_lamellas(network, section, project.material())
-        figures["lamellas"] = f = summary.lamella_summary(network, lamellas)
+        figures["lamellas"] = f = summary.lamella_summary(network, lamellas, table.material, project.material())
         clock.stop("lamellas", f"{f['total_length']:.4g} m of lamella, utilisation up to {f['utilisation_max']:.2f}")
-        warnings += cautions.lamella_cautions(mesh, network, lamellas)
+        warnings += cautions.lamella_cautions(mesh, network, lamellas, project.fabrication.slot_width or 0.0)
     if network and lamellas and depth >= STAGES.index("fabrication"):
         cut = project.fabrication
         clock.start("fabrication: parts and sheets")
-        parts = make_parts(
-            network,
-            lamellas,
-            density=project.material().density,
-            end_distance=cut.end_distance,
-            hub_radius=cut.hub_radius,
-            slot_width=cut.slot_width,
-            sheet=cut.sheet,
-            gap=cut.gap,
-        )
+        parts = make_parts(network, lamellas, density=project.material().density, **cut.model_dump())
         nesting = nest(parts, sheet=cut.sheet, gap=cut.gap)
         figures["fabrication"] = f = summary.fabrication_summary(parts, nesting, figures["surface"]["area"])
         clock.stop("fabrication", f"{f['parts']:,} parts, {f['mass']:.4g} kg, {f['sheets']} sheets")
@@ -164,11 +194,17 @@ def compute(project: Project, *, until: str = LAST_STAGE, progress: Progress = _
 
 def _depth(until: str) -> int:
     if until not in STAGES:
-        raise InputError(f"unknown stage {until!r}", f"choose one of {', '.join(STAGES)}", "--until")
+        near = get_close_matches(until, STAGES, 1, 0.5)
+        meant = f", did you mean {near[0]!r}?" if near else ""
+        raise InputError(
+            f"unknown stage {until[:40]!r}{meant}",
+            f"choose one of {', '.join(STAGES[: STAGES.index(LAST_STAGE) + 1])}",
+            "--until",
+        )
     if STAGES.index(until) > STAGES.index(LAST_STAGE):
         raise InputError(
             f"stage {until!r} is not part of version {__version__} yet",
-            f"the last stage there is: {LAST_STAGE}",
+            f"leave --until out, or choose one of {', '.join(STAGES[: STAGES.index(LAST_STAGE) + 1])}",
             "--until",
         )
     return STAGES.index(until)

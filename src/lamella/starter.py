@@ -9,12 +9,7 @@ import tomli_w
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from lamella.project import (
-    SURFACE_TABLES,
-    FabricationTable,
-    LamellaTable,
-    NetworkTable,
-)
+from lamella.project import SURFACE_TABLES, FabricationTable, LamellaTable, NetworkTable
 
 # keys that come with a value of their own in a new project
 _ACTIVE = {"cells"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from lamella.fabrication.part import Parts
 from lamella.fabrication.sheet import Nesting
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas
+from lamella.strip.material import Material
 from lamella.strip.unroll import development_deviation
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.mesh import SurfaceMesh
@@ -61,8 +63,8 @@ def network_summary(network: Network, requested: str) -> dict[str, Any]:
     }
 
 
-def lamella_summary(network: Network, lamellas: Lamellas) -> dict[str, Any]:
-    """The lamellas' figures."""
+def lamella_summary(network: Network, lamellas: Lamellas, name: str, material: Material) -> dict[str, Any]:
+    """The lamellas' figures, with the section and the material (by name) they rest on."""
     quads = np.ones(len(lamellas.planarity), bool)
     quads[network.sample_offsets[1:] - 1] = False
     deviation = development_deviation(
@@ -70,7 +72,8 @@ def lamella_summary(network: Network, lamellas: Lamellas) -> dict[str, Any]:
     )
     return {
         "total_length": float(network.lengths.sum()),
-        "marks": lamellas.section.marks,
+        "section": asdict(lamellas.section),
+        "material": {"name": name} | asdict(material),
         "geodesic_curvature_max": float(np.abs(network.sample_darboux.kg).max()),
         "geodesic_torsion_max": float(np.abs(network.sample_darboux.tg).max()),
         "planarity_score": {

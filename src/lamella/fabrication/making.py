@@ -7,10 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.fabrication.collisions import end_collisions
 from lamella.fabrication.flat import outline, outline_area
 from lamella.fabrication.notes import Notes
 from lamella.fabrication.part import Part, Parts
-from lamella.fabrication.rules import ROUNDING, Rules
+from lamella.fabrication.rules import LEAST_END, ROUNDING, Rules, edge_scale
 from lamella.fabrication.splitting import cut_stations
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas
@@ -23,7 +24,8 @@ def make_parts(
     lamellas: Lamellas,
     *,
     density: float,
-    end_distance: float = 0.05,
+    end_distance: float | None = None,
+    rim_overhang: float = 0.01,
     hub_radius: float = 0.02,
     slot_width: float | None = None,
     sheet: tuple[float, float] = (12.0, 2.0),
@@ -38,8 +40,11 @@ def make_parts(
         Of that network.
     density : float
         kg/m3.
-    end_distance : float
-        From the outermost slot's axis, or the rim's node where that lies further out, to the strip's end, m.
+    end_distance : float, optional
+        Least distance from the outermost slot's axis to the strip's end, m; the larger of `LEAST_END` and two slot
+        widths if not given.
+    rim_overhang : float
+        Least distance from the rim's node to the strip's end, m.
     hub_radius : float
         From a singular node to the strip's end, m.
     slot_width : float, optional
@@ -59,6 +64,9 @@ def make_parts(
         Where the measures contradict each other.
     """
     section = lamellas.section
+    slot_width = 2 * section.thickness if slot_width is None else slot_width
+    if end_distance is None:
+        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(network.mean_curvature, section.height))
     rules = Rules(
         layers=section.layers,
         offset=section.offset,
@@ -67,8 +75,9 @@ def make_parts(
         curvature=float(network.mean_curvature),
         density=density,
         end_distance=end_distance,
+        rim_overhang=rim_overhang,
         hub_radius=hub_radius,
-        slot_width=2 * section.thickness if slot_width is None else slot_width,
+        slot_width=slot_width,
         sheet=sheet,
         gap=gap,
     )
@@ -97,7 +106,21 @@ def make_parts(
                 notes,
             )
         )
+    notes.collisions = end_collisions(network, *_overhangs(network, lamellas, parts), float(rules.spread[-1]))
     return Parts(tuple(parts), tuple(notes.sentences(rules, len(network.ids), len(parts))))
+
+
+def _overhangs(network: Network, lamellas: Lamellas, parts: list[Part]) -> tuple[Floats, Floats]:
+    """How far the strips reach beyond their lamellas' first and last nodes, m, (m,) each."""
+    first, last = (
+        lamellas.stop_stations[network.stop_offsets[:-1]],
+        lamellas.stop_stations[network.stop_offsets[1:] - 1],
+    )
+    start, end = first.copy(), last.copy()
+    index = np.array([part.lamella for part in parts], dtype=np.int64)
+    np.minimum.at(start, index, np.array([part.start for part in parts]))
+    np.maximum.at(end, index, np.array([part.end for part in parts]))
+    return first - start, end - last
 
 
 def _lamella_parts(
@@ -119,12 +142,12 @@ def _lamella_parts(
         start, end = float(stations[0]) - half, float(stations[-1]) - half
         stations, crossing = stations[:-1], crossing[:-1]
     else:
-        # slots of a crossing close to the rim can reach beyond the rim's node
+        # little beyond the rim, lest strips meet their neighbours out there, unless the last slot asks for more
         slots = stations[crossing]
-        first = np.min(np.append(slots + rules.spread[0], stations[0]))
-        last = np.max(np.append(slots + rules.spread[-1], stations[-1]))
-        start = float(stations[0] + rules.hub_radius if hub[0] else first - rules.end_distance)
-        end = float(stations[-1] - rules.hub_radius if hub[-1] else last + rules.end_distance)
+        first = np.min(np.append(slots + rules.spread[0] - rules.end_distance, stations[0] - rules.rim_overhang))
+        last = np.max(np.append(slots + rules.spread[-1] + rules.end_distance, stations[-1] + rules.rim_overhang))
+        start = float(stations[0] + rules.hub_radius if hub[0] else first)
+        end = float(stations[-1] - rules.hub_radius if hub[-1] else last)
     if end - start <= rules.slot_width:
         notes.left_out.append(name)
         return

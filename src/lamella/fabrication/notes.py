@@ -28,6 +28,8 @@ class Notes:
         Ids of the lamellas no part is made of.
     unslotted : list of (str, float)
         Id and smallest cell edge (m) of the parts without slots.
+    collisions : int
+        Pairs of strip ends that meet beyond the rim.
     """
 
     too_long: list[float] = field(default_factory=list)
@@ -36,6 +38,7 @@ class Notes:
     oversize: list[tuple[str, float]] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
     unslotted: list[tuple[str, float]] = field(default_factory=list)
+    collisions: int = 0
 
     def sentences(self, rules: Rules, lamellas: int, parts: int) -> Iterator[str]:
         """One warning a matter, given the numbers of all lamellas and parts."""
@@ -62,6 +65,12 @@ class Notes:
                 f"{len(self.left_out)} of {lamellas} lamellas are left out of the parts "
                 f"({_few(self.left_out)}): nothing remains of them between hubs of radius "
                 f"{1e3 * rules.hub_radius:g} mm, or a single cell turns through more than 1.9 pi"
+            )
+        if self.collisions:
+            yield (
+                f"{self.collisions} pairs of strips meet beyond the rim, where no slot is cut: shorten "
+                f"fabrication.rim_overhang ({1e3 * rules.rim_overhang:g} mm) or end_distance "
+                f"({1e3 * rules.end_distance:g} mm), or move the rim"
             )
         if self.unslotted:
             between = 2 * rules.slot_width / rules.edge_scale

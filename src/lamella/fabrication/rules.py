@@ -15,6 +15,13 @@ Floats = NDArray[np.float64]
 # a flat ring closer to a full turn than this would leave its ends no room
 LARGEST_TURN = 1.9 * np.pi
 ROUNDING = 1e-9
+# m of strip beyond the last slot where the project does not say
+LEAST_END = 0.05
+
+
+def edge_scale(curvature: float, height: float) -> float:
+    """Length along the shorter edge of a strip for each length along the centre line (at least 0.1)."""
+    return max(1.0 - 0.5 * abs(curvature) * height, 0.1)
 
 
 @dataclass(frozen=True)
@@ -34,7 +41,9 @@ class Rules:
     density : float
         kg/m3.
     end_distance : float
-        From the last slot's axis or the rim's node to the strip's end, m.
+        Least distance from the last slot's axis to the strip's end, m.
+    rim_overhang : float
+        Least distance from the rim's node to the strip's end, m.
     hub_radius : float
         From a singular node to the strip's end, m.
     slot_width : float
@@ -52,6 +61,7 @@ class Rules:
     curvature: float
     density: float
     end_distance: float
+    rim_overhang: float
     hub_radius: float
     slot_width: float
     sheet: tuple[float, float]
@@ -66,7 +76,7 @@ class Rules:
     @property
     def edge_scale(self) -> float:
         """Length along the shorter edge for each length along the centre line."""
-        return 1.0 - 0.5 * abs(self.curvature) * self.height
+        return edge_scale(self.curvature, self.height)
 
     @property
     def longest_ring(self) -> float:
@@ -89,13 +99,19 @@ class Rules:
         for name, value, bound in least:
             if not (np.isfinite(value) and value > bound):
                 raise InputError(f"{name} is {value:g}, it has to be more than {bound:g}", f"raise {name}")
-        if not (np.isfinite(self.hub_radius) and self.hub_radius >= 0):
-            raise InputError(f"hub_radius is {self.hub_radius:g} m, it cannot be less than 0", "give 0 or more")
+        for name, value in (("hub_radius", self.hub_radius), ("rim_overhang", self.rim_overhang)):
+            if not (np.isfinite(value) and value >= 0):
+                raise InputError(f"{name} is {value:g} m, it cannot be less than 0", "give 0 or more")
         if not (np.isfinite(self.slot_width) and self.slot_width >= self.thickness):
             raise InputError(
                 f"slot_width is {self.slot_width:g} m, less than the thickness {self.thickness:g} m "
                 "of the strip that goes in",
                 f"raise slot_width to {2 * self.thickness:g} m, twice the thickness",
+            )
+        if self.slot_width >= self.height:
+            raise InputError(
+                f"slot_width is {self.slot_width:g} m, not less than the strip's height {self.height:g} m",
+                f"lower slot_width; twice the thickness is {2 * self.thickness:g} m",
             )
         # a tighter circle's inner edge would be narrower than the slots and their distances
         if self.edge_scale <= 0.5 or abs(self.curvature) * self.slot_width >= self.edge_scale:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from lamella.fabrication.part import Part, Parts
 from lamella.fabrication.sheet import Nesting
+from lamella.files.text import one_line
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 
@@ -53,8 +54,7 @@ def write_schedule(
 ) -> None:
     """Write the part list.
 
-    The first row begins with "# lamella" and holds the program's version and the project's name; readers
-    that skip comments pass over it. The second one names the columns and their units. Lengths and the mass
+    The first row, after "#", names version and project; the second the columns and their units. Lengths and the mass
     are those of one piece; curvatures and stresses are the largest magnitudes along the part, where
     ``helix_MPa`` is the larger of the edge's tension and the centre's compression. ``same_as`` names the
     first part of the family that is congruent to this one within 0.01 mm.
@@ -84,7 +84,7 @@ def write_schedule(
     same = congruent_parts(parts)
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(("# lamella", version, name))
+        file.write(f"# lamella {one_line(version)} · project {one_line(name)}\n")
         writer.writerow(COLUMNS)
         for index, part in enumerate(parts.parts):
             largest = values[:, _samples(part, network, lamellas)].max(axis=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 import orjson
@@ -25,7 +26,6 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
     name, version : str
         Of the project and of the program.
     """
-    section = lamellas.section
     along = {
         "arclength": network.sample_arclengths,
         "normal_curvature": network.sample_darboux.kn,
@@ -47,13 +47,7 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
         "version": version,
         "name": name,
         "units": {"length": "m", "curvature": "1/m", "stress": "Pa"},
-        "section": {
-            "height": section.height,
-            "thickness": section.thickness,
-            "layers": section.layers,
-            "offset": section.offset,
-            "marks": section.marks,
-        },
+        "section": asdict(lamellas.section),
         "development": {"curvature": network.mean_curvature},
         "lamellas": [
             {

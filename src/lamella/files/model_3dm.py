@@ -198,9 +198,7 @@ class _Model:
             if len(points) > POINT_OBJECTS:
                 if members:
                     cloud = rhino3dm.PointCloud([rhino3dm.Point3d(*points[i]) for i in members])
-                    self.file.Objects.AddPointCloud(
-                        cloud, self._attributes(layer, layer, version=self.version)
-                    )
+                    self.file.Objects.AddPointCloud(cloud, self._attributes(layer, layer, version=self.version))
                 continue
             for i in members:
                 point = rhino3dm.Point(rhino3dm.Point3d(*points[i]))

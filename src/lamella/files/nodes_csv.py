@@ -33,9 +33,7 @@ def nodes_csv_bytes(network: Network, *, name: str, version: str) -> bytes:
     ends = np.cumsum(counts)
 
     lines = [f"# lamella {one_line(version)} · project {one_line(name)}", HEADER]
-    table = zip(
-        network.node_kinds.tolist(), coordinates, (ends - counts).tolist(), ends.tolist(), strict=True
-    )
+    table = zip(network.node_kinds.tolist(), coordinates, (ends - counts).tolist(), ends.tolist(), strict=True)
     for index, (kind, place, start, end) in enumerate(table):
         stops = f"{' '.join(owners[start:end])},{' '.join(stations[start:end])}"
         lines.append(f"{index},{NODE_KINDS[kind]},{place},{stops}")

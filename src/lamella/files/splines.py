@@ -58,9 +58,7 @@ def fit_spline(parameters: Floats, values: Floats, ends: Floats, tolerance: floa
     while True:
         stride = min(stride, 1 << (last.bit_length() - 1))
         kept = np.rint(np.linspace(0, last, -(-last // stride) + 1)).astype(np.int64)
-        spline = make_interp_spline(
-            parameters[kept], values[kept], k=DEGREE, bc_type=conditions, check_finite=False
-        )
+        spline = make_interp_spline(parameters[kept], values[kept], k=DEGREE, bc_type=conditions, check_finite=False)
         if stride == 1:
             break
         error = float(np.abs(spline(parameters) - values).max())

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.errors import InputError
-from lamella.network.domain import domain_of
-from lamella.network.lattice import build_lattice
+from lamella.network.domain import Lines, domain_of
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.outline import Ring
 
 LEAST_CELLS = 3
+# cells of the coarse net from which densities are judged
+TRIAL = 48
 # a net of this many nodes takes a few minutes to compute and write
 MOST_NODES = 500_000
 # measured at 100,000 nodes for computing and writing, plus a fixed share for the program itself
@@ -50,24 +51,31 @@ def _whole_length(surface: ClosedForm) -> float:
     return surface.longest_principal_line
 
 
-def _estimate_nodes(surface: ClosedForm, whole: float, cells: int) -> float:
-    """Nodes of a net, from a coarse one's lamella lines: a crossing a cell and two ends a lamella."""
-    trial = 48
-    lines = domain_of(surface, whole / trial).lines()
-    area = float(np.maximum(lines.end - lines.start, 0).sum() / 2)
-    return area * (cells / trial) ** 2 + 2 * len(lines.start) * cells / trial
+def _coarse_lines(surface: ClosedForm, whole: float) -> Lines:
+    return domain_of(surface, whole / TRIAL).lines()
 
 
-def _median_edge(surface: ClosedForm, whole: float) -> float:
-    """Median cell edge divided by the step, sqrt(m): l / l0 = 1 / (sqrt2 mu)."""
-    trial = 64
-    domain = domain_of(surface, whole / trial)
-    lattice = build_lattice(domain, domain.lines())
-    line = lattice.lines
-    point = line.base[lattice.owner] + lattice.t * line.direction[lattice.owner]
-    where = domain.place(line.sheet[lattice.owner], point)
-    where = where[lattice.kinds[lattice.nodes] == 0]
-    return float(np.median(1 / surface.at(where).mu) / np.sqrt(2))
+def _estimate(lines: Lines) -> tuple[float, float]:
+    """Nodes of a net with c cells, area c^2 + ends c: a crossing a cell, and two ends a lamella."""
+    return float(np.maximum(lines.end - lines.start, 0).sum() / 2) / TRIAL**2, 2 * len(lines.start) / TRIAL
+
+
+def _median_edge(surface: ClosedForm, whole: float, lines: Lines) -> float:
+    """Median cell edge divided by the step, sqrt(m): l / l0 = 1 / (sqrt2 mu), weighted alike in the cell plane."""
+    lines = lines.take(np.arange(0, len(lines.start), max(1, len(lines.start) // 200)))
+    length = np.maximum(lines.end - lines.start, 0)
+    count = 64
+    t = lines.start[:, None] + length[:, None] * ((np.arange(count) + 0.5) / count)
+    point = lines.base[:, None] + t * lines.direction[:, None]
+    place = domain_of(surface, whole / TRIAL).place(np.repeat(lines.sheet, count), point.ravel())
+    edge = 1 / surface.at(place).mu
+    order = np.argsort(edge)
+    share = np.cumsum(np.repeat(length, count)[order])
+    return float(edge[order][np.searchsorted(share, share[-1] / 2)] / np.sqrt(2))
+
+
+def _round(number: float) -> str:
+    return f"{number:,.0f}" if number < 1e12 else f"{number:.3g}"
 
 
 def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: float | None = None) -> Density:
@@ -96,11 +104,12 @@ def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: fl
     if cells is None and spacing is None:
         cells, requested = 24, "cells = 24 (default)"
     key = "network.cells"
+    lines = _coarse_lines(surface, whole)
     if spacing is not None:
         key, requested = "network.spacing", f"spacing = {spacing:g} m"
-        median = _median_edge(surface, whole)
+        median = _median_edge(surface, whole, lines)
         exact = whole * median / spacing
-        cells = max(round(min(exact, 1e9)), 1)
+        cells = max(round(exact), 1)
         if cells < LEAST_CELLS:
             raise InputError(
                 f"spacing = {spacing:g} m leaves {exact:.2g} cells across the surface, at least {LEAST_CELLS} are "
@@ -111,15 +120,19 @@ def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: fl
     assert cells is not None
     if cells < LEAST_CELLS:
         raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
-    estimate = _estimate_nodes(surface, whole, cells)
+    area, ends = _estimate(lines)
+    estimate = area * cells**2 + ends * cells
     if estimate > MOST_NODES:
-        most = int(cells * np.sqrt(MOST_NODES / estimate))
+        most = int((np.sqrt(ends**2 + 4 * area * MOST_NODES) - ends) / (2 * area))
         memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
-        remedy = f"at most {most} cells fit this surface"
-        if spacing is not None:
-            remedy = f"choose a spacing of at least {spacing * cells / max(most, 1):.3g} m"
+        if most < LEAST_CELLS:
+            remedy = "the surface is too long for its width: shorten or widen it"
+        elif spacing is not None:
+            remedy = f"choose a spacing of at least {spacing * cells / most:.3g} m"
+        else:
+            remedy = f"at most {most} cells fit this surface"
         raise InputError(
-            f"{requested} would make about {estimate:,.0f} nodes and take about {memory:,.0f} GB of memory "
+            f"{requested} would make about {_round(estimate)} nodes and take about {_round(memory)} GB of memory "
             f"(limit {MOST_NODES:,} nodes)",
             remedy,
             key,

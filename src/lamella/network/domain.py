@@ -29,7 +29,7 @@ Integers = NDArray[np.int64]
 A, B = 0, 1
 # places along a loop start a little before 0, so that rounding does not send its first node to the end
 FIRST = 1e-9
-# cells; a lattice point this close to the rim counts as on it (DESIGN section 7)
+# cells; a lattice point this close to the rim counts as on it (docs/files.md)
 RIM_TOLERANCE = 1e-6
 
 

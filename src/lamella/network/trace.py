@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
-# samples a cell (DESIGN section 7)
+# samples a cell (docs/files.md)
 FINE, COARSE, FINE_LIMIT = 16, 8, 20_000
 # Gauss-Legendre points a cell: the speed is analytic well beyond a cell, 12 points leave rounding only
 POINTS = 12
@@ -139,7 +139,8 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
             reach = float((lines.end - lines.start).max(initial=0.0))
             raise InputError(
                 f"no two lamellas cross: with {density.cells} cells the longest one runs over {reach:.2g} cells",
-                f"raise network.cells to about {int(np.ceil(2 * density.cells / max(reach, 1e-3)))}, or lower the spacing",
+                f"raise network.cells to about {np.ceil(2 * density.cells / max(reach, 1e-3)):.0f}, or lower "
+                "network.spacing",
                 "network.cells",
             )
         whole = length[segments.span > 1 - 1e-9]
@@ -147,6 +148,12 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         short = total < minimum_length * np.median(whole if len(whole) else length)
         if not short.any():
             break
+        if short.all():
+            raise InputError(
+                f"all {len(short)} lamellas are shorter than minimum_length = {minimum_length:g} cell edges",
+                "lower network.minimum_length",
+                "network.minimum_length",
+            )
         left_out += int(short.sum())
         lines = lines.take(~short)
 

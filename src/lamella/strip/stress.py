@@ -1,4 +1,4 @@
-"""Stresses of a thin strip that is bent about its weak axis and twisted (DESIGN section 2).
+"""Stresses of a thin strip that is bent about its weak axis and twisted (docs/theory.md).
 
 Strip coordinates: z across the height h (along the surface normal, 0 on the centre line), thickness t.
 """

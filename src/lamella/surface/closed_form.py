@@ -3,7 +3,7 @@
 Each is given in conformal parameters zeta = U + i V, where the metric is lambda^2 (dU^2 + dV^2), together with
 its Hopf differential Q dzeta^2, which is holomorphic because H is constant. Everything else follows:
 the second fundamental form is H lambda^2 (dU^2 + dV^2) + 2 Re(Q dzeta^2), so that H^2 - K = (2 |Q| / lambda^2)^2,
-and the isothermic coordinates of DESIGN section 2 are u + i v = w = integral of sqrt(2 Q) dzeta.
+and isothermic coordinates, whose lines are the principal ones, are u + i v = w = integral of sqrt(2 Q) dzeta.
 """
 
 from __future__ import annotations

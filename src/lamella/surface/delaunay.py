@@ -1,4 +1,4 @@
-"""Delaunay's unduloid and nodoid (DESIGN section 9): revolution surfaces of constant mean curvature."""
+"""Delaunay's unduloid and nodoid: revolution surfaces of constant mean curvature."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SPHERE_RATIO = 1e-3
 class Delaunay(SurfaceOfRevolution):
     """Meridian r = r_m / dn(x, m), x = r_M H U, m = 1 - (r_m / r_M)^2, from the neck at z = 0.
 
-    z = T U + r_M (E(am x | m) - m sn x cn x / dn x), which is DESIGN's r_M [E(am(x + K) | m) - E(m)].
+    z = T U + r_M (E(am x | m) - m sn x cn x / dn x), which is r_M [E(am(x + K) | m) - E(m)].
     """
 
     def __init__(self, neck_radius: float, bulge_radius: float, flux_sign: int) -> None:

@@ -21,7 +21,7 @@ class Enneper(ClosedForm):
     radius : float
         Radius of the parameter disc, no unit.
     scale : float
-        m per unit of DESIGN section 9.
+        m per unit of the parametrisation.
     """
 
     kind = "enneper"

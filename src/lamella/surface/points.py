@@ -69,5 +69,5 @@ class SurfacePoints:
 
     @property
     def mu(self) -> Floats:
-        """mu = (H^2 - K)^(1/4), 1/sqrt(m), (n,): du = mu <d1, .>, dv = mu <d2, .> (DESIGN section 2)."""
+        """mu = (H^2 - K)^(1/4), 1/sqrt(m), (n,): du = mu <d1, .>, dv = mu <d2, .> (docs/theory.md)."""
         return np.sqrt(np.abs(self.deviator))

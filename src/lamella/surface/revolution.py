@@ -30,7 +30,7 @@ class SurfaceOfRevolution(ClosedForm):
     Attributes
     ----------
     flux : float
-        T of DESIGN section 9, m: z_U = H r^2 + T.
+        T, m: the first integral z_U - H r^2 (flux of the surface's force through a circle, over 2 pi).
     """
 
     flux: float

@@ -29,7 +29,7 @@ class Scherk(ClosedForm):
     extent : float
         Half side of the square |x|, |y| <= extent < pi / 2 (before scaling).
     scale : float
-        m per unit of DESIGN section 9.
+        m per unit of the parametrisation.
     """
 
     kind = "scherk"

@@ -1,0 +1,46 @@
+"""Strip ends that run into each other beyond the rim, where no slot is cut."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from lamella.network.network import BOUNDARY, Network
+
+Floats = NDArray[np.float64]
+
+
+def end_collisions(network: Network, before: Floats, after: Floats, spread: float) -> int:
+    """Number of pairs of an A and a B strip that meet beyond the rim nodes where they end.
+
+    Parameters
+    ----------
+    network : Network
+    before, after : (m,)
+        How far each lamella's strip reaches beyond its first and its last node, m (negative: it stops short).
+    spread : float
+        From a lamella's centre line to the middle of its outermost layer, m.
+    """
+    first, last = network.sample_offsets[:-1], network.sample_offsets[1:] - 1
+    node = np.r_[network.stop_nodes[network.stop_offsets[:-1]], network.stop_nodes[network.stop_offsets[1:] - 1]]
+    sample = np.r_[first, last]
+    outwards = np.repeat([-1.0, 1.0], len(first))[:, None] * network.sample_tangents[sample]
+    reach = np.r_[before, after] + spread
+    is_a = np.tile(network.families == "A", 2)
+    free = (network.node_kinds[node] == BOUNDARY) & (reach > 0)
+    a, b = np.flatnonzero(free & is_a), np.flatnonzero(free & ~is_a)
+    if not len(a) or not len(b):
+        return 0
+    points = network.sample_points[sample]
+    pairs = cKDTree(points[a]).sparse_distance_matrix(cKDTree(points[b]), 2 * reach[free].max(), output_type="ndarray")
+    a, b = a[pairs["i"]], b[pairs["j"]]
+    # where the two straight ends p + x t come closest: they are nearly at right angles
+    gap = points[b] - points[a]
+    cosine = np.einsum("ij,ij->i", outwards[a], outwards[b])
+    along_a, along_b = (np.einsum("ij,ij->i", gap, outwards[end]) for end in (a, b))
+    square = 1 - np.minimum(cosine**2, 0.99)
+    x_a, x_b = (along_a - cosine * along_b) / square, (cosine * along_a - along_b) / square
+    # a node that both share has its slot
+    meet = (node[a] != node[b]) & (x_a > 0) & (x_b > 0) & (x_a < reach[a]) & (x_b < reach[b])
+    return int(meet.sum())

@@ -1,0 +1,160 @@
+"""Reading a project file: errors name the file, the line, the key and the remedy."""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from lamella.errors import InputError
+from lamella.project import Project
+from lamella.project_errors import explain, told_once
+from lamella.wording import cut
+
+# a project file is written by hand; anything larger is some other file
+MOST_BYTES = 5_000_000
+# errors told at once
+MOST_TOLD = 6
+
+
+def read_project(path: Path) -> Project:
+    """Read and check a project file.
+
+    Raises
+    ------
+    InputError
+        Whatever is wrong with it, with file, line and key.
+    """
+    try:
+        if path.is_dir():
+            raise InputError(f"{path} is a folder, not a project file", "name the .toml file inside it")
+        with path.open("rb") as file:
+            raw = file.read(MOST_BYTES + 1)
+    except FileNotFoundError:
+        raise InputError(
+            f"{path}: no such file", "check the path, or write a starter project with: lamella new unduloid"
+        ) from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(f"{path} cannot be read: {reason}", "check the path and its permissions") from None
+    if len(raw) > MOST_BYTES:
+        raise InputError(
+            f"more than {MOST_BYTES / 1e6:g} MB long: no project file is", "name the project's .toml file", str(path)
+        )
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"not a text file in UTF-8 (byte {error.start})", "a project file is TOML text, saved as UTF-8", str(path)
+        ) from None
+    project = parse_project(_toml(text, str(path)), source=str(path), text=text)
+    if project.name.strip():
+        return project
+    # a file name may hold bytes that are no text
+    return project.model_copy(update={"name": os.fsencode(path.stem).decode("utf-8", "replace")})
+
+
+def _toml(text: str, source: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise InputError("not valid TOML: nested too deep", "see `lamella new` for a project that is", source) from None
+    except ValueError as error:
+        # an impossible date or number is a plain ValueError
+        at = re.search(r" \(at line (\d+), column (\d+)\)$", str(error))
+        message = str(error)[: at.start()] if at else str(error).removesuffix(" (at end of document)")
+        remedy = "see `lamella new` for a project that is"
+        twice = re.match(r"Cannot declare \((.*?),?\) twice", message)
+        if twice:
+            table = ".".join(part.strip(" '\"") for part in twice[1].split(","))
+            message, remedy = f"the table [{cut(table)}] is there twice", "keep one of the two"
+        elif message == "Cannot overwrite a value":
+            message, remedy = "the same key is there twice", "keep one of the two"
+        elif message.startswith("Exceeds the limit"):
+            message = "a number of thousands of digits"
+        where, column = (f"{source}:{at[1]}", f" (column {at[2]})") if at else (source, "")
+        raise InputError(f"not valid TOML: {cut(message, 200)}{column}", remedy, where) from None
+
+
+def parse_project(values: dict[str, Any], *, source: str = "", text: str = "") -> Project:
+    """Check the values of a project given as nested dictionaries.
+
+    Parameters
+    ----------
+    values : dict
+        As a TOML reader gives them.
+    source, text : str, optional
+        File name and text, to say where an error is.
+
+    Raises
+    ------
+    InputError
+    """
+    if not values:
+        raise InputError("the project is empty", "write a starter project with: lamella new unduloid", source)
+    try:
+        project = Project.model_validate(values)
+    except ValidationError as failure:
+        errors = told_once([explain(error, values) for error in failure.errors()])
+        more = len(errors) - MOST_TOLD
+        told = [InputError(m, r, _where(source, text, key)) for key, m, r in errors[:MOST_TOLD]]
+        if more > 0:
+            told.append(InputError(f"and {more} more {'error' if more == 1 else 'errors'}", where=source))
+        if len(told) == 1:
+            raise told[0] from None
+        raise InputError("\n".join(str(error) for error in told)) from None
+    try:
+        project.material()
+        _check_slots(project)
+    except InputError as error:
+        raise InputError(error.message, error.remedy, _where(source, text, error.where)) from None
+    return project
+
+
+def _check_slots(project: Project) -> None:
+    width, thickness = project.fabrication.slot_width, project.lamella.thickness
+    if width is not None and width < thickness:
+        raise InputError(
+            f"slot_width = {width:g} m is less than the thickness {thickness:g} m of the strip that goes in",
+            f"write slot_width = {2 * thickness:g}, twice the thickness, or leave it out",
+            "fabrication.slot_width",
+        )
+
+
+def located(error: InputError, path: Path) -> InputError:
+    """The same error with the project file's name and line in front of its key."""
+    try:
+        text = path.read_text("utf-8-sig")
+    except (OSError, ValueError):
+        text = ""  # a pipe is read once
+    return InputError(error.message, error.remedy, _where(str(path), text, error.where))
+
+
+def _where(source: str, text: str, key: str) -> str:
+    line, at = 0, key
+    # a key that is not there itself is missed in its table
+    while at and not line:
+        line = _line_of(text, at)
+        at = at.rpartition(".")[0]
+    file = f"{source}:{line}" if source and line else source
+    return ": ".join(part for part in (file, cut(key)) if part)
+
+
+def _line_of(text: str, key: str) -> int:
+    """Line of a dotted key in TOML text (0 when it is not there), for tables and plain keys as people write them."""
+    parent, _, leaf = key.rpartition(".")
+    table, best = "", 0
+    for number, line in enumerate(text.splitlines(), 1):
+        header = re.match(r"\s*\[+\s*([^\]]+?)\s*\]", line)
+        key_of = key if not table else leaf if table == parent else ""
+        if header:
+            table = re.sub(r"""["']""", "", header[1])
+            if table == key:
+                best = number
+        elif key_of and re.match(rf"""\s*["']?{re.escape(key_of)}["']?\s*[=.]""", line):
+            return number
+    return best

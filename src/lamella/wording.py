@@ -1,0 +1,29 @@
+"""Values in messages: short, whatever was given."""
+
+from __future__ import annotations
+
+from datetime import date, datetime, time
+from typing import Any
+
+
+def cut(text: str, most: int = 80) -> str:
+    """One line of text that fits a message."""
+    line = "".join(c if c.isprintable() else "?" for c in text)
+    return line if len(line) <= most else line[: most - 3] + "..."
+
+
+def shown(value: Any) -> str:
+    """A value as TOML writes it, or what it is."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, date | datetime | time):
+        return value.isoformat()
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    if isinstance(value, list | tuple):
+        return cut(f"[{', '.join(shown(x) for x in value[:8])}{', ...' if len(value) > 8 else ''}]")
+    if isinstance(value, int):
+        return str(value) if abs(value) < 1e40 else "a number of over 40 digits"
+    return cut(repr(value))

@@ -1,0 +1,134 @@
+"""What a run warns about, and what it keeps quiet about."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lamella import compute, parse_project
+from lamella.cautions import lamella_cautions, network_cautions
+
+
+def warnings(kind: str, until: str = "lamellas", tables: dict[str, Any] | None = None, **surface: Any) -> list[str]:
+    project = parse_project({"name": "x", "surface": {"kind": kind} | surface} | (tables or {}))
+    told = compute(project, until=until).summary["warnings"]
+    assert all("\n" not in message and len(message) < 400 for message in told)
+    return list(told)
+
+
+def test_a_plain_building_is_warned_about_nothing() -> None:
+    assert (
+        warnings("unduloid", neck_radius=1.6, bulge_radius=2.8, height=[-4, 4], tables={"lamella": {"layers": 1}}) == []
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "surface"),
+    [
+        ("unduloid", {"neck_radius": 600.0, "bulge_radius": 1400.0, "height": [-1000.0, 1000.0]}),
+        ("unduloid", {"neck_radius": 60.0, "bulge_radius": 140.0, "height": [0.0, 2000.0]}),
+        ("nodoid", {"neck_radius": 300.0, "bulge_radius": 900.0, "height": [-150.0, 150.0]}),
+        ("catenoid", {"neck_radius": 200.0, "height": [-200.0, 250.0]}),
+        ("cylinder", {"radius": 200.0, "height": [0.0, 400.0]}),
+        ("helicoid", {"pitch": 4000.0, "inner_radius": 1000.0, "outer_radius": 4000.0, "turns": 1.25}),
+        ("enneper", {"order": 3, "radius": 0.9, "scale": 4000.0}),
+        ("scherk", {"extent": 1.25, "scale": 3000.0}),
+    ],
+)
+def test_millimetres_taken_for_metres(kind: str, surface: dict[str, Any]) -> None:
+    (told,) = warnings(kind, "surface", **surface)
+    assert told.startswith("the surface is ")
+    assert " m across and the lamella 0.1 m high: all lengths in a project file are metres, were millimetres" in told
+
+
+def test_a_small_lamella_on_a_building() -> None:
+    """The lamella may have been converted and the surface not, or the other way round."""
+    values = {"neck_radius": 1.6, "bulge_radius": 2.8, "height": [-4, 4]}
+    assert warnings("unduloid", "surface", **values) == []
+    assert (
+        "were millimetres meant?"
+        in warnings("unduloid", "surface", {"lamella": {"height": 0.001, "thickness": 0.0001}}, **values)[0]
+    )
+    (told,) = warnings("scherk", "surface", extent=1.0, scale=0.1)
+    assert told.startswith("the surface is only 0.308 m across for a lamella 0.1 m high")
+
+
+def test_large_but_possible_buildings_are_not_warned_about() -> None:
+    assert warnings("catenoid", "surface", neck_radius=40.0, height=[-40, 40]) == []
+
+
+def test_left_out_lamellas_are_counted() -> None:
+    for minimum, told in ((0.5, []), (2.0, ["4 lamellas shorter than network.minimum_length are left out"])):
+        tables = {"network": {"cells": 13, "minimum_length": minimum}}
+        results = compute(
+            parse_project({"surface": {"kind": "scherk", "extent": 1.2, "scale": 3.0}} | tables), until="network"
+        )
+        assert results.summary["warnings"] == told
+        assert results.summary["network"]["lamellas_left_out"] == 2 * minimum * len(told)
+
+
+def test_one_is_and_several_are() -> None:
+    network = compute(parse_project({"surface": {"kind": "scherk", "extent": 1.2, "scale": 3.0}})).network
+    assert network
+    one, two = (list(network_cautions(replace(network, left_out=n), 0.1)) for n in (1, 2))
+    assert one == ["1 lamella shorter than network.minimum_length is left out"]
+    assert two == ["2 lamellas shorter than network.minimum_length are left out"]
+    results = compute(
+        parse_project({"surface": {"kind": "unduloid", "neck_radius": 1.6, "bulge_radius": 2.8, "height": [-4, 4]}})
+    )
+    assert results.lamellas
+    assert results.network
+    for count in (1, 2):
+        # stress the first samples of so many lamellas
+        utilisation = np.zeros_like(results.lamellas.utilisation)
+        utilisation[results.network.sample_offsets[:count]] = 2.5
+        lamellas = replace(results.lamellas, utilisation=utilisation)
+        told = next(lamella_cautions(results.mesh, results.network, lamellas, 0.003))
+        assert told.startswith("utilisation reaches 2.50 in lamella A1 at (")
+        assert f"({count} of 48 lamellas {'is' if count == 1 else 'are'} over 1)" in told
+
+
+def test_cells_smaller_than_the_strip() -> None:
+    values = {"radius": 2.0, "height": [0, 1]}
+    assert not any("cell edges" in m for m in warnings("cylinder", "network", {"network": {"cells": 60}}, **values))
+    told = warnings("cylinder", "network", {"network": {"cells": 120}}, **values)
+    assert told == [
+        "half of the cell edges are shorter than 74 mm, less than the strip's height of 100 mm: choose fewer cells "
+        "or a lower strip"
+    ]
+
+
+def test_overstress_names_the_lamella_and_counts() -> None:
+    values = {"neck_radius": 1.6, "bulge_radius": 2.8, "height": [-4, 4]}
+    told = warnings("unduloid", tables={"lamella": {"thickness": 0.02, "layers": 1}}, **values)
+    project = parse_project({"surface": {"kind": "unduloid"} | values, "lamella": {"thickness": 0.02, "layers": 1}})
+    results = compute(project, until="lamellas")
+    most = results.summary["lamellas"]["utilisation_max"]
+    assert most > 1
+    assert told[0].startswith(f"utilisation reaches {most:.2f} in lamella ")
+    assert "(48 of 48 lamellas are over 1): a thinner or lower strip" in told[0]
+
+
+def test_strips_too_high_for_the_curvature() -> None:
+    told = warnings("cylinder", tables={"lamella": {"height": 0.4, "layers": 1}}, radius=0.3, height=[0, 1])
+    assert any(m.startswith("half the strip's height (0.2 m) is 0.67 of the surface's smallest radius") for m in told)
+    told = warnings("cylinder", tables={"lamella": {"height": 0.2, "layers": 1}}, radius=0.3, height=[0, 1])
+    assert not any("smallest radius" in m for m in told)
+
+
+def test_layers_are_spoken_of_where_they_differ_to_drawing_accuracy() -> None:
+    """A cylinder's lamellas are geodesics: layers to the side are as long."""
+    assert warnings("cylinder", radius=2.0, height=[0, 4]) == []
+    (told,) = warnings("catenoid", neck_radius=2.0, height=[-2, 2])
+    assert told.startswith("the 2 layers are cut alike")
+    assert "within the slots' play of 1.5 mm" in told
+    assert "12.5 mm to the side" in told
+    wide = {"lamella": {"offset": 0.2}}
+    (told,) = warnings("catenoid", neck_radius=2.0, height=[-2, 2], tables=wide)
+    assert "more than the slots' play of 1.5 mm" in told
+    assert not any(
+        "layers" in m for m in warnings("catenoid", neck_radius=2.0, height=[-2, 2], tables={"lamella": {"layers": 1}})
+    )

@@ -1,0 +1,517 @@
+"""The command line as its users meet it: commands, help, output folders, interrupted and crowded runs."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from lamella import __version__
+from lamella.cli import main
+from lamella.project import SURFACE_TABLES, FabricationTable, LamellaTable, NetworkTable
+from lamella.project_file import parse_project
+
+UNDULOID = """name = "x"
+[surface]
+kind = "unduloid"
+neck_radius = 1.6
+bulge_radius = 2.8
+height = [-1.0, 1.0]
+[network]
+cells = 8
+"""
+COMMANDS = ("run", "new", "check", "examples", "schema")
+EXAMPLES = Path(__file__).parents[1] / "examples"
+# DESIGN section 7
+FILES = {
+    "surface": {"summary.json", "project.toml", "surface.obj", "surface.ply", "report.html"},
+    "network": {"network.json", "network.obj", "nodes.csv", "model.3dm"},
+    "lamellas": {"lamellas.json"},
+    "fabrication": {
+        "fabrication/A.dxf",
+        "fabrication/B.dxf",
+        "fabrication/sheets.dxf",
+        "fabrication/schedule.csv",
+    },
+}
+
+
+def lamella(*arguments: str, **more: object) -> subprocess.Popen[str]:
+    return subprocess.Popen(  # type: ignore[call-overload,no-any-return]
+        [sys.executable, "-m", "lamella", *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        **more,
+    )
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "p.toml").write_text(UNDULOID)
+    return tmp_path
+
+
+# --- help, version, commands ------------------------------------------------------------------------------------
+
+
+def test_help_of_everything(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(["--help"])
+    assert end.value.code == 0
+    told = capsys.readouterr().out
+    assert all(re.search(rf"^    {command} ", told, re.M) for command in COMMANDS)
+    assert "lamella run unduloid.toml" in told
+    for command in COMMANDS:
+        with pytest.raises(SystemExit) as end:
+            main([command, "--help"])
+        assert end.value.code == 0
+        assert f"usage: lamella {command}" in capsys.readouterr().out
+
+
+def test_run_help_lists_every_stage_and_its_files(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["run", "--help"])
+    told = capsys.readouterr().out
+    for stage, files in FILES.items():
+        line = re.search(rf"^  {stage} +(.*)$", told, re.M)
+        assert line
+        for file in files:
+            assert file in line[1] or ("fabrication/*.dxf" in line[1] and file.endswith(".dxf"))
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(["--version"])
+    assert end.value.code == 0
+    assert capsys.readouterr().out == f"lamella {__version__}\n"
+
+
+def test_no_arguments_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert "lamella new unduloid" in told.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["rnu"], "invalid choice: 'rnu'"),
+        (["run"], "required: project"),
+        (["new"], "required: kind"),
+        (["run", "p.toml", "--bogus"], "unrecognized arguments: --bogus"),
+        (["schema", "mesh"], "invalid choice: 'mesh'"),
+        (["examples", "--copy"], "--copy: expected one argument"),
+    ],
+)
+def test_wrong_arguments(here: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(arguments)
+    assert end.value.code == 2
+    told = capsys.readouterr().err
+    assert words in told
+    assert told.endswith("--help\n")
+    assert told.count("\n") == 2
+
+
+def test_help_is_instant() -> None:
+    """It imports nothing heavy."""
+    code = (
+        "import sys\nfrom lamella.cli import main\n"
+        "try: main(['--help'])\nexcept SystemExit: pass\n"
+        "heavy = {'numpy', 'scipy', 'pydantic', 'orjson', 'ezdxf', 'rhino3dm', 'tomli_w'} & set(sys.modules)\n"
+        "sys.exit(f'imported {heavy}' if heavy else 0)"
+    )
+    for arguments in (["-c", code], ["-c", code.replace("--help", "--version")]):
+        done = subprocess.run([sys.executable, *arguments], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+
+
+# --- new, check, examples, schema -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", SURFACE_TABLES)
+def test_a_new_project_is_good_and_mentions_every_key(
+    here: Path, capsys: pytest.CaptureFixture[str], kind: str
+) -> None:
+    assert main(["new", kind]) == 0
+    assert f"lamella run {kind}.toml" in capsys.readouterr().out
+    text = (here / f"{kind}.toml").read_text()
+    # comments taken off, each key stands in its table
+    table, keys = "", set()
+    for line in text.splitlines():
+        if header := re.fullmatch(r"(?:# )?\[(\w+).*\]", line):
+            table = header[1]
+        elif key := re.match(r"(?:# )?([a-z]\w*) =", line):
+            keys.add(f"{table}.{key[1]}")
+    models = {"surface": SURFACE_TABLES[kind], "network": NetworkTable, "lamella": LamellaTable}
+    models["fabrication"] = FabricationTable
+    wanted = {f"{name}.{key}" for name, model in models.items() for key in model.model_fields}
+    assert wanted <= keys
+    assert keys - wanted == {".name", *(f"materials.{k}" for k in keys_of_materials())}
+    assert "[m]" in text
+    assert main(["check", f"{kind}.toml"]) == 0
+    assert f"{kind}.toml: a good project. {kind}, H = " in capsys.readouterr().out
+    assert main(["run", f"{kind}.toml", "--until", "network", "--quiet"]) == 0
+    assert (here / "out" / kind / "network.json").is_file()
+
+
+def keys_of_materials() -> list[str]:
+    return ["density", "youngs_modulus", "shear_modulus", "strength"]
+
+
+@pytest.mark.parametrize("kind", SURFACE_TABLES)
+def test_the_comments_of_a_new_project_are_its_defaults(
+    here: Path, capsys: pytest.CaptureFixture[str], kind: str
+) -> None:
+    main(["new", kind, "--out", "-"])
+    text = capsys.readouterr().out
+    plain = tomllib.loads(text)
+    # all keys active but the one that excludes another, and the ones without a default
+    uncommented = re.sub(r"^# (?!spacing|slot_width|end_distance)([a-z]\w* = )", r"\1", text, flags=re.M)
+    uncommented = uncommented.replace('# [materials."my steel"]', '[materials."my steel"]')
+    assert parse_project(tomllib.loads(uncommented)).model_dump(exclude={"materials"}) == parse_project(
+        plain
+    ).model_dump(exclude={"materials"})
+
+
+def test_new_to_the_screen_and_to_other_places(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = contents(here)
+    assert main(["new", "scherk", "--out", "-"]) == 0
+    told = capsys.readouterr()
+    assert tomllib.loads(told.out)["surface"]["kind"] == "scherk"
+    assert told.err == ""
+    assert contents(here) == before
+    assert main(["new", "scherk", "--out", "mine.toml"]) == 0
+    assert 'name = "mine"' in (here / "mine.toml").read_text()
+    capsys.readouterr()
+    for target, words in (
+        ("p.toml", "p.toml is there already\n  remedy: name another file with --out, or delete it"),
+        ("none/p.toml", "none: no such folder\n  remedy: make it first"),
+        ("p.toml/x.toml", "p.toml: no such folder"),
+    ):
+        assert main(["new", "scherk", "--out", target]) == 2
+        assert words in capsys.readouterr().err
+    assert (here / "p.toml").read_bytes() == before["p.toml"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("undoloid", "unknown kind 'undoloid', did you mean 'unduloid'?"),
+        ("sphere", "every point is umbilic"),
+        ("mesh", "not part of this version yet"),
+    ],
+)
+def test_new_of_an_unknown_kind(here: Path, capsys: pytest.CaptureFixture[str], kind: str, words: str) -> None:
+    assert main(["new", kind]) == 2
+    told = capsys.readouterr().err
+    assert words in told
+    assert "remedy: choose one of unduloid" in told
+    assert not (here / f"{kind}.toml").exists()
+
+
+def test_examples(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    names = sorted(p.name for p in EXAMPLES.glob("*.toml"))
+    assert main(["examples"]) == 0
+    told = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in told[: len(names)]] == names
+    assert all(len(line.split()) > 3 for line in told[: len(names)])
+    assert main(["examples", "--copy", "deep/mine", "01_unduloid", "06_scherk.toml"]) == 0
+    assert contents(here / "deep") == {
+        f"mine/{name}": (EXAMPLES / name).read_bytes() for name in ("01_unduloid.toml", "06_scherk.toml")
+    }
+    capsys.readouterr()
+    before = contents(here)
+    for arguments, words in (
+        (["01_undoloid", "--copy", "other"], "no example '01_undoloid.toml', did you mean '01_unduloid.toml'?"),
+        (["../p", "--copy", "other"], "no example '../p.toml'\n  remedy: there are 01_"),
+        (["--copy", "deep/mine"], "01_unduloid.toml is there already\n  remedy: name another folder"),
+        (["--copy", "p.toml"], "p.toml is a file\n  remedy: name a folder with --copy"),
+        (["--copy", "p.toml/deep"], "Not a directory"),
+    ):
+        assert main(["examples", *arguments]) == 2
+        assert words in capsys.readouterr().err
+    assert contents(here) == before
+    assert main(["examples", "--copy", "all"]) == 0
+    assert sorted(contents(here / "all")) == names
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_examples_are_good(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(path)]) == 0
+    told = capsys.readouterr()
+    assert re.search(r"a good project\. \S+, H = \S+ 1/m, \d+ cells, about [\d,]+ nodes\n$", told.out)
+    assert told.err == ""
+
+
+def test_schema(capsys: pytest.CaptureFixture[str]) -> None:
+    for which in ("project", "network"):
+        assert main(["schema", which]) == 0
+        schema = json.loads(capsys.readouterr().out)
+        assert schema["$id"].startswith(f"lamella/{which}/")
+        assert schema["properties"]
+
+
+# --- run: output folders ----------------------------------------------------------------------------------------
+
+
+def test_each_stage_writes_its_files_and_replaces_the_one_before(here: Path) -> None:
+    wanted: set[str] = set()
+    for stage, files in FILES.items():
+        wanted |= files
+        assert main(["run", "p.toml", "--until", stage, "--quiet"]) == 0
+        assert set(contents(here / "out" / "p")) == wanted
+        summary = json.loads((here / "out" / "p" / "summary.json").read_bytes())
+        stages = [*FILES, "structure"]
+        assert [summary[s] is not None for s in stages] == [stages.index(s) <= stages.index(stage) for s in stages]
+    # and back: nothing of the longer run stays
+    assert main(["run", "p.toml", "--until", "surface", "--quiet"]) == 0
+    assert set(contents(here / "out" / "p")) == FILES["surface"]
+    assert sorted(p.name for p in (here / "out").iterdir()) == ["p"]
+
+
+def test_without_until_all_stages_run(here: Path) -> None:
+    assert main(["run", "p.toml", "--out", "o", "--quiet"]) == 0
+    assert set(contents(here / "o")) == set().union(*FILES.values())
+
+
+def test_progress_quiet_and_warnings(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "p.toml"]) == 0
+    told = capsys.readouterr()
+    assert told.out == f"report: {Path('out/p/report.html')}\n"
+    for stage in FILES:
+        assert re.search(rf"^{stage}: ", told.err, re.M)
+    assert len(re.findall(r"\(\d+\.\d\d s\)$", told.err, re.M)) == len(FILES)
+    (here / "p.toml").write_text(UNDULOID + "[lamella]\nlayers = 1\n")
+    assert main(["run", "p.toml", "--quiet"]) == 0
+    assert capsys.readouterr() == ("", "")
+    (here / "p.toml").write_text(UNDULOID.replace("1.6", "600").replace("2.8", "1400").replace("1.0", "1000.0"))
+    assert main(["run", "p.toml", "--quiet", "--until", "surface"]) == 0
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert all(line.startswith("warning: ") for line in told.err.splitlines())
+    assert "were millimetres meant?" in told.err
+
+
+@pytest.mark.parametrize(
+    ("until", "words"),
+    [
+        (
+            "netwrk",
+            "--until: unknown stage 'netwrk', did you mean 'network'?\n  remedy: choose one of surface, network",
+        ),
+        ("", "--until: unknown stage ''\n  remedy: choose one of surface"),
+        ("structure", f"--until: stage 'structure' is not part of version {__version__} yet\n  remedy: leave --until"),
+    ],
+)
+def test_stages_that_are_not_there(here: Path, capsys: pytest.CaptureFixture[str], until: str, words: str) -> None:
+    assert main(["run", "p.toml", "--until", until]) == 2
+    assert words in capsys.readouterr().err
+    assert sorted(p.name for p in here.iterdir()) == ["p.toml"]
+
+
+def test_places_that_cannot_be_written(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "mine").mkdir()
+    (here / "mine" / "thesis.txt").write_text("years of work")
+    before = contents(here)
+    for out, words in (
+        ("p.toml", "p.toml is a file\n  remedy: choose another folder with --out"),
+        ("p.toml/o", "p.toml is a file\n  remedy: choose another folder with --out"),
+        ("p.toml/o/o", "p.toml is a file"),
+        ("mine", "is not empty and holds no summary.json: it is not an earlier run's\n  remedy: "),
+        (".", "is not empty and holds no summary.json"),
+        ("/", "cannot be replaced as a whole\n  remedy: name a folder inside it"),
+        ("x" * 300, "x cannot be used: "),
+    ):
+        assert main(["run", "p.toml", "--out", out]) == 2
+        told = capsys.readouterr().err
+        assert words in told or (out == "x" * 300 and "File name too long" in told), told
+        assert "area" not in told  # refused before any work
+    assert contents(here) == before
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write anywhere")
+def test_a_folder_without_the_right_to_write(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "locked").mkdir(mode=0o500)
+    assert main(["run", "p.toml", "--out", "locked/o"]) == 2
+    assert "no right to write in" in capsys.readouterr().err
+
+
+def test_an_empty_folder_and_missing_parents_are_filled(here: Path) -> None:
+    (here / "empty").mkdir()
+    for out in ("empty", "a/b/c"):
+        assert main(["run", "p.toml", "--out", out, "--until", "surface", "--quiet"]) == 0
+        assert set(contents(here / out)) == FILES["surface"]
+
+
+def test_the_same_input_gives_the_same_bytes(here: Path) -> None:
+    for out, seed in (("a", "1"), ("b", "2")):
+        done = lamella("run", "p.toml", "--out", out, "--quiet", env={**os.environ, "PYTHONHASHSEED": seed})
+        assert done.wait(60) == 0
+        done.communicate()
+    a, b = contents(here / "a"), contents(here / "b")
+    for files in (a, b):
+        summary = json.loads(files.pop("summary.json"))
+        assert all(s >= 0 for s in summary.pop("seconds").values())
+        files["summary"] = json.dumps(summary).encode()
+    assert a.keys() == b.keys()
+    assert [name for name in a if a[name] != b[name]] == []
+
+
+def test_odd_names(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Line breaks, quotes, markup, other scripts and length: files stay readable by their readers."""
+    name = 'a\n"b"\\ </script><script>alert(1)</script> <!-- 日本 😀 \u2028 \x01' + "ü" * 100
+    head = "name = " + json.dumps(name, ensure_ascii=False) + "\n"
+    (here / "p.toml").write_text(UNDULOID.replace('name = "x"\n', head), encoding="utf-8")
+    assert main(["run", "p.toml", "--quiet", "--out", "o"]) == 0
+    o = here / "o"
+    for file in ("summary.json", "network.json", "lamellas.json"):
+        assert json.loads((o / file).read_bytes())["name"] == name
+    assert tomllib.loads((o / "project.toml").read_text(encoding="utf-8"))["name"] == name
+    for file in ("surface.obj", "network.obj"):
+        kinds = {line.split(" ")[0] for line in (o / file).read_text(encoding="utf-8").split("\n") if line}
+        assert kinds <= {"#", "o", "g", "v", "vn", "f", "l", "s"}, kinds
+    html = (o / "report.html").read_text(encoding="utf-8")
+    assert "<script>alert" not in html
+    rows = [line for line in (o / "nodes.csv").read_text(encoding="utf-8").split("\n") if line]
+    assert {line.count(",") for line in rows if not line.startswith("#")} == {rows[-1].count(",")}
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="file names of any bytes")
+def test_a_file_name_that_is_no_text(tmp_path: Path) -> None:
+    path = os.fsencode(tmp_path) + b"/gr\xf6\xdfer.toml"
+    with open(path, "wb") as file:
+        file.write(UNDULOID.replace('name = "x"\n', "").encode())
+    for arguments in ([b"check", path], [b"run", path, b"--until", b"surface"]):
+        done = subprocess.run(
+            [os.fsencode(sys.executable), b"-m", b"lamella", *arguments], capture_output=True, cwd=tmp_path, check=False
+        )
+        assert done.returncode == 0, done.stderr
+    (out,) = (tmp_path / "out").iterdir()
+    assert json.loads((out / "summary.json").read_bytes())["name"] == "gr��er"
+
+
+# --- full disk, kills, closed pipes -----------------------------------------------------------------------------
+
+
+@pytest.fixture
+def earlier(here: Path) -> dict[str, bytes]:
+    """An earlier run's folder out/p."""
+    assert main(["run", "p.toml", "--until", "network", "--quiet"]) == 0
+    return contents(here / "out")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX limits")
+@pytest.mark.parametrize("most", [0, 1_000, 60_000, 200_000])
+def test_a_full_disk_leaves_the_earlier_run_whole(here: Path, earlier: dict[str, bytes], most: int) -> None:
+    process = lamella("run", "p.toml", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 2, err
+    told = err[err.index("lamella: ") :]
+    assert "File too large; what was there before is unchanged\n  remedy: free some space" in told
+    assert "Traceback" not in err
+    assert out == ""
+    assert contents(here / "out") == earlier
+    assert [p.name for p in (here / "out").iterdir()] == ["p"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX limits")
+def test_a_full_disk_leaves_nothing_where_nothing_was(here: Path) -> None:
+    process = lamella("run", "p.toml", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (9_000, 9_000)))
+    process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert sorted(p.name for p in here.iterdir()) == ["p.toml"]
+
+
+def kill_half_way(here: Path, number: signal.Signals) -> tuple[int, str]:
+    """Kill a run once it has begun to write; it stops there, so that the moment is always the same."""
+    code = (
+        "import sys, time, lamella.output as output\n"
+        "write = output.write_network\n"
+        "def stop(*a, **k):\n"
+        "    print('half-way', file=sys.stderr, flush=True)\n"
+        "    time.sleep(60)\n"
+        "output.write_network = stop\n"
+        "from lamella.cli import main\n"
+        "sys.exit(main(['run', 'p.toml', '--quiet']))"
+    )
+    process = subprocess.Popen([sys.executable, "-c", code], cwd=here, stderr=subprocess.PIPE, text=True)
+    assert process.stderr
+    assert process.stderr.readline() == "half-way\n"
+    assert len(list((here / "out").iterdir())) == 2  # the earlier run and the one in the making
+    process.send_signal(number)
+    _, err = process.communicate(timeout=30)
+    return process.returncode, err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGINT", 130)])
+def test_a_polite_kill_cleans_up(here: Path, earlier: dict[str, bytes], name: str, code: int) -> None:
+    returned, err = kill_half_way(here, signal.Signals[name])
+    assert returned == code
+    assert "Traceback" not in err
+    if name == "SIGINT":
+        assert err == "lamella: interrupted, nothing written\n"
+    assert contents(here / "out") == earlier
+    assert [p.name for p in (here / "out").iterdir()] == ["p"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+def test_what_a_hard_kill_leaves_is_cleaned_by_the_next_run(here: Path, earlier: dict[str, bytes]) -> None:
+    assert kill_half_way(here, signal.SIGKILL)[0] == -signal.SIGKILL
+    assert contents(here / "out" / "p") == {name.removeprefix("p/"): data for name, data in earlier.items()}
+    assert len(list((here / "out").iterdir())) == 2
+    assert main(["run", "p.toml", "--until", "surface", "--quiet"]) == 0
+    assert [p.name for p in (here / "out").iterdir()] == ["p"]
+    assert set(contents(here / "out" / "p")) == FILES["surface"]
+
+
+def test_no_memory_is_told(here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def exhausted(*arguments: object, **more: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("lamella.output.write_network", exhausted)
+    assert main(["run", "p.toml", "--quiet"]) == 2
+    told = capsys.readouterr().err
+    assert told == "lamella: not enough memory; what was there before is unchanged\n  remedy: choose fewer cells\n"
+    assert sorted(p.name for p in here.iterdir()) == ["p.toml"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX pipes")
+@pytest.mark.parametrize("arguments", [["schema", "project"], ["examples"], ["new", "unduloid", "--out", "-"]])
+def test_a_reader_that_goes_early(arguments: list[str]) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "lamella", *arguments], stdout=write, stderr=subprocess.PIPE, text=True
+    )
+    os.close(write)
+    _, err = process.communicate(timeout=30)
+    assert process.returncode == 1
+    assert err == ""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX pipes")
+def test_a_reader_of_the_progress_that_goes_early(here: Path, earlier: dict[str, bytes]) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    process = subprocess.Popen([sys.executable, "-m", "lamella", "run", "p.toml"], stdout=write, stderr=write)
+    os.close(write)
+    assert process.wait(30) == 1
+    assert contents(here / "out") == earlier
+    assert [p.name for p in (here / "out").iterdir()] == ["p"]

@@ -1,0 +1,36 @@
+"""Strip ends that meet beyond the rim: on a cylinder their distance from the rim is known exactly."""
+
+import numpy as np
+import pytest
+
+from lamella import Cylinder, Section, find_material, make_lamellas, make_network, make_parts
+
+RADIUS, CELLS = 2.0, 20
+# rows of nodes of helices at 45 degrees
+ROW = np.pi * RADIUS / CELLS
+
+
+def warnings(beyond, overhang, layers=1):
+    """Warnings of a cylinder whose rim lies so low that strips would cross `beyond` past their rim nodes."""
+    network = make_network(Cylinder(RADIUS, (0.3 * ROW, 5 * ROW - beyond / np.sqrt(2))), cells=CELLS)
+    lamellas = make_lamellas(network, Section(layers=layers, height=0.05), find_material("1.4301"))
+    parts = make_parts(network, lamellas, density=7900.0, end_distance=0.02, rim_overhang=overhang)
+    return [w for w in parts.warnings if "meet beyond the rim" in w]
+
+
+@pytest.mark.parametrize(("beyond", "overhang", "pairs"), [(0.02, 0.0195, 0), (0.02, 0.0205, CELLS), (0.05, 0.01, 0)])
+def test_single_strips(beyond, overhang, pairs):
+    found = warnings(beyond, overhang)
+    assert len(found) == (pairs > 0)
+    if pairs:
+        assert found[0].startswith(f"{pairs} pairs")
+
+
+def test_outer_layers_meet_earlier():
+    """Two layers 25 mm apart reach 12.5 mm further to the side."""
+    assert not warnings(0.03, 0.017, layers=2)
+    assert warnings(0.03, 0.018, layers=2)
+
+
+def test_a_crossing_on_the_rim_has_its_slot_and_is_no_collision():
+    assert not warnings(0.0, 0.03)
