@@ -60,7 +60,7 @@ def test_combinatorics_many(kind):
     for seed in range(60):
         rng = np.random.default_rng([seed, 22])
         surface, cells = draw_surface(kind, rng), int(rng.integers(6, 60))
-        if choose_density(surface, cells=cells).estimated_nodes < 4 * cells:
+        if choose_density(surface, cells=cells).estimated_nodes < 6 * cells:
             continue  # a band so low that hardly any lamellas cross
         network = make_network(surface, cells=cells)
         _check_combinatorics(network, 0 if isinstance(surface.outline, Ring) else 1)

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from conftest import KINDS, draw_surface
+from conftest import KINDS, draw_surface, load
 from lamella import Catenoid, Enneper, Helicoid, Nodoid, Scherk, Unduloid, make_network
 from lamella.files.network_json import network_bytes
 from lamella.network.density import choose_density
@@ -96,3 +96,27 @@ def test_ruler_runs_on_a_written_file(run):
         [sys.executable, ruler, folder / "network.json", "--json"], capture_output=True, text=True, check=True
     )
     assert json.loads(done.stdout)["normal_curvature_error_rel_max"] < 1e-5
+
+
+@pytest.mark.parametrize(
+    "surface",
+    [
+        {"kind": "unduloid", "neck_radius": 0.9, "bulge_radius": 2.1, "height": [-2.0, 3.3]},
+        {"kind": "scherk", "extent": 1.35, "scale": 2.5},
+        {"kind": "enneper", "order": 4, "radius": 0.85, "scale": 3.0},
+    ],
+    ids=lambda s: s["kind"],
+)
+def test_summary_agrees_with_the_ruler(run, surface):
+    """What a run says of itself, computed from the surface, against what the points say."""
+    folder = run("network", surface=surface, network={"cells": 26})
+    told, f = load(folder, "summary.json"), measure(load(folder, "network.json"))
+    for name in ("cell_edge_min", "cell_edge_median", "cell_edge_max"):
+        assert told["network"][name] == pytest.approx(f[name], rel=1e-6, abs=1e-9)
+    assert told["network"]["nodes"] == f["nodes"]
+    assert told["network"]["lamellas"] == f["lamellas"]
+    assert len(told["network"]["singular_nodes"]) == f["singular_nodes"]
+    assert told["surface"]["mean_curvature"] == f["mean_curvature"]
+    scale = f["curvature_scale"]
+    assert abs(told["network"]["normal_curvature_deviation_max"] - f["normal_curvature_error_max"]) < 1e-5 * scale
+    assert abs(told["network"]["node_angle_deviation_max_deg"] - f["node_angle_deviation_max_deg"]) < 1e-3
