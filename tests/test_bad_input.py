@@ -270,8 +270,8 @@ def test_ranges_of_height(refused: Callable[..., str], kind: str) -> None:
     ("text", "words"),
     [
         (surface("unduloid", neck_radius="3.0"), ["neck_radius = 3 m is above bulge_radius = 2.8 m", "swap them"]),
-        (surface("unduloid", neck_radius="1e-5"), ["a row of spheres (limit 0.001)", "umbilic", "wider neck"]),
-        (surface("nodoid", neck_radius="1e-5"), ["a row of spheres (limit 0.001)", "umbilic", "wider neck"]),
+        (surface("unduloid", neck_radius="1e-5"), ["(at least 0.0001 of it): the surface is a row of spheres", "umbilic", "wider neck"]),
+        (surface("nodoid", neck_radius="1e-5"), ["(at least 0.0001 of it): the surface is a row of spheres", "umbilic", "wider neck"]),
         (surface("nodoid", neck_radius="9"), ["neck_radius = 9 m is not below bulge_radius = 9 m"]),
         (surface("nodoid", neck_radius="9.5"), ["neck_radius = 9.5 m is not below bulge_radius = 9 m"]),
         (surface("nodoid", height="[-2, 1]"), ["surface.height: z = -2 m", "fold: |z| < 1.78", "shorten the range"]),
@@ -437,6 +437,11 @@ def test_units_slip(refused: Callable[..., str]) -> None:
     )
 
 
+def test_a_surface_that_runs_to_infinity(refused: Callable[..., str]) -> None:
+    """Arc lengths that cannot be measured are refused, not told wrong."""
+    refused(surface("scherk", extent="1.57079632"), "stretch too much for their length to be measured", "raise network")
+
+
 def test_check_refuses_what_run_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     project = tmp_path / "p.toml"
     for text, words in (
@@ -459,7 +464,7 @@ def test_check_refuses_what_run_refuses(tmp_path: Path, capsys: pytest.CaptureFi
         UNDULOID.replace("1.6", "2").replace("2.8", "3").encode(),  # whole numbers
         b'surface = {kind = "cylinder", radius = 2, height = [0, 1]}\n',
         b'surface.kind = "cylinder"\nsurface.radius = 2\nsurface.height = [0, 1]\n',
-        surface("scherk", extent="1.5707963").encode(),
+        surface("scherk", extent="1.5707").encode(),
         surface("helicoid", inner_radius="0", pitch="-4").encode(),
     ],
     ids=["BOM", "CRLF", "equal radii", "whole numbers", "inline", "dotted", "scherk's limit", "helicoid's axis"],

@@ -12,11 +12,11 @@ from typing import Any
 from lamella import __version__, cautions, summary
 from lamella.errors import InputError
 from lamella.fabrication import Nesting, Parts, make_parts, nest
-from lamella.fabrication.rules import LEAST_END, Rules, edge_scale
+from lamella.fabrication.rules import LEAST_END, LEAST_HUB, Rules, clear_hub, edge_scale
 from lamella.network.density import Density, choose_density
 from lamella.network.network import Network
 from lamella.network.trace import trace_closed_form
-from lamella.project import FabricationTable, Project
+from lamella.project import Project
 from lamella.project_file import located, read_project
 from lamella.strip.lamellas import Lamellas, Section, make_lamellas
 from lamella.surface.closed_form import ClosedForm
@@ -68,7 +68,7 @@ class _Clock:
 
     def __init__(self, progress: Progress) -> None:
         self.seconds: dict[str, float] = {}
-        self._progress, self._start, self._wall = progress, 0.0, 0.0
+        self._progress, self._start = progress, 0.0
 
     def start(self, message: str) -> None:
         self._progress(message)
@@ -95,18 +95,23 @@ def plan(project: Project, *, until: str = LAST_STAGE) -> tuple[ClosedForm, Dens
     """Surface and density of a project: all that can be refused before any work is done."""
     surface = make_surface(project)
     if _depth(until) >= STAGES.index("fabrication"):
-        _check_fabrication(fill_in(project, surface.mean_curvature), surface.mean_curvature)
+        _check_fabrication(fill_in(project, surface), surface.mean_curvature)
     return surface, choose_density(surface, cells=project.network.cells, spacing=project.network.spacing)
 
 
-def fill_in(project: Project, mean_curvature: float) -> Project:
+def fill_in(project: Project, surface: ClosedForm) -> Project:
     """The project with those defaults filled in that follow from its other values."""
     cut, strip = project.fabrication, project.lamella
     slot_width = 2 * strip.thickness if cut.slot_width is None else cut.slot_width
     end_distance = cut.end_distance
     if end_distance is None:
-        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(mean_curvature, strip.height))
-    filled = cut.model_copy(update={"slot_width": slot_width, "end_distance": float(end_distance)})
+        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(surface.mean_curvature, strip.height))
+    hub_radius = cut.hub_radius
+    if hub_radius is None:
+        rays = 2 * (surface.hopf_order + 2) if surface.hopf_order else 0
+        hub_radius = max(LEAST_HUB, clear_hub(rays, strip.layers, strip.offset, strip.thickness))
+    measures = {"slot_width": slot_width, "end_distance": float(end_distance), "hub_radius": hub_radius}
+    filled = cut.model_copy(update=measures)
     return project.model_copy(update={"fabrication": filled})
 
 
@@ -122,13 +127,7 @@ def _check_fabrication(project: Project, mean_curvature: float) -> None:
         density=project.material().density,
         **cut.model_dump(),
     )
-    try:
-        rules.check()
-    except InputError as error:
-        # its messages begin with the measure, but for the one about strips too high for their circle
-        measure = error.message.partition(" ")[0]
-        key = f"fabrication.{measure}" if measure in FabricationTable.model_fields else "lamella.height"
-        raise InputError(error.message, error.remedy, key) from None
+    rules.check()
 
 
 def compute(project: Project, *, until: str = LAST_STAGE, progress: Progress = _silent) -> Results:
@@ -152,7 +151,7 @@ def compute(project: Project, *, until: str = LAST_STAGE, progress: Progress = _
 
     clock.start(f"surface: {project.surface.kind}")
     surface, density = plan(project, until=until)
-    project = fill_in(project, surface.mean_curvature)
+    project = fill_in(project, surface)
     mesh = surface_mesh(surface)
     figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh)}
     clock.stop("surface", f"area {figures['surface']['area']:.4g} m2, H = {surface.mean_curvature:.6g} 1/m")

@@ -323,7 +323,15 @@ class FabricationTable(Table):
     rim_overhang: float = _number(
         "Least distance from the rim's node to the strip's end.", "m", ge=0, le=5, default=0.01
     )
-    hub_radius: float = _number("A strip stops this far from a singular node.", "m", ge=0, le=5, default=0.02)
+    hub_radius: float | None = _number(
+        "A strip stops this far from a singular node; when not given 0.02 m, or more where the strips of "
+        "neighbouring rays would run into each other.",
+        "m",
+        ge=0,
+        le=5,
+        default=None,
+        examples=[0.05],
+    )
     slot_width: float | None = _number(
         "Width of the slots; 2 x thickness when not given.", "m", gt=0, le=1, default=None, examples=[0.003]
     )

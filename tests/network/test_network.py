@@ -281,3 +281,18 @@ def test_estimate_of_nodes():
 def test_band_too_low_for_a_crossing():
     with pytest.raises(InputError, match="no two lamellas cross"):
         make_network(Catenoid(1.0, (0.1, 0.12)), cells=6)
+
+
+@pytest.mark.parametrize("offset", [sign * 10.0**power for sign in (-1, 1) for power in np.arange(-9, -3.9, 0.25)])
+def test_a_crossing_next_to_the_rim_is_one_node(offset):
+    """Rims a fraction of a cell off a row of crossings: one boundary node within 1e-6 cells, else two or three."""
+    around = np.pi * 2 / 24
+    for network in (
+        make_network(Cylinder(2.0, (0, (12 + offset) * around)), cells=24),
+        make_network(Catenoid(2.0, (0, (3 + offset) * around)), cells=24),
+        make_network(
+            Helicoid(2 * np.pi, 0.5, 2.0, (np.arcsinh(2) - np.arcsinh(0.5)) / (2 * np.pi) / 8 * (24 + offset)), cells=8
+        ),
+    ):
+        assert network.cell_edges.min() > 0.9e-6 * np.median(network.cell_edges)
+        _check_combinatorics(network, 1 if not network.periods else 0)

@@ -10,7 +10,8 @@ import pytest
 
 from conftest import KINDS, draw_places, draw_surface
 from lamella import Catenoid, Cylinder, Enneper, Helicoid, InputError, Nodoid, Scherk, Unduloid
-from lamella.surface.sampling import area, surface_mesh
+from lamella.surface.sampling import area, measured_mean_curvature, surface_mesh
+from lamella.surface.umbilic import refuse_umbilic
 
 
 def _central(f, h):
@@ -196,8 +197,8 @@ def test_mesh_lies_on_the_surface_and_its_area_converges(kind):
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: Unduloid(1e-4, 1.0, (-1, 1)), ("spheres", "umbilic", "0.0001")),
-        (lambda: Nodoid(1e-4, 1.0, (-1, 1)), ("spheres", "umbilic")),
+        (lambda: Unduloid(1e-5, 1.0, (-1, 1)), ("spheres", "umbilic", "1e-05")),
+        (lambda: Nodoid(1e-5, 1.0, (-1, 1)), ("spheres", "umbilic")),
         (lambda: Unduloid(2.0, 1.0, (-1, 1)), ("2 m", "1 m", "swap")),
         (lambda: Nodoid(1.0, 1.0, (-1, 1)), ("not below",)),
         (lambda: Nodoid(0.5, 1.6, (-0.1, 0.4)), ("0.4 m", "fold", "0.315034")),
@@ -208,3 +209,44 @@ def test_refusals_say_why(make, words):
         make()
     for word in words:
         assert word in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("surface", "word"),
+    [
+        (Unduloid(0.0005, 1.0, (0.9, 1.05)), "sphere of radius 1"),  # around a bulge
+        (Helicoid(1e-9, 1.0, 2.0, 1.0), "flat"),
+        (Enneper(2, 1e-7), "flat"),
+    ],
+    ids=["bulge", "flat helicoid", "speck"],
+)
+def test_pieces_that_are_spheres_or_planes(surface, word):
+    with pytest.raises(InputError) as error:
+        refuse_umbilic(surface)
+    assert word in str(error.value)
+    assert "umbilic" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "surface", [Nodoid(0.5, 600, (-0.5, 0.5)), Unduloid(0.9, 1000, (-1, 1)), Unduloid(0.01, 1.0, (0.9, 1.05))]
+)
+def test_pieces_that_are_none(surface):
+    """A slightly inflated catenoid is a good surface however large its bulges far away are."""
+    refuse_umbilic(surface)
+    where = np.linspace(surface.outline.start, surface.outline.end, 20) + 0.3j
+    assert measured_mean_curvature(surface, where) == pytest.approx(surface.mean_curvature, abs=1e-7)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_mean_curvature_from_positions_and_normals(kind):
+    """Fourth order in the step; the summary's figure is this one, not the formula's own H."""
+    rng = np.random.default_rng(17)
+    surface = draw_surface(kind, rng)
+    where = draw_places(surface, rng)
+    scale = np.abs(surface.at(where).principal_curvatures[0]).max()
+
+    def miss(step):
+        return np.abs(measured_mean_curvature(surface, where, step) - surface.mean_curvature).max() / scale
+
+    assert miss(1e-3) < 1e-9
+    assert miss(1e-2) < 1e-11 or 12 < miss(2e-2) / miss(1e-2) < 20

@@ -11,7 +11,7 @@ from lamella.fabrication.collisions import end_collisions
 from lamella.fabrication.flat import outline, outline_area
 from lamella.fabrication.notes import Notes
 from lamella.fabrication.part import Part, Parts
-from lamella.fabrication.rules import LEAST_END, ROUNDING, Rules, edge_scale
+from lamella.fabrication.rules import LEAST_END, LEAST_HUB, ROUNDING, Rules, clear_hub, edge_scale
 from lamella.fabrication.splitting import cut_stations
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas
@@ -26,7 +26,7 @@ def make_parts(
     density: float,
     end_distance: float | None = None,
     rim_overhang: float = 0.01,
-    hub_radius: float = 0.02,
+    hub_radius: float | None = None,
     slot_width: float | None = None,
     sheet: tuple[float, float] = (12.0, 2.0),
     gap: float = 0.01,
@@ -45,8 +45,9 @@ def make_parts(
         widths if not given.
     rim_overhang : float
         Least distance from the rim's node to the strip's end, m.
-    hub_radius : float
-        From a singular node to the strip's end, m.
+    hub_radius : float, optional
+        From a singular node to the strip's end, m; if not given the larger of `LEAST_HUB` and what keeps the strips
+        of neighbouring rays clear of each other.
     slot_width : float, optional
         m; twice the thickness if not given.
     sheet : (float, float)
@@ -67,6 +68,11 @@ def make_parts(
     slot_width = 2 * section.thickness if slot_width is None else slot_width
     if end_distance is None:
         end_distance = max(LEAST_END, 2 * slot_width / edge_scale(network.mean_curvature, section.height))
+    degree_a, degree_b = network.node_degrees()
+    singular = network.node_kinds == SINGULAR
+    rays = int((degree_a + degree_b)[singular].max(initial=0))
+    clear = clear_hub(rays, section.layers, section.offset, section.thickness)
+    hub_radius = max(LEAST_HUB, clear) if hub_radius is None else hub_radius
     rules = Rules(
         layers=section.layers,
         offset=section.offset,
@@ -83,9 +89,10 @@ def make_parts(
     )
     rules.check()
     longest = rules.longest_on_sheet
-    degree_a, degree_b = network.node_degrees()
-    crossing = (degree_a > 0) & (degree_b > 0) & (network.node_kinds != SINGULAR)
+    crossing = (degree_a > 0) & (degree_b > 0) & ~singular
     notes = Notes()
+    if hub_radius < clear - ROUNDING:
+        notes.hub_needed = clear
     parts: list[Part] = []
     for index in range(len(network.ids)):
         stops = slice(int(network.stop_offsets[index]), int(network.stop_offsets[index + 1]))

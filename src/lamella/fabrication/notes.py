@@ -30,6 +30,8 @@ class Notes:
         Id and smallest cell edge (m) of the parts without slots.
     collisions : int
         Pairs of strip ends that meet beyond the rim.
+    hub_needed : float
+        Radius (m) the hubs should have where theirs lets strips run into each other, else 0.
     """
 
     too_long: list[float] = field(default_factory=list)
@@ -39,6 +41,7 @@ class Notes:
     left_out: list[str] = field(default_factory=list)
     unslotted: list[tuple[str, float]] = field(default_factory=list)
     collisions: int = 0
+    hub_needed: float = 0.0
 
     def sentences(self, rules: Rules, lamellas: int, parts: int) -> Iterator[str]:
         """One warning a matter, given the numbers of all lamellas and parts."""
@@ -65,6 +68,11 @@ class Notes:
                 f"{len(self.left_out)} of {lamellas} lamellas are left out of the parts "
                 f"({_few(self.left_out)}): nothing remains of them between hubs of radius "
                 f"{1e3 * rules.hub_radius:g} mm, or a single cell turns through more than 1.9 pi"
+            )
+        if self.hub_needed:
+            yield (
+                f"strips run into each other around the singular node: fabrication.hub_radius is "
+                f"{1e3 * rules.hub_radius:g} mm, it takes {1e3 * self.hub_needed:.1f} mm, or fewer layers"
             )
         if self.collisions:
             yield (

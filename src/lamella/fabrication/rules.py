@@ -15,8 +15,18 @@ Floats = NDArray[np.float64]
 # a flat ring closer to a full turn than this would leave its ends no room
 LARGEST_TURN = 1.9 * np.pi
 ROUNDING = 1e-9
-# m of strip beyond the last slot where the project does not say
-LEAST_END = 0.05
+# m of strip beyond the last slot, and from a singular node to the strips, where the project does not say
+LEAST_END, LEAST_HUB = 0.05, 0.02
+
+
+def clear_hub(rays: int, layers: int, offset: float, thickness: float) -> float:
+    """Distance from a singular node at which the outer layers of neighbouring rays are clear of each other, m.
+
+    Rays are 2 pi / `rays` apart; strips of half width w about them, a thickness of play included, part at
+    w / tan(pi / rays).
+    """
+    half_width = 0.5 * (layers - 1) * offset + thickness
+    return float(half_width / np.tan(np.pi / rays)) if rays > 2 else 0.0
 
 
 def edge_scale(curvature: float, height: float) -> float:
@@ -98,20 +108,26 @@ class Rules:
         )
         for name, value, bound in least:
             if not (np.isfinite(value) and value > bound):
-                raise InputError(f"{name} is {value:g}, it has to be more than {bound:g}", f"raise {name}")
+                raise InputError(
+                    f"{name} is {value:g}, it has to be more than {bound:g}", f"raise {name}", f"fabrication.{name}"
+                )
         for name, value in (("hub_radius", self.hub_radius), ("rim_overhang", self.rim_overhang)):
             if not (np.isfinite(value) and value >= 0):
-                raise InputError(f"{name} is {value:g} m, it cannot be less than 0", "give 0 or more")
+                raise InputError(
+                    f"{name} is {value:g} m, it cannot be less than 0", "give 0 or more", f"fabrication.{name}"
+                )
         if not (np.isfinite(self.slot_width) and self.slot_width >= self.thickness):
             raise InputError(
                 f"slot_width is {self.slot_width:g} m, less than the thickness {self.thickness:g} m "
                 "of the strip that goes in",
                 f"raise slot_width to {2 * self.thickness:g} m, twice the thickness",
+                "fabrication.slot_width",
             )
         if self.slot_width >= self.height:
             raise InputError(
                 f"slot_width is {self.slot_width:g} m, not less than the strip's height {self.height:g} m",
                 f"lower slot_width; twice the thickness is {2 * self.thickness:g} m",
+                "fabrication.slot_width",
             )
         # a tighter circle's inner edge would be narrower than the slots and their distances
         if self.edge_scale <= 0.5 or abs(self.curvature) * self.slot_width >= self.edge_scale:
@@ -119,6 +135,7 @@ class Rules:
                 f"the lamellas' circle has a radius of {1 / abs(self.curvature):g} m, too little for a strip "
                 f"{self.height:g} m high with slots {self.slot_width:g} m wide",
                 f"lower the lamella's height below {1 / abs(self.curvature):g} m, and the slot width",
+                "lamella.height",
             )
         nearest = 1.5 * self.slot_width / self.edge_scale
         if not (np.isfinite(self.end_distance) and self.end_distance >= nearest - ROUNDING):
@@ -126,4 +143,5 @@ class Rules:
                 f"end_distance is {self.end_distance:g} m, which leaves less than one slot width "
                 f"({self.slot_width:g} m) beyond the last slot",
                 f"raise end_distance to {nearest:.6f} m or more",
+                "fabrication.end_distance",
             )

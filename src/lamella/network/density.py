@@ -9,7 +9,7 @@ import numpy as np
 from lamella.errors import InputError
 from lamella.network.domain import Lines, domain_of
 from lamella.surface.closed_form import ClosedForm
-from lamella.surface.outline import Ring
+from lamella.surface.umbilic import refuse_umbilic
 
 LEAST_CELLS = 3
 # cells of the coarse net from which densities are judged
@@ -40,15 +40,6 @@ class Density:
     step: float
     estimated_nodes: int
     requested: str
-
-
-def _whole_length(surface: ClosedForm) -> float:
-    """Isothermic length that has to hold a whole number of cells, sqrt(m)."""
-    if isinstance(surface.outline, Ring):
-        turn = surface.isothermic(np.array([2j * np.pi]))[0]
-        # u + v once around
-        return float(abs(turn.real + turn.imag))
-    return surface.longest_principal_line
 
 
 def _coarse_lines(surface: ClosedForm, whole: float) -> Lines:
@@ -93,13 +84,18 @@ def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: fl
     Raises
     ------
     InputError
-        Both given; fewer than 3 cells; a net of more than 500,000 nodes.
+        Both given; fewer than 3 cells; a net of more than 500,000 nodes; every point of the surface umbilic.
     """
     if cells is not None and spacing is not None:
         raise InputError(
             f"both cells = {cells} and spacing = {spacing:g} m are given", "give one of the two", "network"
         )
-    whole = _whole_length(surface)
+    if cells is not None and (isinstance(cells, bool) or not isinstance(cells, int | np.integer)):
+        raise InputError(f"cells = {cells!r} is not a whole number", "write a whole number", "network.cells")
+    if spacing is not None and not 0 < spacing < np.inf:
+        raise InputError(f"spacing = {spacing!r} m is no length", "write a number above 0, in m", "network.spacing")
+    refuse_umbilic(surface)
+    whole = surface.whole_length
     requested = f"cells = {cells}"
     if cells is None and spacing is None:
         cells, requested = 24, "cells = 24 (default)"

@@ -251,7 +251,7 @@ class ScherkDomain(PlaneDomain):
     """Scherk's square: a curved diamond |p| + |q| <= 2 gd^-1(extent)."""
 
     def __init__(self, surface: Scherk, step: float) -> None:
-        super().__init__(surface, step, _centred(surface.longest_principal_line / step))
+        super().__init__(surface, step, _centred(surface.whole_length / step))
         self.scherk = surface
         self.limit = 2 * surface.outline.half_side
         self.reach = float(asymptotic_to_conformal(np.array([self.limit]))[0])
@@ -286,7 +286,7 @@ class DiscDomain(PlaneDomain):
     """A disc around a regular point (Enneper's classical surface)."""
 
     def __init__(self, surface: ClosedForm, step: float) -> None:
-        super().__init__(surface, step, _centred(surface.longest_principal_line / step))
+        super().__init__(surface, step, _centred(surface.whole_length / step))
         assert isinstance(surface.outline, Disc)
         self.radius = surface.outline.radius
 

@@ -97,9 +97,11 @@ def trace_faces(
         crosses_rim[open_] |= outside[walker[open_]]
     first_edge = np.flatnonzero((smallest == np.arange(len(tail))) & ~crosses_rim & (sides > 2))
     count = sides[first_edge]
-    if len(count) and count.max() > MOST_SIDES:
+    endless = bool(((sides == 0) & ~crosses_rim).any())
+    if endless or (len(count) and count.max() > MOST_SIDES):
+        corners = "many" if endless else f"{count.max()}"
         raise InputError(
-            f"the net is too coarse for this surface: a face between lamellas and rim has {count.max()} corners",
+            f"the net is too coarse for this surface: a face between lamellas and rim has {corners} corners",
             "raise network.cells (or lower network.spacing)",
             "network.cells",
         )

@@ -14,6 +14,9 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
+# cells; how far from its end a line may meet the rim tolerance: lines that graze the rim do so at a small angle
+NEAR_END = 0.02
+
 
 @dataclass(frozen=True)
 class Lattice:
@@ -66,10 +69,14 @@ def build_lattice(domain: Domain, lines: Lines) -> Lattice:
     lines : Lines
         Some or all of ``domain.lines()``.
     """
-    first = np.ceil(lines.start - RIM_TOLERANCE).astype(np.int64)
-    count = np.maximum(np.floor(lines.end + RIM_TOLERANCE).astype(np.int64) - first + 1, 0)
+    first = np.ceil(lines.start - NEAR_END).astype(np.int64)
+    count = np.maximum(np.floor(lines.end + NEAR_END).astype(np.int64) - first + 1, 0)
     line = np.repeat(np.arange(len(count)), count)
     t = (first[line] + ragged_ranges(count)).astype(float)
+    place = domain.place(lines.sheet[line], lines.base[line] + t * lines.direction[line])
+    on_rim = np.abs(domain.rim(place).distance) <= RIM_TOLERANCE
+    seen = on_rim | ((t >= lines.start[line]) & (t <= lines.end[line]))
+    line, t, on_rim = line[seen], t[seen], on_rim[seen]
     point = lines.base[line] + t * lines.direction[line]
     names = domain.canonical(lines.sheet[line], point)
 
@@ -84,16 +91,19 @@ def build_lattice(domain: Domain, lines: Lines) -> Lattice:
     degree_b = np.bincount(crossing[~is_a], minlength=crossings)
 
     singular = lines.singular[line] & (t == 0)
-    on_rim = ~singular & (domain.rim(domain.place(lines.sheet[line], point)).distance <= RIM_TOLERANCE)
+    # judged once for both lines of a crossing, whose places differ by rounding
+    on_rim = np.bincount(crossing, on_rim, minlength=crossings)[crossing] > 0
+    on_rim &= ~singular
+    at_start = singular | (on_rim & (t <= lines.start[line] + NEAR_END))
+    at_end = on_rim & (t >= lines.end[line] - NEAR_END)
     # on the rim and at a line's end a lattice point is a node even when the other family is missing
-    at_end = (t <= lines.start[line] + RIM_TOLERANCE) | (t >= lines.end[line] - RIM_TOLERANCE)
-    node_here = singular | ((degree_a > 0) & (degree_b > 0))[crossing] | at_end
+    node_here = at_start | at_end | ((degree_a > 0) & (degree_b > 0))[crossing]
 
     # ends that are no lattice point
     has_start = np.zeros(len(count), bool)
     has_end = np.zeros(len(count), bool)
-    has_start[line[at_end & (t <= lines.start[line] + RIM_TOLERANCE)]] = True
-    has_end[line[at_end & (t >= lines.end[line] - RIM_TOLERANCE)]] = True
+    has_start[line[at_start]] = True
+    has_end[line[at_end]] = True
     free = np.r_[np.flatnonzero(~has_start), np.flatnonzero(~has_end)]
     free_t = np.r_[lines.start[~has_start], lines.end[~has_end]]
 
@@ -101,7 +111,7 @@ def build_lattice(domain: Domain, lines: Lines) -> Lattice:
     stop_t = np.r_[t[node_here], free_t]
     stop_crossing = np.r_[crossing[node_here], crossings + np.arange(len(free))]
     stop_kind = np.r_[
-        np.where(singular, SINGULAR, np.where(on_rim | at_end, BOUNDARY, REGULAR))[node_here],
+        np.where(singular, SINGULAR, np.where(on_rim, BOUNDARY, REGULAR))[node_here],
         np.full(len(free), BOUNDARY),
     ]
     order = np.lexsort((stop_t, stop_line))

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from lamella.errors import InputError
+from lamella.network.arcs import ArcLengths, Segments
 from lamella.network.density import Density
-from lamella.network.domain import A, Domain, domain_of
+from lamella.network.domain import A, domain_of
 from lamella.network.faces import trace_faces
 from lamella.network.lattice import Lattice, build_lattice, ragged_ranges
 from lamella.network.network import BOUNDARY, Network
 from lamella.surface.closed_form import ClosedForm
-from lamella.surface.darboux import lamella_darboux
-from lamella.surface.points import SurfacePoints
+from lamella.surface.darboux import Darboux, lamella_darboux
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -21,67 +23,8 @@ Integers = NDArray[np.int64]
 
 # samples a cell (docs/files.md)
 FINE, COARSE, FINE_LIMIT = 16, 8, 20_000
-# Gauss-Legendre points a cell: the speed is analytic well beyond a cell, 12 points leave rounding only
-POINTS = 12
-
-
-class _Segments:
-    """The pieces of lamella between neighbouring stops, each with a parameter 0 <= sigma <= 1."""
-
-    def __init__(self, domain: Domain, lattice: Lattice) -> None:
-        self.domain, lines = domain, lattice.lines
-        owner = lattice.owner
-        first = np.flatnonzero(owner[:-1] == owner[1:])
-        self.owner = owner[first]
-        self.first_stop = first
-        self.sheet = lines.sheet[self.owner]
-        self.base, self.direction = lines.base[self.owner], lines.direction[self.owner]
-        self.t, self.span = lattice.t[first], lattice.t[first + 1] - lattice.t[first]
-        # a ray's first cell is straight in zeta, where the surface is smooth, not in the cell plane
-        self.radial = lines.singular[self.owner] & (self.t == 0)
-
-    def where(self, segment: Integers, sigma: Floats) -> tuple[Complexes, Complexes]:
-        """Places zeta and d zeta / d sigma at parameters of segments, arrays of equal shape (k,)."""
-        radial = self.radial[segment]
-        t = self.t[segment] + np.where(radial, 1.0, sigma) * self.span[segment]
-        point = self.base[segment] + t * self.direction[segment]
-        zeta = self.domain.place(self.sheet[segment], point)
-        derivative = self.domain.derivative(self.sheet[segment], point) * self.direction[segment] * self.span[segment]
-        return np.where(radial, sigma * zeta, zeta), np.where(radial, zeta, derivative)
-
-    def arcs(self) -> tuple[Floats, Floats]:
-        """Length of every segment, (s,), and its arc length as a polynomial of 2 sigma - 1 (Legendre, (13, s))."""
-        x, weight = np.polynomial.legendre.leggauss(POINTS)
-        count = len(self.owner)
-        segment = np.repeat(np.arange(count), POINTS)
-        zeta, derivative = self.where(segment, np.tile((x + 1) / 2, count))
-        speed = (self.domain.surface.metric(zeta) * np.abs(derivative)).reshape(count, POINTS)
-        degree = np.arange(POINTS)
-        basis = np.polynomial.legendre.legvander(x, POINTS - 1)
-        # einsum, not BLAS: starting its threads takes longer than this product
-        transform: Floats = (basis * weight[:, None]) * ((2 * degree + 1) / 2)
-        coefficients = np.einsum("pd,sp->ds", transform, speed)
-        integral: Floats = np.asarray(np.polynomial.legendre.legint(coefficients, lbnd=-1, axis=0) / 2, np.float64)
-        return np.einsum("sp,p->s", speed, weight) / 2, integral
-
-
-def _equal_arcs(integral: Floats, length: Floats, segment: Integers, fraction: Floats) -> Floats:
-    """sigma where the given fraction of each segment's arc length is reached (Newton from equal parameters)."""
-    slope: Floats = np.asarray(np.polynomial.legendre.legder(integral, axis=0), np.float64)
-    x = 2 * fraction - 1
-    for _ in range(3):
-        miss = _clenshaw(integral, segment, x) - fraction * length[segment]
-        x = np.clip(x - miss / _clenshaw(slope, segment, x), -1, 1)
-    return (x + 1) / 2
-
-
-def _clenshaw(coefficients: Floats, segment: Integers, x: Floats) -> Floats:
-    """Legendre series, one per segment, each at its own arguments."""
-    after, now = np.zeros_like(x), np.zeros_like(x)
-    for n in range(len(coefficients) - 1, -1, -1):
-        term: Floats = (2 * n + 1) / (n + 1) * x * now - (n + 1) / (n + 2) * after
-        after, now = now, coefficients[n, segment] + term
-    return now
+# samples worked on at a time, so that their arrays stay in the processor's cache
+BLOCK = 16_384
 
 
 def _ids(families: Integers) -> tuple[str, ...]:
@@ -103,8 +46,34 @@ def _edge_directions(tangents: Floats, starts: Integers, ends: Integers) -> Floa
     return np.vstack([tangents[starts], -tangents[ends]])
 
 
-def _rim_directions(points: SurfacePoints, sample: Integers, tangent: Complexes) -> Floats:
-    return tangent.real[:, None] * points.e_u[sample] + tangent.imag[:, None] * points.e_v[sample]
+class _Samples(NamedTuple):
+    points: Floats
+    normals: Floats
+    tangents: Floats
+    darboux: Floats
+    where: Complexes
+
+
+def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, segment: Integers, fraction: Floats) -> _Samples:
+    """Points at fractions of the arc lengths of segments, with all that is told of them."""
+    count = len(segment)
+    samples = _Samples(
+        np.empty((count, 3)),
+        np.empty((count, 3)),
+        np.empty((count, 3)),
+        np.empty((3, count)),
+        np.empty(count, np.complex128),
+    )
+    for start in range(0, count, BLOCK):
+        block = slice(start, start + BLOCK)
+        zeta, derivative = segments.where(segment[block], arcs.parameter(segment[block], fraction[block]))
+        at = surface.at(zeta)
+        heading = derivative / np.abs(derivative)
+        samples.points[block], samples.normals[block] = at.position, at.normal
+        samples.tangents[block] = at.vector(heading)
+        samples.darboux[:, block] = lamella_darboux(at, heading)
+        samples.where[block] = zeta
+    return samples
 
 
 def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: float = 0.5) -> Network:
@@ -133,9 +102,17 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
     left_out = 0
     while True:
         lattice = build_lattice(domain, lines)
-        segments = _Segments(domain, lattice)
-        length, integral = segments.arcs()
+        segments = Segments(domain, lattice)
+        arcs = ArcLengths(segments)
+        length = arcs.length
         if not len(length) or not (lattice.kinds == 0).any():
+            if left_out:
+                raise InputError(
+                    f"no two lamellas cross once the {left_out} shorter than minimum_length = {minimum_length:g} cell "
+                    "edges are left out",
+                    "lower network.minimum_length",
+                    "network.minimum_length",
+                )
             reach = float((lines.end - lines.start).max(initial=0.0))
             raise InputError(
                 f"no two lamellas cross: with {density.cells} cells the longest one runs over {reach:.2g} cells",
@@ -166,12 +143,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
     given = count + last
     segment = np.repeat(np.arange(len(count)), given)
     fraction = ragged_ranges(given) / count[segment]
-    sigma = _equal_arcs(integral, length, segment, fraction)
-    sigma = np.where(fraction == 1, 1.0, np.where(fraction == 0, 0.0, sigma))
-    where, derivative = segments.where(segment, sigma)
-    points = surface.at(where)
-    heading = derivative / np.abs(derivative)
-    tangents = points.vector(heading)
+    samples = _sample(surface, segments, arcs, segment, fraction)
 
     lines_count = len(lines.family)
     offsets = np.r_[0, np.cumsum(np.bincount(segments.owner, given, minlength=lines_count).astype(np.int64))]
@@ -186,14 +158,15 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
     node_sample[lattice.nodes[::-1]] = stop_sample[::-1]
     starts, ends = stop_sample[segments.first_stop], stop_sample[segments.first_stop + 1]
     tails, heads = lattice.nodes[segments.first_stop], lattice.nodes[segments.first_stop + 1]
-    node_where = where[node_sample]
+    normals, tangents = samples.normals, samples.tangents
+    node_where = samples.where[node_sample]
     face_offsets, face_nodes = trace_faces(
-        points.normal[node_sample],
+        normals[node_sample],
         np.r_[tails, heads],
         np.r_[heads, tails],
         _edge_directions(tangents, starts, ends),
         _loops(lattice),
-        _rim_directions(points, node_sample, domain.rim(node_where).tangent),
+        surface.at(node_where).vector(domain.rim(node_where).tangent),
     )
     return Network(
         mean_curvature=surface.mean_curvature,
@@ -201,18 +174,18 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         cells=density.cells,
         periods=domain.periods,
         left_out=left_out,
-        node_points=points.position[node_sample],
-        node_normals=points.normal[node_sample],
+        node_points=samples.points[node_sample],
+        node_normals=normals[node_sample],
         node_kinds=lattice.kinds,
         ids=_ids(lines.family),
         families=np.where(lines.family == A, "A", "B"),
         closed=np.zeros(lines_count, bool),
         sample_offsets=offsets,
-        sample_points=points.position,
-        sample_normals=points.normal,
+        sample_points=samples.points,
+        sample_normals=normals,
         sample_tangents=tangents,
-        sample_darboux=lamella_darboux(points, heading),
-        sample_where=where,
+        sample_darboux=Darboux(*samples.darboux),
+        sample_where=samples.where,
         sample_arclengths=arclengths,
         stop_offsets=lattice.offsets,
         stop_nodes=lattice.nodes,

@@ -61,8 +61,11 @@ class ClosedForm(ABC):
 
     @property
     @abstractmethod
-    def longest_principal_line(self) -> float:
-        """Largest isothermic length of a principal line on a simply connected surface, sqrt(m)."""
+    def whole_length(self) -> float:
+        """Isothermic length that holds a whole number of cells, sqrt(m).
+
+        Once around the axis; on a simply connected surface, along its longest principal line.
+        """
 
     def describe(self) -> dict[str, object]:
         """Facts worth telling beside the project's own numbers (for the summary)."""

@@ -10,8 +10,8 @@ from lamella.surface.elliptic import epsilon, first_kind, jacobi, quarter_period
 from lamella.surface.points import Floats
 from lamella.surface.revolution import Profile, SurfaceOfRevolution
 
-# below this ratio of radii a Delaunay surface is a string of spheres to within drawing accuracy
-SPHERE_RATIO = 1e-3
+# below this ratio of radii the elliptic functions, whose parameter 1 - ratio^2 is rounded, lose too many digits
+LEAST_RATIO = 1e-4
 
 
 class Delaunay(SurfaceOfRevolution):
@@ -21,12 +21,12 @@ class Delaunay(SurfaceOfRevolution):
     """
 
     def __init__(self, neck_radius: float, bulge_radius: float, flux_sign: int) -> None:
-        if neck_radius < SPHERE_RATIO * bulge_radius:
+        if not LEAST_RATIO * bulge_radius <= neck_radius < np.inf:
             raise InputError(
-                f"neck_radius = {neck_radius:g} m is {neck_radius / bulge_radius:.1e} of bulge_radius = "
-                f"{bulge_radius:g} m: a row of spheres (limit {SPHERE_RATIO:g}). On a sphere every point is umbilic: "
-                "all directions bend alike, so no net of lamellas is singled out",
-                "choose a wider neck",
+                f"neck_radius = {neck_radius:g} m is too little for bulge_radius = {bulge_radius:g} m (at least "
+                f"{LEAST_RATIO:g} of it): the surface is a row of spheres, on which every point is umbilic, joined by "
+                "tiny catenoids",
+                "choose a wider neck; for a piece near the neck alone, a catenoid",
                 "surface.neck_radius",
             )
         self.neck_radius, self.bulge_radius = neck_radius, bulge_radius

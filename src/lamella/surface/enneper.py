@@ -85,6 +85,6 @@ class Enneper(ClosedForm):
         return np.asarray((w / self._root) ** (2 / self.order))
 
     @property
-    def longest_principal_line(self) -> float:
+    def whole_length(self) -> float:
         """Twice the isothermic radius: from rim to rim past the middle."""
         return float(2 * abs(self._root) * self.outline.radius ** (self.order / 2))

@@ -59,6 +59,6 @@ class Helicoid(ClosedForm):
         return w / self._root
 
     @property
-    def longest_principal_line(self) -> float:
+    def whole_length(self) -> float:
         """Principal lines cross the parameter rectangle at 45 degrees: the narrow side decides."""
         return float(np.sqrt(2 * self._c) * min(self.outline.width, self.outline.height))

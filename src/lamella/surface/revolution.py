@@ -92,5 +92,7 @@ class SurfaceOfRevolution(ClosedForm):
         return w / self.root
 
     @property
-    def longest_principal_line(self) -> float:
-        raise NotImplementedError("a ring is not simply connected: its cells are counted around the axis")
+    def whole_length(self) -> float:
+        """u + v once around."""
+        turn = self.root * 2j * np.pi
+        return float(abs(turn.real + turn.imag))

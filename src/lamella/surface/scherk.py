@@ -88,7 +88,7 @@ class Scherk(ClosedForm):
         return w / self._root
 
     @property
-    def longest_principal_line(self) -> float:
+    def whole_length(self) -> float:
         """The diagonal p = q, that is y = 0 from rim to rim."""
         half = float(asymptotic_to_conformal(np.array([self.outline.half_side]))[0])
         return float(2 * np.sqrt(2) * abs(self._root) * half)

@@ -1,0 +1,144 @@
+"""Arc lengths along lamellas, to rounding, and the points that divide them evenly."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.errors import InputError
+from lamella.network.domain import Domain
+from lamella.network.lattice import Lattice
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+Integers = NDArray[np.int64]
+
+# Gauss-Legendre points a cell to begin with, and at most
+POINTS, MOST_POINTS = 12, 768
+# share of the speed's series that its last two terms may have
+TAIL = 1e-12
+
+
+class Segments:
+    """The pieces of lamella between neighbouring stops, each with a parameter 0 <= sigma <= 1.
+
+    Attributes
+    ----------
+    owner : (s,) int
+        Lamella of each segment.
+    first_stop : (s,) int
+        The stop it starts from; it ends at the next one.
+    span : (s,)
+        Length in cells.
+    """
+
+    def __init__(self, domain: Domain, lattice: Lattice) -> None:
+        self.domain, lines = domain, lattice.lines
+        owner = lattice.owner
+        first = np.flatnonzero(owner[:-1] == owner[1:])
+        self.owner = owner[first]
+        self.first_stop = first
+        self.sheet = lines.sheet[self.owner]
+        self.base, self.direction = lines.base[self.owner], lines.direction[self.owner]
+        self.t, self.span = lattice.t[first], lattice.t[first + 1] - lattice.t[first]
+        # a ray's first cell is straight in zeta, where the surface is smooth, not in the cell plane
+        self.radial = lines.singular[self.owner] & (self.t == 0)
+
+    def where(self, segment: Integers, sigma: Floats) -> tuple[Complexes, Complexes]:
+        """Places zeta and d zeta / d sigma at parameters of segments, arrays of equal shape (k,)."""
+        radial = self.radial[segment]
+        t = self.t[segment] + np.where(radial, 1.0, sigma) * self.span[segment]
+        point = self.base[segment] + t * self.direction[segment]
+        zeta = self.domain.place(self.sheet[segment], point)
+        derivative = self.domain.derivative(self.sheet[segment], point) * self.direction[segment] * self.span[segment]
+        return np.where(radial, sigma * zeta, zeta), np.where(radial, zeta, derivative)
+
+    def speed(self, segment: Integers, sigma: Floats) -> Floats:
+        """Arc length per sigma, m, at parameters (p,) of segments (s,), shape (s, p)."""
+        zeta, derivative = self.where(np.repeat(segment, len(sigma)), np.tile(sigma, len(segment)))
+        return np.asarray(self.domain.surface.metric(zeta) * np.abs(derivative)).reshape(len(segment), len(sigma))
+
+
+class ArcLengths:
+    """Arc length along every segment as a Legendre series in 2 sigma - 1.
+
+    The speed is analytic beyond a cell, so that a dozen terms leave rounding only; segments on which they do not
+    (close to where a surface runs to infinity) get more, until they do.
+
+    Attributes
+    ----------
+    length : (s,)
+        m.
+
+    Raises
+    ------
+    InputError
+        The cells stretch so much that no series reaches full accuracy.
+    """
+
+    def __init__(self, segments: Segments) -> None:
+        count = len(segments.owner)
+        self.length = np.empty(count)
+        self._series: list[tuple[Floats, Floats]] = []
+        self._group, self._member = np.zeros(count, np.int64), np.zeros(count, np.int64)
+        left, points = np.arange(count), POINTS
+        while len(left):
+            if points > MOST_POINTS:
+                raise InputError(
+                    f"{len(left)} pieces of lamella stretch too much for their length to be measured",
+                    "raise network.cells, or end the surface earlier",
+                    "network.cells",
+                )
+            speed, length = _speed_series(segments, left, points)
+            done = np.abs(speed[-2:]).max(0) <= TAIL * speed[0]
+            self._group[left[done]] = len(self._series)
+            self._member[left[done]] = np.arange(done.sum())
+            self.length[left[done]] = length[done]
+            integral = np.asarray(np.polynomial.legendre.legint(speed[:, done], lbnd=-1, axis=0) / 2, np.float64)
+            self._series.append((integral, speed[:, done] / 2))
+            left, points = left[~done], 4 * points
+
+    def parameter(self, segment: Integers, fraction: Floats) -> Floats:
+        """sigma where the given fractions of the segments' arc lengths are reached, (k,)."""
+        sigma = np.empty(len(segment))
+        group = self._group[segment]
+        for number, (integral, speed) in enumerate(self._series):
+            own = np.flatnonzero(group == number)
+            if len(own):
+                member = self._member[segment[own]]
+                sigma[own] = _reach(integral, speed, member, fraction[own], self.length[segment[own]])
+        return np.where(fraction == 1, 1.0, np.where(fraction == 0, 0.0, sigma))
+
+
+def _speed_series(segments: Segments, segment: Integers, points: int) -> tuple[Floats, Floats]:
+    """Legendre coefficients of the speed, (points, s), and the lengths, (s,)."""
+    x, weight = np.polynomial.legendre.leggauss(points)
+    speed = segments.speed(segment, (x + 1) / 2)
+    basis = np.polynomial.legendre.legvander(x, points - 1)
+    transform: Floats = (basis * weight[:, None]) * (np.arange(points) + 0.5)
+    # einsum, not BLAS: starting its threads takes longer than this product
+    coefficients: Floats = np.einsum("pd,sp->ds", transform, speed)
+    return coefficients, np.einsum("sp,p->s", speed, weight) / 2
+
+
+def _reach(integral: Floats, speed: Floats, member: Integers, fraction: Floats, length: Floats) -> Floats:
+    """sigma where a fraction of the length is reached: Newton's method kept inside a shrinking bracket."""
+    low, high = np.full(len(member), -1.0), np.full(len(member), 1.0)
+    x = 2 * fraction - 1
+    for _ in range(60):
+        miss = _clenshaw(integral, member, x) - fraction * length
+        if np.abs(miss).max() <= 1e-10 * length.max():
+            break
+        low, high = np.where(miss < 0, x, low), np.where(miss > 0, x, high)
+        step = x - miss / _clenshaw(speed, member, x)
+        x = np.where((step >= low) & (step <= high), step, (low + high) / 2)
+    return (x + 1) / 2
+
+
+def _clenshaw(coefficients: Floats, member: Integers, x: Floats) -> Floats:
+    """Legendre series, one a member, each at its own arguments."""
+    after, now = np.zeros_like(x), np.zeros_like(x)
+    for n in range(len(coefficients) - 1, -1, -1):
+        term: Floats = (2 * n + 1) / (n + 1) * x * now - (n + 1) / (n + 2) * after
+        after, now = now, coefficients[n, member] + term
+    return now
