@@ -270,8 +270,14 @@ def test_ranges_of_height(refused: Callable[..., str], kind: str) -> None:
     ("text", "words"),
     [
         (surface("unduloid", neck_radius="3.0"), ["neck_radius = 3 m is above bulge_radius = 2.8 m", "swap them"]),
-        (surface("unduloid", neck_radius="1e-5"), ["(at least 0.0001 of it): the surface is a row of spheres", "umbilic", "wider neck"]),
-        (surface("nodoid", neck_radius="1e-5"), ["(at least 0.0001 of it): the surface is a row of spheres", "umbilic", "wider neck"]),
+        (
+            surface("unduloid", neck_radius="1e-5"),
+            ["(at least 0.0001 of it): the surface is a row of spheres", "umbilic", "wider neck"],
+        ),
+        (
+            surface("nodoid", neck_radius="1e-5"),
+            ["(at least 0.0001 of it): the surface is a row of spheres", "umbilic", "wider neck"],
+        ),
         (surface("nodoid", neck_radius="9"), ["neck_radius = 9 m is not below bulge_radius = 9 m"]),
         (surface("nodoid", neck_radius="9.5"), ["neck_radius = 9.5 m is not below bulge_radius = 9 m"]),
         (surface("nodoid", height="[-2, 1]"), ["surface.height: z = -2 m", "fold: |z| < 1.78", "shorten the range"]),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 
 class InputError(ValueError):
     """Something the user can mend: what is wrong, the value, the limit and the remedy, in one message.
@@ -25,3 +27,10 @@ class InputError(ValueError):
     def __str__(self) -> str:
         head = f"{self.where}: {self.message}" if self.where else self.message
         return f"{head}\n  remedy: {self.remedy}" if self.remedy else head
+
+
+def require_positive(**values: float) -> None:
+    """Raise an `InputError` naming the first value that is not a finite number above 0."""
+    for name, value in values.items():
+        if not (isinstance(value, int | float) and math.isfinite(value) and value > 0):
+            raise InputError(f"{name} = {value!r} is out of range", f"{name} has to be a finite number above 0")

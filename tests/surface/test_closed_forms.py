@@ -9,7 +9,18 @@ import numpy as np
 import pytest
 
 from conftest import KINDS, draw_places, draw_surface
-from lamella import Catenoid, Cylinder, Enneper, Helicoid, InputError, Nodoid, Scherk, Unduloid
+from lamella import (
+    Catenoid,
+    Cylinder,
+    Enneper,
+    Helicoid,
+    InputError,
+    Nodoid,
+    Scherk,
+    Section,
+    Unduloid,
+    make_network,
+)
 from lamella.surface.sampling import area, measured_mean_curvature, surface_mesh
 from lamella.surface.umbilic import refuse_umbilic
 
@@ -201,6 +212,18 @@ def test_mesh_lies_on_the_surface_and_its_area_converges(kind):
         (lambda: Nodoid(1e-5, 1.0, (-1, 1)), ("spheres", "umbilic")),
         (lambda: Unduloid(2.0, 1.0, (-1, 1)), ("2 m", "1 m", "swap")),
         (lambda: Nodoid(1.0, 1.0, (-1, 1)), ("not below",)),
+        (lambda: Catenoid(1.0, (1.0, -1.0)), ("(1, -1)", "below")),
+        (lambda: Catenoid(0.0, (-1.0, 1.0)), ("neck_radius = 0.0", "above 0")),
+        (lambda: Cylinder(float("nan"), (-1.0, 1.0)), ("radius = nan",)),
+        (lambda: Helicoid(0.0, 1.0, 2.0, 1.0), ("pitch = 0.0",)),
+        (lambda: Helicoid(1.0, 3.0, 2.0, 1.0), ("inner_radius = 3 m", "2 m")),
+        (lambda: Enneper(1, 1.0), ("order = 1",)),
+        (lambda: Scherk(2.0), ("extent = 2", "1.5708")),
+        (lambda: Section(marks="relaxd"), ("relaxd", "relaxed")),  # type: ignore[arg-type]
+        (lambda: Section(height=0.001, thickness=0.1), ("0.1 m", "0.001 m")),
+        (lambda: make_network(Cylinder(1.0, (0, 2)), cells=24.5), ("24.5", "whole")),  # type: ignore[arg-type]
+        (lambda: make_network(Cylinder(1.0, (0, 2)), spacing=float("nan")), ("nan",)),
+        (lambda: make_network(Cylinder(1.0, (0, 2)), spacing=0.0), ("0.0",)),
         (lambda: Nodoid(0.5, 1.6, (-0.1, 0.4)), ("0.4 m", "fold", "0.315034")),
     ],
 )

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError
+from lamella.errors import InputError, require_positive
 from lamella.network.network import Network
 from lamella.strip.material import Material
 from lamella.strip.planarity import planarity_score
@@ -40,6 +40,18 @@ class Section:
     layers: int = 2
     offset: float = 0.025
     marks: Marks = "arc-length"
+
+    def __post_init__(self) -> None:
+        """Raise an `InputError` for a section that is none."""
+        require_positive(height=self.height, thickness=self.thickness, layers=self.layers, offset=self.offset)
+        if self.thickness >= self.height:
+            raise InputError(
+                f"thickness = {self.thickness:g} m is not below height = {self.height:g} m",
+                "the strip stands on edge: its height is the larger measure",
+                "lamella.thickness",
+            )
+        if self.marks not in get_args(Marks):
+            raise InputError(f"marks = {self.marks!r}", f"choose one of {', '.join(get_args(Marks))}", "lamella.marks")
 
 
 @dataclass(frozen=True)

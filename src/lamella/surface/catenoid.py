@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.errors import require_positive
 from lamella.surface.points import Floats
 from lamella.surface.revolution import Profile, SurfaceOfRevolution
 
@@ -23,6 +24,7 @@ class Catenoid(SurfaceOfRevolution):
     mean_curvature = 0.0
 
     def __init__(self, neck_radius: float, height: tuple[float, float]) -> None:
+        require_positive(neck_radius=neck_radius)
         self.neck_radius = self.flux = neck_radius
         self.outline = self.between(*height)
 

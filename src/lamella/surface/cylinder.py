@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.errors import require_positive
 from lamella.surface.points import Floats
 from lamella.surface.revolution import Profile, SurfaceOfRevolution
 
@@ -22,6 +23,7 @@ class Cylinder(SurfaceOfRevolution):
     kind = "cylinder"
 
     def __init__(self, radius: float, height: tuple[float, float]) -> None:
+        require_positive(radius=radius)
         self.radius = radius
         self.mean_curvature = 1 / (2 * radius)
         self.flux = radius / 2

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from lamella.errors import InputError
+from lamella.errors import InputError, require_positive
 from lamella.surface.elliptic import epsilon, first_kind, jacobi, quarter_period
 from lamella.surface.points import Floats
 from lamella.surface.revolution import Profile, SurfaceOfRevolution
@@ -21,7 +21,8 @@ class Delaunay(SurfaceOfRevolution):
     """
 
     def __init__(self, neck_radius: float, bulge_radius: float, flux_sign: int) -> None:
-        if not LEAST_RATIO * bulge_radius <= neck_radius < np.inf:
+        require_positive(neck_radius=neck_radius, bulge_radius=bulge_radius)
+        if not LEAST_RATIO * bulge_radius <= neck_radius:
             raise InputError(
                 f"neck_radius = {neck_radius:g} m is too little for bulge_radius = {bulge_radius:g} m (at least "
                 f"{LEAST_RATIO:g} of it): the surface is a row of spheres, on which every point is umbilic, joined by "

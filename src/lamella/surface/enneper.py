@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.errors import InputError, require_positive
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.outline import Disc
 from lamella.surface.points import Complexes, Floats, SurfacePoints
@@ -29,6 +30,9 @@ class Enneper(ClosedForm):
     outline: Disc
 
     def __init__(self, order: int, radius: float, scale: float = 1.0) -> None:
+        require_positive(radius=radius, scale=scale)
+        if int(order) != order or order < 2:
+            raise InputError(f"order = {order!r} is no whole number of at least 2", "2 is the classical surface")
         self.order, self.scale = order, scale
         self.outline = Disc(radius)
         self.hopf_order = order - 2

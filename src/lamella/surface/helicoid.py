@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.errors import InputError, require_positive
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.outline import Rectangle
 from lamella.surface.points import Complexes, Floats, SurfacePoints
@@ -27,6 +28,13 @@ class Helicoid(ClosedForm):
     outline: Rectangle
 
     def __init__(self, pitch: float, inner_radius: float, outer_radius: float, turns: float) -> None:
+        require_positive(pitch=abs(pitch), outer_radius=outer_radius, turns=turns)
+        if not 0 <= inner_radius < outer_radius:
+            raise InputError(
+                f"inner_radius = {inner_radius:g} m has to be at least 0 and below outer_radius = {outer_radius:g} m",
+                "swap or change them",
+                "surface.inner_radius",
+            )
         self._c = abs(pitch) / (2 * np.pi)
         self._sense = float(np.sign(pitch))
         start, end = np.arcsinh(inner_radius / self._c), np.arcsinh(outer_radius / self._c)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from lamella.errors import InputError
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.outline import Ring
 from lamella.surface.points import Complexes, Floats, SurfacePoints
@@ -60,7 +61,17 @@ class SurfaceOfRevolution(ClosedForm):
         return float(brentq(miss, *ends, xtol=1e-15, rtol=1e-15))
 
     def between(self, z0: float, z1: float) -> Ring:
-        """The outline between two heights."""
+        """The outline between two heights.
+
+        Raises
+        ------
+        InputError
+            The range is reversed, empty or not finite.
+        """
+        if not -np.inf < z0 < z1 < np.inf:
+            raise InputError(
+                f"height = ({z0:g}, {z1:g}) m is no range", "z0 has to be below z1, both finite", "surface.height"
+            )
         ends = sorted(self.parameter_at_height(z) for z in (z0, z1))
         return Ring(*ends)
 

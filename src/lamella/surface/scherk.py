@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.errors import InputError, require_positive
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.elliptic import first_kind, jacobi
 from lamella.surface.outline import Square
@@ -37,6 +38,13 @@ class Scherk(ClosedForm):
     outline: Square
 
     def __init__(self, extent: float, scale: float = 1.0) -> None:
+        require_positive(extent=extent, scale=scale)
+        if extent >= np.pi / 2:
+            raise InputError(
+                f"extent = {extent:g}: the surface runs to infinity at pi / 2 = 1.5708",
+                "choose a smaller extent",
+                "surface.extent",
+            )
         self.extent, self.scale = extent, scale
         self.outline = Square(float(np.arcsinh(np.tan(extent))))
 
