@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from test_fabrication_strips import Strip, build, random_strips, sampled
 
 from lamella.errors import InputError
 from lamella.fabrication import make_parts
 from lamella.fabrication.flat import develop, extents, longest_fitting, outline_area
 from lamella.fabrication.splitting import cut_stations
-from test_fabrication_strips import Strip, build, random_strips, sampled
 
 STEEL = 7900.0
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from test_files_samples import cylinder_mesh, cylinder_net
 
 from lamella.files.mesh_files import (
     surface_obj_bytes,
@@ -16,7 +17,6 @@ from lamella.files.mesh_files import (
     write_surface_obj,
     write_surface_ply,
 )
-from test_files_samples import cylinder_mesh, cylinder_net
 
 
 def read_obj(path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64], list[tuple[str, str, list[str]]]]:

@@ -8,10 +8,10 @@ import time
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
+from test_fabrication_strips import Strip, build, random_strips, sampled
 
 from lamella.fabrication import make_parts, nest, write_drawings, write_schedule
 from lamella.fabrication.schedule import congruent_parts
-from test_fabrication_strips import Strip, build, random_strips, sampled
 
 DENSITY = 8000.0
 

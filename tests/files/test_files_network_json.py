@@ -12,11 +12,11 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+from test_files_samples import cylinder_net
 
 from lamella.files.network_json import network_bytes, network_schema, write_network
 from lamella.files.nodes_csv import write_nodes_csv
 from lamella.network.network import NODE_KINDS
-from test_files_samples import cylinder_net
 
 VALIDATOR = jsonschema.Draft202012Validator(network_schema())
 

@@ -17,11 +17,11 @@ import pytest
 import rhino3dm
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
+from test_files_samples import cylinder_mesh, cylinder_net, helix, inward
 
 from lamella.files import model_3dm
 from lamella.files.model_3dm import model_bytes, write_model
 from lamella.files.splines import RELATIVE_TOLERANCE, fit_spline
-from test_files_samples import cylinder_mesh, cylinder_net, helix, inward
 
 NODE_LAYERS = ["nodes regular", "nodes boundary", "nodes singular", "nodes seam"]
 HERE = Path(__file__).parent

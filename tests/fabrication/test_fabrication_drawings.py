@@ -14,11 +14,11 @@ import ezdxf
 import numpy as np
 import pytest
 from matplotlib.path import Path as Polygon
+from test_fabrication_strips import Strip, build, random_strips, sampled
 
 from lamella.fabrication import make_parts, nest, read_slots, write_drawings
 from lamella.fabrication.engraving import engrave
 from lamella.fabrication.stroke_font import GLYPHS, HEIGHT, WIDTH, text_strokes, text_width
-from test_fabrication_strips import Strip, build, random_strips, sampled
 
 TESTS = Path(__file__).parent
 SHEET = (2.0, 1.0)
