@@ -15,7 +15,7 @@ import lamella
 from lamella import InputError, compute, parse_project, read_project
 from lamella.cli import main
 from lamella.files.network_json import network_schema
-from lamella.project import FabricationTable
+from lamella.project import FabricationTable, LamellaTable
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
 # DESIGN section 7
@@ -125,7 +125,7 @@ def test_the_copy_of_the_project_holds_all_defaults(example: tuple[Path, Path]) 
         if isinstance(values, dict):
             for key, value in values.items():
                 assert full[table][key] == value
-    assert set(full["lamella"]) == {"height", "thickness", "layers", "offset", "material", "marks"}
+    assert set(full["lamella"]) == set(LamellaTable.model_fields)
     assert set(full["fabrication"]) == set(FabricationTable.model_fields)
     assert {"angle", "closing", "minimum_length"} < set(full["network"])
     assert ("cells" in full["network"]) != ("spacing" in full["network"])

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from lamella.network.network import Network
-from lamella.strip.lamellas import Lamellas
+from lamella.strip.lamellas import Lamellas, layer_drift
 from lamella.surface.mesh import SurfaceMesh
 
 # m; the largest timber gridshells span well under 200 m
@@ -16,8 +16,6 @@ LARGE = 250.0
 SLENDER = 2500.0
 # share of the radius of curvature beyond which half the strip's height is no small strip any more
 DEEP = 0.5
-# m; the drawings' own accuracy
-WORTH_TELLING = 1e-5
 
 
 def size_cautions(mesh: SurfaceMesh, height: float) -> Iterator[str]:
@@ -72,24 +70,16 @@ def lamella_cautions(mesh: SurfaceMesh, network: Network, lamellas: Lamellas, sl
             f"half the strip's height ({half:g} m) is {half * curvature:.2f} of the surface's smallest radius of "
             f"curvature ({1 / curvature:.3g} m): the strips' edges are far from their centre lines"
         )
-    layers, offset = lamellas.section.layers, lamellas.section.offset
-    if layers > 1:
-        # the layer at sideways distance d is shorter by the integral of kg d
-        kg, s = network.sample_darboux.kg, network.sample_arclengths
-        turn = np.append(0.0, np.cumsum((kg[1:] + kg[:-1]) / 2 * np.diff(s)))
-        owner = network.stop_owner
-        at = turn[network.sample_offsets[owner] + network.stop_samples]
-        cell = np.abs(np.diff(at))[owner[1:] == owner[:-1]].max() * offset * (layers - 1) / 2
-        play = slot_width - lamellas.section.thickness
-        if cell >= WORTH_TELLING:
-            verdict = (
-                f"within the slots' play of {play * 1000:.3g} mm"
-                if cell <= play
-                else f"more than the slots' play of {play * 1000:.3g} mm: choose one layer, a smaller offset "
-                "or wider slots"
-            )
+    section = lamellas.section
+    if section.layers > 1 and section.layer_lengths == "alike":
+        drift = layer_drift(network) * section.offset * (section.layers - 1)
+        # a lamella's layers sit in the crossing ones' slots and these in its own
+        play = 2 * (slot_width - section.thickness)
+        over = int((drift > play).sum())
+        if over:
             yield (
-                f"the {layers} layers are cut alike, with the centre line's node distances; on their own curves, "
-                f"{offset * (layers - 1) / 2 * 1000:g} mm to the side, a cell differs by up to {cell * 1000:.2g} mm, "
-                f"{verdict}"
+                f"the {section.layers} layers are cut alike, but on their own curves nodes lie at other distances: in "
+                f"{over} of {len(drift)} lamellas the outer layers drift apart by more than the slots' play of "
+                f"{play * 1000:.3g} mm, up to {drift.max() * 1000:.3g} mm: write lamella.layer_lengths = 'own', or "
+                "choose one layer"
             )

@@ -171,7 +171,7 @@ def compute(project: Project, *, until: str = LAST_STAGE, progress: Progress = _
     if network and depth >= STAGES.index("lamellas"):
         table = project.lamella
         clock.start(f"lamellas: {table.height * 1000:g} x {table.thickness * 1000:g} mm, {table.material}")
-        section = Section(table.height, table.thickness, table.layers, table.offset, table.marks)
+        section = Section(table.height, table.thickness, table.layers, table.offset, table.marks, table.layer_lengths)
         lamellas = make_lamellas(network, section, project.material())
         figures["lamellas"] = f = summary.lamella_summary(network, lamellas, table.material, project.material())
         clock.stop("lamellas", f"{f['total_length']:.4g} m of lamella, utilisation up to {f['utilisation_max']:.2f}")

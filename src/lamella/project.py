@@ -235,7 +235,7 @@ class NetworkTable(Table):
         examples=[24],
     )
     spacing: float | None = _length(
-        "Wanted median cell edge, instead of cells; the nearest density that closes is taken.",
+        "Wanted median cell edge, instead of cells; the nearest whole number of cells is taken.",
         default=None,
         examples=[0.5],
     )
@@ -286,6 +286,12 @@ class LamellaTable(Table):
         default="arc-length",
         description='"arc-length": nodes marked at the 3D arc length, the nodes then hold the strip stretched; '
         '"relaxed": marks lengthened by the integral of h^2 tg^2 / 24, so that the twisted strip carries no tension.',
+    )
+
+    layer_lengths: Literal["alike", "own"] = Field(
+        default="alike",
+        description='"alike": every layer is marked at the node distances of the centre line; "own": each at those of '
+        "its own curve to the side, as a part of its own.",
     )
 
     @model_validator(mode="after")

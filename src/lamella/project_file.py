@@ -77,6 +77,8 @@ def _toml(text: str, source: str) -> dict[str, Any]:
         elif message.startswith("Exceeds the limit"):
             message = "a number of thousands of digits"
         where, column = (f"{source}:{at[1]}", f" (column {at[2]})") if at else (source, "")
+        if str(error).endswith("(at end of document)"):
+            where, column = f"{source}:{max(len(text.splitlines()), 1)}", " (end of the file)"
         raise InputError(f"not valid TOML: {cut(message, 200)}{column}", remedy, where) from None
 
 

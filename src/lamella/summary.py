@@ -101,4 +101,6 @@ def fabrication_summary(parts: Parts, nesting: Nesting, surface_area: float) -> 
         "surface_weight": parts.mass / surface_area,
         "parts": parts.pieces,
         "sheets": nesting.sheet_count,
+        "sheet_use": sum(part.quantity * part.area for part in parts.parts)
+        / float(np.prod(nesting.sizes, axis=1).sum()),
     }

@@ -55,3 +55,11 @@ def test_a_hub_too_small_is_warned_about():
     (warning,) = [w for w in parts.warnings if "singular node" in w]
     assert "hub_radius is 30 mm" in warning
     assert f"{1e3 * 0.017 / np.tan(np.pi / 10):.1f} mm" in warning
+
+
+def test_a_hub_beyond_the_first_node_is_cut_back():
+    _, parts = _ends(3, hub_radius=5.0)
+    (warning,) = [w for w in parts.warnings if "first slots" in w]
+    assert "5000.0 mm" in warning
+    assert not any("without slots" in w for w in parts.warnings)
+    assert all(len(part.slots) >= 2 for part in parts.parts)

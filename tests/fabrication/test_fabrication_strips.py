@@ -99,6 +99,7 @@ def build(strips, curvature=0.0, *, layers=2, height=0.1, thickness=0.0015, offs
         utilisation=0.01 * ramp,
         planarity=np.zeros(samples),
         stop_stations=np.concatenate(arcs) * relax,
+        layer_stations=np.tile(np.concatenate(arcs) * relax, (layers, 1)),
         developed_lengths=np.array([arc[-1] * relax for arc in arcs]),
     )
     return network, lamellas

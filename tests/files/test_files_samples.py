@@ -77,6 +77,7 @@ def cylinder_net(cells: int = 6, rows: int = 4, per_cell: int = 8) -> tuple[Netw
     lamellas = Lamellas(
         section=Section(height=0.1, thickness=0.0015),
         stop_stations=network.stop_arclengths,
+        layer_stations=np.tile(network.stop_arclengths, (2, 1)),
         developed_lengths=network.lengths,
         bending=zero,
         torsion=zero,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,9 +71,13 @@ def make_parts(
         end_distance = max(LEAST_END, 2 * slot_width / edge_scale(network.mean_curvature, section.height))
     degree_a, degree_b = network.node_degrees()
     singular = network.node_kinds == SINGULAR
+    crossing = (degree_a > 0) & (degree_b > 0) & ~singular
     rays = int((degree_a + degree_b)[singular].max(initial=0))
     clear = clear_hub(rays, section.layers, section.offset, section.thickness)
-    hub_radius = max(LEAST_HUB, clear) if hub_radius is None else hub_radius
+    wanted_hub = max(LEAST_HUB, clear) if hub_radius is None else hub_radius
+    spread = 0.5 * (section.layers - 1) * section.offset
+    # the first slot of a ray stays on it
+    hub_radius = min(wanted_hub, max(_first_cell(network, lamellas, crossing) - spread - 1.5 * slot_width, 0.0))
     rules = Rules(
         layers=section.layers,
         offset=section.offset,
@@ -89,45 +94,50 @@ def make_parts(
     )
     rules.check()
     longest = rules.longest_on_sheet
-    crossing = (degree_a > 0) & (degree_b > 0) & ~singular
     notes = Notes()
+    if hub_radius < wanted_hub:
+        notes.hub_cut = wanted_hub
     if hub_radius < clear - ROUNDING:
         notes.hub_needed = clear
     parts: list[Part] = []
+    before, after = np.full((2, len(network.ids)), -np.inf)
+    # layers that are alike are one part, cut as often as there are layers
+    own = section.layer_lengths == "own" and section.layers > 1
+    layers = list(enumerate(lamellas.layer_stations)) if own else [(-1, lamellas.stop_stations)]
     for index in range(len(network.ids)):
         stops = slice(int(network.stop_offsets[index]), int(network.stop_offsets[index + 1]))
         nodes = network.stop_nodes[stops]
-        hub = network.node_kinds[nodes] == SINGULAR
-        stations = lamellas.stop_stations[stops]
-        parts.extend(
-            _lamella_parts(
-                network.ids[index],
-                index,
-                str(network.families[index]),
-                bool(network.closed[index]),
-                stations,
-                crossing[nodes],
-                hub,
-                rules,
-                longest,
-                notes,
+        for layer, all_stations in layers:
+            stations = all_stations[stops]
+            pieces = list(
+                _lamella_parts(
+                    network.ids[index] + ("abcd"[layer] if own else ""),
+                    index,
+                    str(network.families[index]),
+                    bool(network.closed[index]),
+                    stations,
+                    crossing[nodes],
+                    singular[nodes],
+                    rules,
+                    longest,
+                    notes,
+                )
             )
-        )
-    notes.collisions = end_collisions(network, *_overhangs(network, lamellas, parts), float(rules.spread[-1]))
-    return Parts(tuple(parts), tuple(notes.sentences(rules, len(network.ids), len(parts))))
+            if pieces:
+                before[index] = max(before[index], stations[0] - pieces[0].start)
+                after[index] = max(after[index], pieces[-1].end - stations[-1])
+            parts.extend([replace(piece, quantity=1) for piece in pieces] if own else pieces)
+    notes.collisions = end_collisions(network, before, after, float(rules.spread[-1]))
+    return Parts(tuple(parts), tuple(notes.sentences(rules, len(network.ids) * len(layers), len(parts))))
 
 
-def _overhangs(network: Network, lamellas: Lamellas, parts: list[Part]) -> tuple[Floats, Floats]:
-    """How far the strips reach beyond their lamellas' first and last nodes, m, (m,) each."""
-    first, last = (
-        lamellas.stop_stations[network.stop_offsets[:-1]],
-        lamellas.stop_stations[network.stop_offsets[1:] - 1],
-    )
-    start, end = first.copy(), last.copy()
-    index = np.array([part.lamella for part in parts], dtype=np.int64)
-    np.minimum.at(start, index, np.array([part.start for part in parts]))
-    np.maximum.at(end, index, np.array([part.end for part in parts]))
-    return first - start, end - last
+def _first_cell(network: Network, lamellas: Lamellas, crossing: NDArray[np.bool_]) -> float:
+    """Least distance along a lamella from a singular node to the next crossing, m; infinite where there is none."""
+    owner = network.stop_owner
+    cell = np.where(owner[1:] == owner[:-1], np.diff(lamellas.layer_stations).min(axis=0), np.inf)
+    singular = network.node_kinds[network.stop_nodes] == SINGULAR
+    slots = crossing[network.stop_nodes]
+    return float(cell[(singular[:-1] & slots[1:]) | (slots[:-1] & singular[1:])].min(initial=np.inf))
 
 
 def _lamella_parts(

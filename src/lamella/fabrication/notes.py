@@ -30,6 +30,8 @@ class Notes:
         Id and smallest cell edge (m) of the parts without slots.
     collisions : int
         Pairs of strip ends that meet beyond the rim.
+    hub_cut : float
+        Radius (m) asked of the hubs where it would have taken the first slots with it, else 0.
     hub_needed : float
         Radius (m) the hubs should have where theirs lets strips run into each other, else 0.
     """
@@ -41,6 +43,7 @@ class Notes:
     left_out: list[str] = field(default_factory=list)
     unslotted: list[tuple[str, float]] = field(default_factory=list)
     collisions: int = 0
+    hub_cut: float = 0.0
     hub_needed: float = 0.0
 
     def sentences(self, rules: Rules, lamellas: int, parts: int) -> Iterator[str]:
@@ -68,6 +71,11 @@ class Notes:
                 f"{len(self.left_out)} of {lamellas} lamellas are left out of the parts "
                 f"({_few(self.left_out)}): nothing remains of them between hubs of radius "
                 f"{1e3 * rules.hub_radius:g} mm, or a single cell turns through more than 1.9 pi"
+            )
+        if self.hub_cut:
+            yield (
+                f"a hub radius of {1e3 * self.hub_cut:.1f} mm would reach the first slots around the singular node: "
+                f"{1e3 * rules.hub_radius:.1f} mm is used"
             )
         if self.hub_needed:
             yield (

@@ -22,13 +22,14 @@ class Part:
     Attributes
     ----------
     id : str
-        "A1", or "A1.1", "A1.2", ... for the pieces of a split lamella.
+        "A1", or "A1.1", "A1.2", ... for the pieces of a split lamella; "A1a", "A1b", ... where each layer is a part of
+        its own.
     lamella : int
         Index of the lamella in its network.
     family : str
         "A" (slots from the +n edge, above) or "B" (slots from the -n edge, below).
     quantity : int
-        Equal pieces to cut, one a layer.
+        Equal pieces to cut: one a layer, or 1 where each layer is a part of its own.
     height, thickness : float
         m.
     curvature : float

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
+TIE = 1e-9
+
 
 def cut_stations(start: float, end: float, nodes: Floats, longest: float) -> Floats | None:
     """Stations at which to cut a strip so that no piece is longer than ``longest``.
@@ -42,7 +44,9 @@ def cut_stations(start: float, end: float, nodes: Floats, longest: float) -> Flo
     pieces = len(chosen) - 1
     targets = start + (end - start) * np.arange(1, pieces) / pieces
     after = np.clip(np.searchsorted(bounds, targets), 1, len(bounds) - 1)
-    nearest = np.where(bounds[after] - targets < targets - bounds[after - 1], after, after - 1)
+    # the earlier one of two equally near, whatever rounding says: equal lamellas are to be cut alike
+    nearer = bounds[after] - targets < targets - bounds[after - 1] - TIE * (end - start)
+    nearest = np.where(nearer, after, after - 1)
     equal = np.concatenate(([start], bounds[nearest], [end]))
     lengths = np.diff(equal)
     if np.all(lengths > 0) and np.all(lengths <= reach):

@@ -20,7 +20,7 @@ def make_network(
         A lamellas crossed once around the axis; on a simply connected surface, cells along its longest principal
         line. 24 when spacing is not given either.
     spacing : float, optional
-        Wanted median cell edge, m; the nearest density that closes is taken.
+        Wanted median cell edge, m; the nearest whole number of cells is taken.
     minimum_length : float
         Lamellas shorter than this many median cell edges are left out.
 

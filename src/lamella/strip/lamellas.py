@@ -16,6 +16,7 @@ from lamella.strip.stress import shortening, stresses
 
 Floats = NDArray[np.float64]
 Marks = Literal["arc-length", "relaxed"]
+LayerLengths = Literal["alike", "own"]
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,9 @@ class Section:
     marks : str
         "arc-length": nodes are marked at the 3D arc length, the nodes then hold the strip's length and it carries
         the restraint tension. "relaxed": at the integral of (1 + h^2 tg^2 / 24) ds, without that tension.
+    layer_lengths : str
+        "alike": all layers are marked like the centre line. "own": each at the arc lengths of its own curve c + d u,
+        d to the side of the centre line, where an element is sqrt((1 - d kg)^2 + (d tg)^2) ds long.
     """
 
     height: float = 0.1
@@ -40,6 +44,12 @@ class Section:
     layers: int = 2
     offset: float = 0.025
     marks: Marks = "arc-length"
+    layer_lengths: LayerLengths = "alike"
+
+    @property
+    def layer_offsets(self) -> Floats:
+        """Sideways distances d of the layers from the centre line, m, towards u = n x t, (layers,)."""
+        return np.asarray((np.arange(self.layers) - 0.5 * (self.layers - 1)) * self.offset)
 
     def __post_init__(self) -> None:
         """Raise an `InputError` for a section that is none."""
@@ -50,8 +60,12 @@ class Section:
                 "the strip stands on edge: its height is the larger measure",
                 "lamella.thickness",
             )
-        if self.marks not in get_args(Marks):
-            raise InputError(f"marks = {self.marks!r}", f"choose one of {', '.join(get_args(Marks))}", "lamella.marks")
+        for key, value, known in (
+            ("marks", self.marks, get_args(Marks)),
+            ("layer_lengths", self.layer_lengths, get_args(LayerLengths)),
+        ):
+            if value not in known:
+                raise InputError(f"{key} = {value!r}", f"choose one of {', '.join(known)}", f"lamella.{key}")
 
 
 @dataclass(frozen=True)
@@ -78,6 +92,8 @@ class Lamellas:
         Planarity score of the strip quad between a sample and the next; zero at each lamella's end.
     stop_stations : (q,)
         Place of the node on the developed centre line, m from the lamella's start.
+    layer_stations : (layers, q)
+        The same for each layer; equal to `stop_stations` where layers are cut alike.
     developed_lengths : (m,)
         Length of the developed centre line from first to last node, m.
     """
@@ -92,6 +108,7 @@ class Lamellas:
     utilisation: Floats
     planarity: Floats
     stop_stations: Floats
+    layer_stations: Floats
     developed_lengths: Floats
 
 
@@ -99,6 +116,29 @@ def twisted_strip(network: Network, height: float) -> tuple[Floats, Floats]:
     """Lower and upper edge of the strips along the surface normals, c -+ h/2 n, m, each (k, 3)."""
     reach = height / 2 * network.sample_normals
     return network.sample_points - reach, network.sample_points + reach
+
+
+def _along(network: Network, strain: Floats) -> Floats:
+    """Integral of a strain given at the samples from each lamella's start to its nodes, m, (q,).
+
+    Trapezia, whose samples are near-equal arcs a small part of a cell long.
+    """
+    growth = np.append(0.0, (strain[1:] + strain[:-1]) / 2 * np.diff(network.sample_arclengths))
+    growth[network.sample_offsets[:-1]] = 0.0
+    total = np.cumsum(growth)
+    start = network.sample_offsets[network.stop_owner]
+    return np.asarray(total[start + network.stop_samples] - total[start])
+
+
+def layer_drift(network: Network) -> Floats:
+    """Turn of each lamella's tangent to the side, max - min of the integral of kg ds over its nodes, (m,).
+
+    Times the distance of two layers this is what their node marks would have to shift along each other, from one end
+    of the lamella to the other, where both are cut alike.
+    """
+    turn = _along(network, network.sample_darboux.kg)
+    starts = network.stop_offsets[:-1]
+    return np.asarray(np.maximum.reduceat(turn, starts) - np.minimum.reduceat(turn, starts))
 
 
 def make_lamellas(network: Network, section: Section, material: Material) -> Lamellas:
@@ -129,15 +169,12 @@ def make_lamellas(network: Network, section: Section, material: Material) -> Lam
 
     stations = network.stop_arclengths
     if not held:
-        # trapezia of the strain, whose samples are near-equal arcs a small part of a cell long
-        strain = shortening(section.height, tg)
-        step = np.diff(network.sample_arclengths, prepend=0.0)
-        growth = np.append(0.0, (strain[1:] + strain[:-1]) / 2) * step
-        growth[network.sample_offsets[:-1]] = 0.0
-        total = np.cumsum(growth)
-        owner = np.repeat(np.arange(len(network.ids)), np.diff(network.stop_offsets))
-        start = network.sample_offsets[owner]
-        stations = stations + total[start + network.stop_samples] - total[start]
+        stations = stations + _along(network, shortening(section.height, tg))
+    layers = np.tile(stations, (section.layers, 1))
+    if section.layer_lengths == "own":
+        d = section.layer_offsets[:, None]
+        stretch = np.sqrt((1 - d * kg) ** 2 + (d * tg) ** 2) - 1
+        layers = layers + np.stack([_along(network, strain) for strain in stretch])
     return Lamellas(
         section,
         s.bending,
@@ -149,5 +186,6 @@ def make_lamellas(network: Network, section: Section, material: Material) -> Lam
         s.utilisation,
         planarity,
         stations,
+        layers,
         stations[network.stop_offsets[1:] - 1],
     )

@@ -76,11 +76,11 @@ def surface_mesh(surface: ClosedForm, tolerance: float = 1e-3, limit: int = 400)
     long_u = np.linalg.norm(np.diff(grid, axis=0), axis=2).sum(0).max()
     long_v = np.linalg.norm(np.diff(grid, axis=1, append=grid[:, :1]), axis=2).sum(1).max()
     rows, columns = (int(np.clip(np.ceil(long / edge), 24, limit)) for long in (long_u, long_v))
-    where, faces = places(surface, rows, columns)
+    # a multiple of 4, so that bodies of revolution have their full width along x and y
+    where, faces = places(surface, rows, 4 * -(-columns // 4))
     at = surface.at(where)
     k1, k2 = at.principal_curvatures
-    mean = np.trace(at.shape_operator, axis1=1, axis2=2) / 2
-    return SurfaceMesh(at.position, at.normal, faces, mean, k1 * k2, k1, k2)
+    return SurfaceMesh(at.position, at.normal, faces, at.mean_curvature, k1 * k2, k1, k2)
 
 
 def measured_mean_curvature(surface: ClosedForm, where: Complexes, step: float = 1e-3) -> NDArray[np.float64]:
