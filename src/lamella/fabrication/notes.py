@@ -53,7 +53,8 @@ class Notes:
             reasons = []
             if self.too_long:
                 longest = f"the longest has {max(self.too_long):.3f} m"
-                reasons.append(f"{len(self.too_long)} do not fit the sheet of {sheet} ({longest})")
+                arcs = f" as arcs of radius {1 / abs(rules.curvature):.3g} m" if rules.curvature else ""
+                reasons.append(f"{len(self.too_long)} do not fit the sheet of {sheet}{arcs} ({longest})")
             if self.too_round:
                 reasons.append(f"{self.too_round} turn through more than 1.9 pi and would overlap themselves")
             yield (
