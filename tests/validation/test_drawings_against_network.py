@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from conftest import load
+from lamella.fabrication import read_slots
 
 SURFACES = [
     {"kind": "unduloid", "neck_radius": 1.1, "bulge_radius": 2.3, "height": [-1.3, 2.2]},
@@ -29,6 +30,19 @@ def _feet(entity, width, half_height):
     return (p + np.roll(p, -1, 0))[foot] / 2
 
 
+def _crossings(network):
+    """Which of each lamella's nodes are crossings with slots."""
+    kinds = [node["kind"] for node in network["nodes"]]
+    families = {}
+    for item in network["lamellas"]:
+        for node in item["nodes"]:
+            families.setdefault(node, set()).add(item["family"])
+    return {
+        item["id"]: [len(families[n]) == 2 and kinds[n] != "singular" for n in item["nodes"]]
+        for item in network["lamellas"]
+    }
+
+
 @pytest.mark.parametrize("surface", SURFACES, ids=lambda s: s["kind"])
 @pytest.mark.parametrize("layers", [1, 2])
 def test_slot_distances_are_the_arc_lengths(run, surface, layers):
@@ -36,15 +50,8 @@ def test_slot_distances_are_the_arc_lengths(run, surface, layers):
     folder = run(surface=surface, network={"cells": 18}, lamella=lamella)
     network = load(folder, "network.json")
     curvature = network["surface"]["mean_curvature"] / 1000
-    kinds = [node["kind"] for node in network["nodes"]]
-    families = {}
-    for item in network["lamellas"]:
-        for node in item["nodes"]:
-            families.setdefault(node, set()).add(item["family"])
-    told = {}
-    for item in network["lamellas"]:
-        crossing = [len(families[n]) == 2 and kinds[n] != "singular" for n in item["nodes"]]
-        told[item["id"]] = np.array(item["node_arclengths"])[crossing] * 1000
+    crossing = _crossings(network)
+    told = {item["id"]: np.array(item["node_arclengths"])[crossing[item["id"]]] * 1000 for item in network["lamellas"]}
     compared = 0
     for family in "AB":
         drawing = ezdxf.readfile(folder / "fabrication" / f"{family}.dxf")
@@ -70,6 +77,33 @@ def test_slot_distances_are_the_arc_lengths(run, surface, layers):
                 at += len(feet) // layers
             assert at == len(told[name])
     assert compared > 100
+
+
+@pytest.mark.parametrize("surface", SURFACES, ids=lambda s: s["kind"])
+def test_layers_of_their_own_have_their_own_distances(run, surface):
+    """Slots of every layer's part against lamellas.json; their mean over the two layers is the centre line's."""
+    lamella = {"layers": 2, "height": 0.08, "thickness": 0.001, "layer_lengths": "own"}
+    folder = run(surface=surface, network={"cells": 18}, lamella=lamella)
+    told = {item["id"]: item for item in load(folder, "lamellas.json")["lamellas"]}
+    crossing = _crossings(load(folder, "network.json"))
+    compared = 0
+    for family in "AB":
+        found = read_slots(folder / "fabrication" / f"{family}.dxf")
+        assert {name[: len(name.partition(".")[0]) - 1] for name in found} == {n for n in told if n[0] == family}
+        for name, reading in found.items():
+            whole, _, piece = name.partition(".")
+            if piece:
+                continue
+            layer = "ab".index(whole[-1])
+            stations = np.array(told[whole[:-1]]["layer_node_stations"][layer]) * 1000
+            between = np.diff((reading.slots[::2] + reading.slots[1::2]) / 2)
+            np.testing.assert_allclose(between, np.diff(stations[crossing[whole[:-1]]]), atol=0.01)
+            compared += len(between)
+    assert compared > 50
+    for item in told.values():
+        mean = np.mean(item["layer_node_stations"], axis=0)
+        # second order in d: (d tg)^2 / 2 of the length
+        np.testing.assert_allclose(mean, item["node_stations"], rtol=1e-3, atol=1e-9)
 
 
 def test_schedule_adds_up(run):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from pathlib import Path
 
+import numpy as np
 import orjson
 
 from lamella.files.text import require_finite
@@ -56,6 +57,7 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
                 "developed_length": float(lamellas.developed_lengths[i]),
                 "nodes": network.stop_nodes[stops[i] : stops[i + 1]],
                 "node_stations": lamellas.stop_stations[stops[i] : stops[i + 1]],
+                "layer_node_stations": np.ascontiguousarray(lamellas.layer_stations[:, stops[i] : stops[i + 1]]),
             }
             | {key: values[samples[i] : samples[i + 1]] for key, values in along.items()}
             for i, lamella in enumerate(network.ids)
