@@ -7,11 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.errors import InputError
+from lamella.network.arcs import ArcLengths, Segments
 from lamella.network.domain import Lines, domain_of
+from lamella.network.lattice import build_lattice
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.umbilic import refuse_umbilic
 
 LEAST_CELLS = 3
+# nets of up to so many nodes are tried out to meet a spacing; in larger ones the rim weighs little
+MOST_TRIED = 20_000
 # cells of the coarse net from which densities are judged
 TRIAL = 48
 # a net of this many nodes takes a few minutes to compute and write
@@ -65,6 +69,26 @@ def _median_edge(surface: ClosedForm, whole: float, lines: Lines) -> float:
     return float(edge[order][np.searchsorted(share, share[-1] / 2)] / np.sqrt(2))
 
 
+def _nearest(surface: ClosedForm, whole: float, cells: int, spacing: float) -> int:
+    """The number of cells near a first guess whose net, pieces cut off by the rim included, has the nearest median."""
+    misses: dict[int, float] = {}
+
+    def miss(count: int) -> float:
+        if count not in misses:
+            domain = domain_of(surface, whole / count)
+            lines = domain.lines()
+            lines = lines.take(lines.end > lines.start)
+            length = ArcLengths(Segments(domain, build_lattice(domain, lines))).length
+            misses[count] = abs(float(np.median(length)) - spacing) if len(length) else np.inf
+        return misses[count]
+
+    while True:
+        best = min((n for n in (cells - 1, cells, cells + 1) if n >= LEAST_CELLS), key=lambda n: (miss(n), n != cells))
+        if best == cells:
+            return cells
+        cells = best
+
+
 def _round(number: float) -> str:
     return f"{number:,.0f}" if number < 1e12 else f"{number:.3g}"
 
@@ -113,6 +137,9 @@ def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: fl
                 f"choose a spacing of at most {whole * median / LEAST_CELLS:.3g} m",
                 key,
             )
+        area, ends = _estimate(lines)
+        if area * cells**2 + ends * cells < MOST_TRIED:
+            cells = _nearest(surface, whole, cells, spacing)
     assert cells is not None
     if cells < LEAST_CELLS:
         raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
