@@ -71,8 +71,9 @@ def _normal_curvature(points: Floats, normals: Floats, offsets: Integers) -> tup
         first = np.clip(at - w // 2, offsets[curve[at]], offsets[curve[at] + 1] - w)
         index = first + np.arange(w)[:, None]
         d1, d2 = _derivative_weights(running[index] - running[at], at - first)
-        velocity = sum(d1[i, :, None] * points[index[i]] for i in range(w))
-        acceleration = sum(d2[i, :, None] * points[index[i]] for i in range(w))
+        stencil = points[index]
+        velocity = np.einsum("wk,wkc->kc", d1, stencil)
+        acceleration = np.einsum("wk,wkc->kc", d2, stencil)
         speed2 = np.einsum("ij,ij->i", velocity, velocity)
         kn[at] = np.einsum("ij,ij->i", acceleration, normals[at]) / speed2
         kappa[at] = np.linalg.norm(np.cross(velocity, acceleration), axis=1) / speed2**1.5
