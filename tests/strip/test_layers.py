@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lamella import Catenoid, Helicoid, Section, Unduloid, find_material, make_lamellas, make_network, make_parts
+from lamella.fabrication.stroke_font import GLYPHS
 from lamella.strip.lamellas import layer_drift
 
 STEEL = find_material("1.4301")
@@ -49,7 +50,9 @@ def test_own_layers_are_parts_of_their_own():
     network = make_network(Catenoid(2.0, (-1.5, 2.0)), cells=24)
     lamellas = make_lamellas(network, Section(layers=2, layer_lengths="own"), STEEL)
     parts = make_parts(network, lamellas, density=7900.0)
-    assert [part.id for part in parts.parts[:4]] == ["A1a", "A1b", "A2a", "A2b"]
+    assert [part.id for part in parts.parts[:4]] == ["A1-1", "A1-2", "A2-1", "A2-2"]
+    # what is engraved is what the part list says: the stroke font has capitals only
+    assert all(set(part.id) <= set(GLYPHS) for part in parts.parts)
     assert {part.quantity for part in parts.parts} == {1}
     assert parts.pieces == 2 * len(network.ids)
     a, b = parts.parts[:2]

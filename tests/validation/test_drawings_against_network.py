@@ -89,15 +89,15 @@ def test_layers_of_their_own_have_their_own_distances(run, surface):
     compared = 0
     for family in "AB":
         found = read_slots(folder / "fabrication" / f"{family}.dxf")
-        assert {name[: len(name.partition(".")[0]) - 1] for name in found} == {n for n in told if n[0] == family}
+        assert {name.partition("-")[0] for name in found} == {n for n in told if n[0] == family}
         for name, reading in found.items():
             whole, _, piece = name.partition(".")
             if piece:
                 continue
-            layer = "ab".index(whole[-1])
-            stations = np.array(told[whole[:-1]]["layer_node_stations"][layer]) * 1000
+            owner, _, layer = whole.partition("-")
+            stations = np.array(told[owner]["layer_node_stations"][int(layer) - 1]) * 1000
             between = np.diff((reading.slots[::2] + reading.slots[1::2]) / 2)
-            np.testing.assert_allclose(between, np.diff(stations[crossing[whole[:-1]]]), atol=0.01)
+            np.testing.assert_allclose(between, np.diff(stations[crossing[owner]]), atol=0.01)
             compared += len(between)
     assert compared > 50
     for item in told.values():

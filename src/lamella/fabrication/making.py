@@ -111,7 +111,7 @@ def make_parts(
             stations = all_stations[stops]
             pieces = list(
                 _lamella_parts(
-                    network.ids[index] + ("abcd"[layer] if own else ""),
+                    network.ids[index] + (f"-{layer + 1}" if own else ""),
                     index,
                     str(network.families[index]),
                     bool(network.closed[index]),

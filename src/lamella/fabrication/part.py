@@ -22,7 +22,7 @@ class Part:
     Attributes
     ----------
     id : str
-        "A1", or "A1.1", "A1.2", ... for the pieces of a split lamella; "A1a", "A1b", ... where each layer is a part of
+        "A1", or "A1.1", "A1.2", ... for the pieces of a split lamella; "A1-1", "A1-2", ... where each layer is a part of
         its own.
     lamella : int
         Index of the lamella in its network.
