@@ -22,8 +22,8 @@ class Part:
     Attributes
     ----------
     id : str
-        "A1", or "A1.1", "A1.2", ... for the pieces of a split lamella; "A1-1", "A1-2", ... where each layer is a part of
-        its own.
+        "A1", or "A1.1", "A1.2", ... for the pieces of a split lamella; "A1-1", "A1-2", ... where each layer is a part
+        of its own.
     lamella : int
         Index of the lamella in its network.
     family : str
