@@ -27,7 +27,8 @@ from lamella.project import (
     project_schema,
 )
 from lamella.strip.material import MATERIALS
-from lamella.view.picture import draw, draw_part, draw_sheets
+from lamella.view.drawing_picture import draw_part, draw_sheets
+from lamella.view.picture import draw
 
 DOCS = Path(__file__).parent
 EXAMPLES = DOCS.parent / "examples"

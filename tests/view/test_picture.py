@@ -14,7 +14,7 @@ from lamella.errors import InputError
 pytest.importorskip("matplotlib")
 from PIL import Image
 
-from lamella.view import picture
+from lamella.view import drawing_picture, figure, picture
 
 SIZE = (320, 240)
 
@@ -59,8 +59,8 @@ def test_same_run_same_bytes(run: lamella.Results, drawings: Path, tmp_path: Pat
         # the user's own settings must not matter
         with matplotlib.rc_context({"lines.linewidth": 1.0 if path == "a" else 9.0, "font.size": 30}):
             picture.draw(run, tmp_path / f"{path}.png", size=SIZE)
-            picture.draw_part(drawings / "A.dxf", tmp_path / f"{path}-part.png", size=(400, 220))
-            picture.draw_sheets(drawings / "sheets.dxf", tmp_path / f"{path}-sheets.png", width=400)
+            drawing_picture.draw_part(drawings / "A.dxf", tmp_path / f"{path}-part.png", size=(400, 220))
+            drawing_picture.draw_sheets(drawings / "sheets.dxf", tmp_path / f"{path}-sheets.png", width=400)
     for kind in ("", "-part", "-sheets"):
         assert (tmp_path / f"a{kind}.png").read_bytes() == (tmp_path / f"b{kind}.png").read_bytes()
 
@@ -68,7 +68,7 @@ def test_same_run_same_bytes(run: lamella.Results, drawings: Path, tmp_path: Pat
 def test_both_families_are_shown(run: lamella.Results, tmp_path: Path) -> None:
     picture.draw(run, tmp_path / "p.png", view=(-60, 60), colour="family", size=SIZE)
     image = pixels(tmp_path / "p.png")
-    for hexadecimal in picture.FAMILIES.values():
+    for hexadecimal in figure.FAMILIES.values():
         colour = tuple(int(hexadecimal[i : i + 2], 16) for i in (1, 3, 5))
         assert near(image, colour, 60) > 300
 
@@ -106,18 +106,18 @@ def test_strips_are_drawn_at_their_true_height(run: lamella.Results) -> None:
 
 
 def test_part_shows_outline_marks_and_id(drawings: Path, tmp_path: Path) -> None:
-    picture.draw_part(drawings / "B.dxf", tmp_path / "p.png", part="B2", size=(600, 320))
+    drawing_picture.draw_part(drawings / "B.dxf", tmp_path / "p.png", part="B2", size=(600, 320))
     image = pixels(tmp_path / "p.png")
-    for hexadecimal in (picture.LAYER_COLOURS[layer] for layer in ("CUT", "MARK", "TEXT")):
+    for hexadecimal in (figure.LAYER_COLOURS[layer] for layer in ("CUT", "MARK", "TEXT")):
         colour = tuple(int(hexadecimal[i : i + 2], 16) for i in (1, 3, 5))
         assert near(image, colour, 60) > 20
     with pytest.raises(InputError, match="no part 'B999'"):
-        picture.draw_part(drawings / "B.dxf", tmp_path / "p.png", part="B999")
+        drawing_picture.draw_part(drawings / "B.dxf", tmp_path / "p.png", part="B999")
 
 
 def test_sheets_need_a_drawing_with_sheets(drawings: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds no sheets"):
-        picture.draw_sheets(drawings / "A.dxf", tmp_path / "p.png")
+        drawing_picture.draw_sheets(drawings / "A.dxf", tmp_path / "p.png")
 
 
 def test_missing_matplotlib_names_the_extra(
