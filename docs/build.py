@@ -18,17 +18,23 @@ from lamella.files.network_json import network_schema
 from lamella.pipeline import Results
 from lamella.project import (
     SURFACE_TABLES,
+    ArcTable,
+    BoundaryTable,
+    CircleTable,
     FabricationTable,
     LamellaTable,
     MaterialTable,
     NetworkTable,
+    PartTable,
     Project,
+    SlideTable,
     Table,
     project_schema,
 )
 from lamella.strip.material import MATERIALS
 from lamella.view.drawing_picture import draw_part, draw_sheets
 from lamella.view.picture import draw
+from lamella.view.surface_picture import Panel, draw_surface
 
 DOCS = Path(__file__).parent
 EXAMPLES = DOCS.parent / "examples"
@@ -45,6 +51,19 @@ VIEWS: dict[str, tuple[tuple[float, float], tuple[int, int]]] = {
     "07_hexagonal_node": ((-80, 46), (1200, 1000)),
 }
 
+# azimuth and elevation of surfaces without a network
+SURFACE_VIEWS: dict[str, tuple[float, float]] = {
+    "08_two_rings": (-60, 20),
+    "09_thin_neck": (-60, 20),
+    "10_saddle": (-25, 24),
+    "11_cap": (-60, 22),
+    "12_cushion": (-65, 30),
+    "13_oculus": (-30, 38),
+    "14_three_columns": (-65, 20),
+    "15_vault": (-52, 24),
+    "16_hall": (-52, 24),
+}
+
 ABOUT: dict[str, str] = {
     "01_unduloid": "A tube of constant mean curvature with its neck at mid-height. Every lamella is cut as an arc of "
     "one radius, 1/H. The arcs are too long for the sheet, so each lamella is split once.",
@@ -59,6 +78,34 @@ ABOUT: dict[str, str] = {
     "rim; there is no hole it would have to close around.",
     "07_hexagonal_node": "Enneper's surface of order 3, a monkey saddle. Its flat point is a hexagonal node: three A "
     "and three B rays end there, 60 degrees apart.",
+    "08_two_rings": "Two equal rings 1.2 radii apart and the soap film between them. Its neck radius c solves "
+    "R = c cosh(d / 2c); beyond 1.3255 radii there is no film, and the run says so.",
+    "09_thin_neck": "The other root of the same equation: a catenoid with a thin neck, in equilibrium but unstable. A "
+    "soap film would leave it; a net of stiff lamellas need not.",
+    "10_saddle": "Four straight beams, edges of a regular tetrahedron, two corners on the ground. The film is "
+    "Schwarz's quadrilateral; its area is known by elliptic integrals. The corners of the polyline are kept.",
+    "11_cap": "A dome over a ring beam: a spherical cap of radius 1/H. It shows form finding with pressure. On a "
+    "sphere every point is umbilic, so this surface has no net of lamellas.",
+    "12_cushion": "An inflated roof over a free-form rim. The volume below it is given, the mean curvature follows. "
+    "The pull of the film along the rim balances the pressure: the integral of the conormal is 2 H times the rim's "
+    "vector area.",
+    "13_oculus": "A pavilion of 12 x 9 m: the film between a saddle-shaped rim and a ring. Two points on its plane of "
+    "symmetry have H^2 = K: there the net will have hexagonal nodes.",
+    "14_three_columns": "A canopy drawn down to the rings of three columns: a disc with three holes. A looser "
+    "tolerance halves the number of nodes.",
+    "15_vault": "A film between two arches. Its other two edges are not drawn: they slide on the ground and meet it "
+    "at 90 degrees, as half of a catenoid does.",
+    "16_hall": "A coarse triangle mesh of an arched hall, its vertices off by a millimetre: the surface of constant "
+    "mean curvature it means is a piece of an unduloid.",
+}
+
+# tables inside the tables of a boundary, by their keys
+INNER_TABLES: dict[str, type[Table]] = {
+    "[[surface.boundary]]": BoundaryTable,
+    "[[surface.boundary.part]]": PartTable,
+    "circle = {...}": CircleTable,
+    "arc = {...}": ArcTable,
+    "slide = {...}": SlideTable,
 }
 
 
@@ -76,11 +123,16 @@ def project_file_page() -> str:
         "## Top level\n",
         _table_of({"name": Project.model_fields["name"]}, Project),
         "## `[surface]`\n",
-        "`kind` chooses the surface; the other keys depend on it. The surface normal is the one for which H >= 0.\n",
+        "`kind` chooses the surface; the other keys depend on it. The normal of a closed form is the one for which H "
+        ">= 0; that of a form-found surface follows its outer loop by the right-hand rule, that of a mesh its faces.\n",
     ]
     for kind, model in SURFACE_TABLES.items():
         fields = {key: field for key, field in model.model_fields.items() if key != "kind"}
         parts += [f'### `kind = "{kind}"`\n', f"{model.__doc__}\n", _table_of(fields, model)]
+        if kind == "form-found":
+            for name, inner in INNER_TABLES.items():
+                about = " ".join((inner.__doc__ or "").split())
+                parts += [f"#### `{name}`\n", f"{about}\n", _table_of(inner.model_fields, inner)]
     for name, model in (("network", NetworkTable), ("lamella", LamellaTable), ("fabrication", FabricationTable)):
         parts += [f"## `[{name}]`\n", f"{model.__doc__}\n", _table_of(model.model_fields, model)]
     parts += [
@@ -115,13 +167,24 @@ def _value(value: object) -> str:
 
 
 def _type(choices: list[dict[str, Any]]) -> str:
-    names = {"number": "number", "integer": "whole number", "string": "text", "array": "two numbers"}
-    for schema in choices:
-        if "enum" in schema:
-            return " or ".join(f'`"{word}"`' for word in schema["enum"])
-        if schema.get("type") in names:
-            return names[schema["type"]]
-    return ""
+    """What a key holds: of several choices all that are no null."""
+    return " or ".join(filter(None, map(_type_of, choices)))
+
+
+def _type_of(schema: dict[str, Any]) -> str:
+    names = {"number": "number", "integer": "whole number", "string": "text"}
+    counts = {2: "two numbers", 3: "three numbers"}
+    if "enum" in schema:
+        return " or ".join(f'`"{word}"`' for word in schema["enum"])
+    if "const" in schema:
+        return f'`"{schema["const"]}"`'
+    if "$ref" in schema:
+        return "table"
+    if schema.get("type") == "array":
+        if "prefixItems" in schema:
+            return counts[len(schema["prefixItems"])]
+        return "list of points" if schema["items"].get("type") == "array" else "list of tables"
+    return names.get(schema.get("type", ""), "")
 
 
 def _range(choices: list[dict[str, Any]]) -> str:
@@ -148,14 +211,16 @@ def examples_page(results: dict[str, Results]) -> str:
         GENERATED,
         "# Examples\n",
         "They are part of the program: `lamella examples` lists them, `lamella examples --copy DIR` copies them. "
-        "The figures below are those of each run's summary.json, the pictures are drawn from the run with "
-        "`lamella.view.picture.draw`: strips at their true height, coloured by utilisation.\n",
+        "The figures below are those of each run's summary.json, the pictures are drawn from the run: with "
+        "`lamella.view.picture.draw`, strips at their true height, coloured by utilisation; surfaces that are found "
+        "with `lamella.view.surface_picture.draw_surface`, with their curved triangles and coloured by the Gaussian "
+        "curvature.\n",
     ]
     for name, run in results.items():
         title = str(run.project.name)
         parts += [f"## {title}\n", f"`examples/{name}.toml`. {ABOUT[name]}\n", f"![{title}](pictures/{name}.png)\n"]
         parts += ["| figure | value |", "|---|---|", *_figures(run.summary), ""]
-        warnings = run.summary["warnings"]
+        warnings = [warning for warning in run.summary["warnings"] if "is not part of version" not in warning]
         if warnings:
             parts += ["What the run warns about:\n", *[f"- {warning}" for warning in warnings], ""]
     return "\n".join(parts)
@@ -163,6 +228,9 @@ def examples_page(results: dict[str, Results]) -> str:
 
 def _figures(summary: dict[str, Any]) -> Iterator[str]:
     s, n, m, f = (summary[stage] for stage in ("surface", "network", "lamellas", "fabrication"))
+    if n is None:
+        yield from _found_figures(s)
+        return
     radius = f", radius of the strips {1 / s['mean_curvature']:.4g} m" if s["mean_curvature"] else ", straight strips"
     yield f"| mean curvature | {s['mean_curvature']:.4g} 1/m{radius} |"
     yield f"| area | {s['area']:.4g} m2 |"
@@ -181,10 +249,25 @@ def _figures(summary: dict[str, Any]) -> Iterator[str]:
     yield f"| parts, mass, sheets | {f['parts']} parts, {mass}, {f['sheets']} sheets |"
 
 
+def _found_figures(s: dict[str, Any]) -> Iterator[str]:
+    yield f"| mean curvature | {s['mean_curvature']:.4g} 1/m |"
+    deviation = f"{s['mean_curvature_deviation']:.1e} (tolerance {s['tolerance']:g})"
+    yield f"| largest deviation from it, over the curvature scale {s['curvature_scale']:.3g} 1/m | {deviation} |"
+    yield f"| area | {s['area']:.4g} m2 |"
+    if s["mean_curvature"]:
+        yield f"| volume, with lids over the loops | {s['volume']:.4g} m3 |"
+    yield f"| lowest Jacobi eigenvalue | {s['jacobi_eigenvalue']:.3g} 1/m2: {s['stability']} |"
+    yield f"| elements | {s['elements']:,} curved triangles of order {s['order']}, {s['surface_nodes']:,} nodes |"
+    way = "on the whole path" if s["continuation"] else "from the start"
+    yield f"| Newton steps | {s['newton_steps']} {way} |"
+    if "distance_max" in s:
+        yield f"| distance from the mesh, typical / largest | {s['distance_rms']:.2g} / {s['distance_max']:.2g} m |"
+
+
 def run_examples() -> dict[str, Results]:
     """All examples, computed."""
     names = [name.removesuffix(".toml") for name, _ in list_examples()]
-    return {name: compute(read_project(EXAMPLES / f"{name}.toml")) for name in names}
+    return {name: compute(read_project(EXAMPLES / f"{name}.toml"), folder=EXAMPLES) for name in names}
 
 
 def pages(results: dict[str, Results]) -> dict[str, str]:
@@ -200,8 +283,13 @@ def pages(results: dict[str, Results]) -> dict[str, str]:
 def make_pictures(results: dict[str, Results], folder: Path) -> None:
     """Pictures of all examples, and of one part and two sheets as written for the laser."""
     for name, run in results.items():
-        view, size = VIEWS[name]
         print(f"picture {name}")
+        if name in SURFACE_VIEWS:
+            # on a sphere K is the same everywhere
+            panels: tuple[Panel, ...] = ("shade",) if name == "11_cap" else ("shade", "K")
+            draw_surface(run, folder / f"{name}.png", view=SURFACE_VIEWS[name], panels=panels)
+            continue
+        view, size = VIEWS[name]
         draw(run, folder / f"{name}.png", view=view, size=size)
     with tempfile.TemporaryDirectory() as temporary:
         target = Path(temporary) / "run"

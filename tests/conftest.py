@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +14,30 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from lamella import Catenoid, Cylinder, Enneper, Helicoid, Nodoid, Scherk, Unduloid, compute, parse_project, write
+from lamella import (
+    Catenoid,
+    Cylinder,
+    Enneper,
+    Helicoid,
+    Nodoid,
+    Results,
+    Scherk,
+    Unduloid,
+    compute,
+    parse_project,
+    read_project,
+    write,
+)
 from lamella.surface.closed_form import ClosedForm
 
+EXAMPLES = Path(__file__).parents[1] / "examples"
 KINDS = ("unduloid", "nodoid", "catenoid", "cylinder", "helicoid", "enneper", "enneper3", "scherk")
+
+
+@cache
+def run_of_example(name: str) -> Results:
+    """An example's run, computed once for all tests."""
+    return compute(read_project(EXAMPLES / f"{name}.toml"), folder=EXAMPLES)
 
 
 def draw_surface(kind: str, rng: np.random.Generator) -> ClosedForm:
@@ -51,9 +72,7 @@ def _range(rng: np.random.Generator, reach: float) -> tuple[float, float]:
 
 def draw_places(surface: ClosedForm, rng: np.random.Generator, count: int = 40) -> np.ndarray:
     """Random places well inside a surface, away from a singular node."""
-    from lamella.surface.sampling import places
-
-    where, _ = places(surface, 15, 15)
+    where, _ = surface.places(15, 15)
     inner = where[rng.integers(0, len(where), 4 * count)] * 0.9
     return inner[np.abs(inner) > 0.1][:count]
 

@@ -13,8 +13,9 @@ import tomli_w
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from conftest import run_of_example
 from lamella import InputError, parse_project, read_project
-from lamella.pipeline import compute, plan
+from lamella.pipeline import plan
 from lamella.project import MATERIALS, SURFACE_TABLES, FabricationTable, LamellaTable, NetworkTable, project_schema
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
@@ -127,7 +128,7 @@ def test_any_bytes_are_read_or_refused_readably(
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_defaults_filled_in_read_back_the_same(path: Path) -> None:
     given = read_project(path)
-    project = compute(given, until="surface").project
+    project = run_of_example(path.stem).project
     full = tomllib.loads(project.to_toml())
     again = parse_project(full)
     assert again.to_toml() == project.to_toml()

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from lamella.network.network import Network as Network
     from lamella.pipeline import Results as Results
     from lamella.pipeline import compute as compute
+    from lamella.pipeline import make_surface as make_surface
     from lamella.pipeline import run as run
     from lamella.pipeline import write as write
     from lamella.project import Project as Project
@@ -41,13 +42,17 @@ if TYPE_CHECKING:
     from lamella.strip.lamellas import make_lamellas as make_lamellas
     from lamella.strip.material import Material as Material
     from lamella.strip.material import find_material as find_material
+    from lamella.surface.boundary import Loop as Loop
+    from lamella.surface.boundary import make_loop as make_loop
     from lamella.surface.catenoid import Catenoid as Catenoid
     from lamella.surface.cylinder import Cylinder as Cylinder
     from lamella.surface.delaunay import Nodoid as Nodoid
     from lamella.surface.delaunay import Unduloid as Unduloid
+    from lamella.surface.element.places import Places as Places
+    from lamella.surface.element.surface import ElementSurface as ElementSurface
     from lamella.surface.enneper import Enneper as Enneper
+    from lamella.surface.found.find import find_film as find_film
     from lamella.surface.helicoid import Helicoid as Helicoid
-    from lamella.surface.sampling import surface_mesh as surface_mesh
     from lamella.surface.scherk import Scherk as Scherk
 
 # imported on first use: `lamella --help` must not wait for scipy
@@ -59,6 +64,7 @@ _HOMES = {
     "Network": "network.network",
     "Results": "pipeline",
     "compute": "pipeline",
+    "make_surface": "pipeline",
     "run": "pipeline",
     "write": "pipeline",
     "Project": "project",
@@ -69,13 +75,17 @@ _HOMES = {
     "make_lamellas": "strip.lamellas",
     "Material": "strip.material",
     "find_material": "strip.material",
+    "Loop": "surface.boundary",
+    "make_loop": "surface.boundary",
     "Catenoid": "surface.catenoid",
     "Cylinder": "surface.cylinder",
     "Nodoid": "surface.delaunay",
     "Unduloid": "surface.delaunay",
+    "Places": "surface.element.places",
+    "ElementSurface": "surface.element.surface",
     "Enneper": "surface.enneper",
+    "find_film": "surface.found.find",
     "Helicoid": "surface.helicoid",
-    "surface_mesh": "surface.sampling",
     "Scherk": "surface.scherk",
 }
 

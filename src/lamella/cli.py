@@ -9,7 +9,7 @@ import io
 import os
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import FrameType
 from typing import NoReturn
@@ -23,6 +23,7 @@ the flat strips with every slot marked, the drawings for the laser and the stres
 twisting leave in the strips.
 
   lamella new unduloid            write a commented starter project, unduloid.toml
+  lamella new form-found          the same for a film between boundary curves of your own
   lamella run unduloid.toml       compute it and write the folder out/unduloid
   lamella check unduloid.toml     only look for mistakes
 
@@ -48,22 +49,34 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=plain,
         description="Compute a project and write its folder, whole or not at all.\n\n"
         "stages and what they write:\n"
-        "  surface      summary.json, project.toml, surface.obj, surface.ply, report.html\n"
+        "  surface      summary.json, project.toml, surface.obj, surface.ply, report.html,\n"
+        "               surface.3dm of surfaces that are found\n"
         "  network      + network.json, network.obj, nodes.csv, model.3dm\n"
         "  lamellas     + lamellas.json, strips in model.3dm\n"
         "  fabrication  + fabrication/*.dxf, fabrication/schedule.csv",
     )
     run.add_argument("project", type=Path, help="project file (.toml); see `lamella new`")
     run.add_argument("--out", type=Path, metavar="DIR", help="folder to write (default: out/<project file's stem>)")
-    run.add_argument("--until", metavar="STAGE", default="fabrication", help="last stage (default: %(default)s)")
-    run.add_argument("--quiet", action="store_true", help="print nothing but warnings and errors")
+    run.add_argument("--until", metavar="STAGE", help="last stage (default: as far as this kind of surface goes)")
+    loudness = run.add_mutually_exclusive_group()
+    loudness.add_argument("--quiet", action="store_true", help="print nothing but warnings and errors")
+    _add_verbose(loudness)
 
     new = commands.add_parser("new", help="write a commented starter project")
-    new.add_argument("kind", help="surface: unduloid, nodoid, catenoid, cylinder, helicoid, enneper or scherk")
+    new.add_argument(
+        "kind",
+        help="surface: unduloid, nodoid, catenoid, cylinder, helicoid, enneper, scherk, form-found or mesh",
+    )
     new.add_argument("--out", type=Path, metavar="FILE", help="file to write (default: <kind>.toml; - for the screen)")
 
-    check = commands.add_parser("check", help="look for mistakes in a project without running it")
+    check = commands.add_parser(
+        "check",
+        help="look for mistakes in a project without running it",
+        description="Look for mistakes in a project and tell the size of its net; nothing is written. A surface that "
+        "is no closed form is found as in a run, which tells whether there is one.",
+    )
     check.add_argument("project", type=Path, help="project file (.toml)")
+    _add_verbose(check)
 
     examples = commands.add_parser("examples", help="list the examples, or copy them")
     examples.add_argument("names", nargs="*", metavar="NAME", help="with --copy: the examples to copy (default: all)")
@@ -74,8 +87,24 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _add_verbose(parser: argparse._ActionsContainer) -> None:
+    parser.add_argument(
+        "-v", "--verbose", action="store_true", help="print details too, such as each step towards a surface"
+    )
+
+
 def _say(message: str) -> None:
     print(message, file=sys.stderr, flush=True)
+
+
+def _progress(arguments: argparse.Namespace) -> Callable[[str], None]:
+    """What to do with lines of progress; those indented by four spaces are details."""
+
+    def tell(message: str) -> None:
+        if arguments.verbose or not message.startswith("    "):
+            _say(message)
+
+    return tell
 
 
 def _run(arguments: argparse.Namespace) -> None:
@@ -86,7 +115,7 @@ def _run(arguments: argparse.Namespace) -> None:
         arguments.project,
         out=arguments.out,
         until=arguments.until,
-        progress=(lambda message: None) if quiet else _say,
+        progress=(lambda message: None) if quiet else _progress(arguments),
         warn=lambda message: _say(f"warning: {message}"),
     )
     if not quiet:
@@ -99,13 +128,11 @@ def _check(arguments: argparse.Namespace) -> None:
 
     project = read_project(arguments.project)
     try:
-        surface, density = plan(project)
+        surface, density = plan(project, folder=arguments.project.parent, progress=_progress(arguments))
     except InputError as error:
         raise located(error, arguments.project) from None
-    print(
-        f"{arguments.project}: a good project. {surface.kind}, H = {surface.mean_curvature:.6g} 1/m, "
-        f"{density.cells} cells, about {density.estimated_nodes:,} nodes"
-    )
+    net = f", {density.cells} cells, about {density.estimated_nodes:,} nodes" if density else ""
+    print(f"{arguments.project}: a good project. {surface.kind}, H = {surface.mean_curvature:.6g} 1/m{net}")
 
 
 def _new(arguments: argparse.Namespace) -> None:

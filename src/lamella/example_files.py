@@ -23,6 +23,12 @@ def _all() -> dict[str, Traversable]:
     }
 
 
+def _beside(name: str) -> list[str]:
+    """Files that go with an example: those of its name with another ending."""
+    stem = name.removesuffix(".toml")
+    return sorted(item.name for item in _folder().iterdir() if Path(item.name).stem == stem and item.name != name)
+
+
 def list_examples() -> list[tuple[str, str]]:
     """File name and first comment line of every example."""
     return [(name, item.read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")) for name, item in _all().items()]
@@ -38,13 +44,16 @@ def copy_examples(names: list[str], target: Path) -> list[Path]:
     """
     known = _all()
     wanted = [name if name.endswith(".toml") else f"{name}.toml" for name in names] or list(known)
-    for name in wanted:
+    for name in wanted.copy():
         if name not in known:
-            near = get_close_matches(name, known, 1, 0.6)
+            near = get_close_matches(Path(name).stem, [Path(one).stem for one in known], 1, 0.6)
             raise InputError(
-                f"no example {name[:80]!r}" + (f", did you mean {near[0]!r}?" if near else ""),
+                f"no example {name[:80]!r}" + (f", did you mean {near[0] + '.toml'!r}?" if near else ""),
                 f"there are {', '.join(known)}",
             )
+        wanted += _beside(name)
+    known = {item.name: item for item in _folder().iterdir()}
+    for name in wanted:
         if (target / name).exists():
             raise InputError(f"{target / name} is there already", "name another folder with --copy")
     if target.exists() and not target.is_dir():

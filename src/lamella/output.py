@@ -13,12 +13,22 @@ from lamella.files.mesh_files import write_network_obj, write_surface_obj, write
 from lamella.files.model_3dm import write_model
 from lamella.files.network_json import write_network
 from lamella.files.nodes_csv import write_nodes_csv
+from lamella.files.surface_3dm import write_surface_3dm
 from lamella.files.text import one_line
 from lamella.files.whole import write_whole
+from lamella.project_file import moved
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.mesh import SurfaceMesh
 from lamella.view.report import ReportData, write_report
 
 if TYPE_CHECKING:
     from lamella.pipeline import Results
+
+COARSE_MESH = 7_500
+"""Vertices below which the report's mesh of a surface of curved elements is made anew, with `REPORT_SAG`."""
+
+REPORT_SAG = 2.5e-4
+"""A quarter of what the files' mesh has, over the diagonal of the bounding box: four times the vertices."""
 
 
 def write_files(results: Results, folder: Path, *, progress: Callable[[str], None]) -> None:
@@ -39,9 +49,11 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
         write(folder / file, *content, **more)
 
     heading = f"# {one_line(project.name)}, all defaults filled in by lamella {__version__}\n"
-    put("project.toml", write_whole, (heading + project.to_toml()).encode())
+    put("project.toml", write_whole, (heading + moved(project, results.folder, folder).to_toml()).encode())
     put("surface.obj", write_surface_obj, results.mesh, **signed)
     put("surface.ply", write_surface_ply, results.mesh, **signed)
+    if isinstance(results.surface, ElementSurface):
+        put("surface.3dm", write_surface_3dm, results.surface, **signed)
     if network:
         put("network.json", write_network, network, **signed)
         put("network.obj", write_network_obj, network, **signed)
@@ -65,11 +77,19 @@ def report_data(results: Results) -> ReportData:
         kind=results.surface.kind,
         figures=tuple(_figures(results.summary)),
         warnings=tuple(results.summary["warnings"]),
-        surface=results.mesh,
+        surface=_report_mesh(results),
+        mean_curvature=results.surface.mean_curvature,
         network=results.network,
         lamellas=results.lamellas,
         material=results.project.lamella.material,
     )
+
+
+def _report_mesh(results: Results) -> SurfaceMesh:
+    """The mesh of the report: finer than the files' where that is coarse, so that curved rims look curved."""
+    if isinstance(results.surface, ElementSurface) and len(results.mesh.points) < COARSE_MESH:
+        return results.surface.mesh(REPORT_SAG)
+    return results.mesh
 
 
 def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
@@ -80,11 +100,16 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
         figures.append((section, label, format(value * scale if scale != 1 else value, form), unit))
 
     s, n, m, f = (summary[stage] for stage in ("surface", "network", "lamellas", "fabrication"))
-    add("Surface", "Mean curvature H", s["mean_curvature"], "1/m")
+    add("Surface", "Mean curvature H0", s["mean_curvature"], "1/m")
+    add("Surface", "|H − H0|, at check places", s["mean_curvature_deviation_max"], "1/m", form=".2g")
     add("Surface", "Area", s["area"], "m²")
     figures.append(("Surface", "Size", " × ".join(f"{x:.3g}" for x in s["size"]), "m"))
     add("Surface", "Largest k1", s["k1_max"], "1/m")
     add("Surface", "Smallest k2", s["k2_min"], "1/m")
+    if s["stability"]:
+        figures.append(("Surface", "Stability", str(s["stability"]), ""))
+    if "elements" in s:
+        figures.append(("Surface", "Curved triangles", f"{s['elements']:,} of order {s['order']}", ""))
     if n:
         add("Network", "Lamellas", n["lamellas"], form=",")
         add("Network", "Nodes", n["nodes"], form=",")

@@ -22,11 +22,13 @@ from lamella.strip.lamellas import Lamellas, Section, make_lamellas
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.closed_forms import CLOSED_FORMS
 from lamella.surface.mesh import SurfaceMesh
-from lamella.surface.sampling import surface_mesh
+from lamella.surface.surface import Surface
 
 STAGES = ("surface", "network", "lamellas", "fabrication", "structure")
 LAST_STAGE = "fabrication"
 
+# Is told what is being done, a line at a time and before it is done: stages without indent, what they do below two
+# spaces, details below four (Newton steps, say; the command line shows those with --verbose only).
 Progress = Callable[[str], None]
 
 
@@ -42,7 +44,7 @@ class Results:
     ----------
     project : Project
         With all defaults filled in.
-    surface : ClosedForm
+    surface : Surface
     mesh : SurfaceMesh
         The surface sampled for files and pictures.
     network : Network or None
@@ -51,16 +53,19 @@ class Results:
     nesting : Nesting or None
     summary : dict
         The content of summary.json, without the time spent on files.
+    folder : Path
+        Where the files the project names were looked for.
     """
 
     project: Project
-    surface: ClosedForm
+    surface: Surface[Any]
     mesh: SurfaceMesh
     network: Network | None
     lamellas: Lamellas | None
     parts: Parts | None
     nesting: Nesting | None
     summary: dict[str, Any] = field(repr=False)
+    folder: Path = Path()
 
 
 class _Clock:
@@ -79,27 +84,90 @@ class _Clock:
         self._progress(f"  {result} ({self.seconds[stage]:.2f} s)")
 
 
-def make_surface(project: Project) -> ClosedForm:
-    """The surface a project describes.
+# Surfaces whose network is not part of this version, as a message names them: a run of theirs ends with the surface.
+# Whoever brings the network takes them out here; nothing else knows of this.
+_WITHOUT_NETWORK = {"form-found": "form-found surfaces", "mesh": "surfaces from meshes"}
+
+
+def _reach(project: Project, until: str | None) -> tuple[int, tuple[str, ...]]:
+    """Index of a run's last stage, and what to tell where it ends earlier than others do.
 
     Raises
     ------
     InputError
-        No such surface, or every point of it is umbilic.
+        There is no such stage, or not for this kind of surface.
     """
-    values = project.surface.model_dump(exclude={"kind"})
-    return CLOSED_FORMS[project.surface.kind](**values)
+    depth = _depth(LAST_STAGE if until is None else until)
+    surfaces = _WITHOUT_NETWORK.get(project.surface.kind)
+    if surfaces is None or depth == 0:
+        return depth, ()
+    lacking = f"the network of {surfaces} is not part of version {__version__} yet"
+    if until is not None:
+        raise InputError(
+            f"stage {until!r}: {lacking}",
+            "leave --until out, or write --until surface",
+            "--until",
+        )
+    return 0, (f"{lacking}: the run ends with the surface",)
 
 
-def plan(project: Project, *, until: str = LAST_STAGE) -> tuple[ClosedForm, Density]:
-    """Surface and density of a project: all that can be refused before any work is done."""
-    surface = make_surface(project)
-    if _depth(until) >= STAGES.index("fabrication"):
+def make_surface(project: Project, folder: Path = Path(), progress: Progress = _silent) -> Surface[Any]:
+    """The surface a project describes.
+
+    Parameters
+    ----------
+    project : Project
+    folder : Path
+        Where the files a project names are looked for: the folder of the project file.
+    progress : callable
+        Is told of the steps where a surface has to be found.
+
+    Raises
+    ------
+    InputError
+        No such surface.
+    """
+    table = project.surface
+    if table.kind == "form-found":
+        from lamella.surface.found.find import surface_of_table as find
+
+        progress("  finding the surface between its curves")
+        return find(table, folder, progress)
+    if table.kind == "mesh":
+        from lamella.surface.imported.adopt import surface_of_table as adopt
+
+        progress("  reading the mesh")
+        return adopt(table, folder, progress)
+    return CLOSED_FORMS[table.kind](**table.model_dump(exclude={"kind"}))
+
+
+def plan(
+    project: Project, *, until: str | None = None, folder: Path = Path(), progress: Progress = _silent
+) -> tuple[Surface[Any], Density | None]:
+    """The surface of a project and, where that is arithmetic, the density of its net.
+
+    Whatever can be refused without a net is refused here. A closed form takes no time; other surfaces have to be found,
+    and how far apart their lamellas are is known once their isothermic coordinates are.
+
+    Parameters
+    ----------
+    project, until, folder, progress
+        See `compute`.
+
+    Raises
+    ------
+    InputError
+    """
+    depth, _ = _reach(project, until)
+    surface = make_surface(project, folder, progress)
+    if depth >= STAGES.index("fabrication"):
         _check_fabrication(fill_in(project, surface), surface.mean_curvature)
+    if not isinstance(surface, ClosedForm):
+        return surface, None
     return surface, choose_density(surface, cells=project.network.cells, spacing=project.network.spacing)
 
 
-def fill_in(project: Project, surface: ClosedForm) -> Project:
+def fill_in(project: Project, surface: Surface[Any]) -> Project:
     """The project with those defaults filled in that follow from its other values."""
     cut, strip = project.fabrication, project.lamella
     slot_width = 2 * strip.thickness if cut.slot_width is None else cut.slot_width
@@ -108,7 +176,7 @@ def fill_in(project: Project, surface: ClosedForm) -> Project:
         end_distance = max(LEAST_END, 2 * slot_width / edge_scale(surface.mean_curvature, strip.height))
     hub_radius = cut.hub_radius
     if hub_radius is None:
-        rays = 2 * (surface.hopf_order + 2) if surface.hopf_order else 0
+        rays = max((2 * (order + 2) for order in surface.singular_orders()), default=0)
         hub_radius = max(LEAST_HUB, clear_hub(rays, strip.layers, strip.offset, strip.thickness))
     measures = {"slot_width": slot_width, "end_distance": float(end_distance), "hub_radius": hub_radius}
     filled = cut.model_copy(update=measures)
@@ -130,35 +198,44 @@ def _check_fabrication(project: Project, mean_curvature: float) -> None:
     rules.check()
 
 
-def compute(project: Project, *, until: str = LAST_STAGE, progress: Progress = _silent) -> Results:
+def compute(
+    project: Project, *, until: str | None = None, folder: Path = Path(), progress: Progress = _silent
+) -> Results:
     """Run the stages of a project up to `until`, in memory.
 
     Parameters
     ----------
     project : Project
-    until : str
-        Last stage, one of `STAGES`.
+    until : str, optional
+        Last stage, one of `STAGES`; as far as this kind of surface goes when not given.
+    folder : Path
+        Where the files a project names are looked for: the folder of the project file.
     progress : callable
-        Is told what is being done, a line at a time.
+        Is told what is being done, a line at a time; details are indented by four spaces.
 
     Raises
     ------
     InputError
     """
-    depth = _depth(until)
+    depth, lacking = _reach(project, until)
     clock = _Clock(progress)
     warnings: list[str] = []
 
     clock.start(f"surface: {project.surface.kind}")
-    surface, density = plan(project, until=until)
+    for message in lacking:
+        progress(f"  {message}")
+    surface, density = plan(project, until=until, folder=folder, progress=progress)
     project = fill_in(project, surface)
-    mesh = surface_mesh(surface)
+    progress("    sampling the surface for files and pictures")
+    mesh = surface.mesh()
     figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh)}
     clock.stop("surface", f"area {figures['surface']['area']:.4g} m2, H = {surface.mean_curvature:.6g} 1/m")
-    warnings += [*surface.warnings(), *cautions.size_cautions(mesh, project.lamella.height)]
+    warnings += [*lacking, *surface.warnings(), *cautions.size_cautions(mesh, project.lamella.height)]
 
     network = lamellas = parts = nesting = None
     if depth >= STAGES.index("network"):
+        assert isinstance(surface, ClosedForm)
+        assert density
         clock.start(f"network: {density.requested}, about {density.estimated_nodes:,} nodes")
         network = trace_closed_form(surface, density, minimum_length=project.network.minimum_length)
         figures["network"] = f = summary.network_summary(network, density.requested)
@@ -188,7 +265,7 @@ def compute(project: Project, *, until: str = LAST_STAGE, progress: Progress = _
     content: dict[str, Any] = {"schema": "lamella/summary/1", "version": __version__, "name": project.name}
     content |= {stage: figures.get(stage) for stage in STAGES}
     content |= {"warnings": warnings, "seconds": clock.seconds}
-    return Results(project, surface, mesh, network, lamellas, parts, nesting, content)
+    return Results(project, surface, mesh, network, lamellas, parts, nesting, content, folder)
 
 
 def _depth(until: str) -> int:
@@ -213,7 +290,7 @@ def run(
     project_file: Path,
     *,
     out: Path | None = None,
-    until: str = LAST_STAGE,
+    until: str | None = None,
     progress: Progress = _silent,
     warn: Progress = _silent,
 ) -> Path:
@@ -224,8 +301,8 @@ def run(
     project_file : Path
     out : Path, optional
         Default ``out/<project file's stem>``.
-    until : str
-        Last stage.
+    until : str, optional
+        Last stage; as far as this kind of surface goes when not given.
     progress, warn : callable
         Are told what is being done, and every warning.
 
@@ -243,12 +320,13 @@ def run(
     """
     from lamella.files.folder import check_target
 
-    _depth(until)
+    _depth(LAST_STAGE if until is None else until)
     project = read_project(project_file)
+    _reach(project, until)
     target = out if out is not None else Path("out") / project_file.stem
     check_target(target)
     try:
-        results = compute(project, until=until, progress=progress)
+        results = compute(project, until=until, folder=project_file.parent, progress=progress)
     except InputError as error:
         raise located(error, project_file) from None
     write(results, target, progress=progress)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, get_args
 
 from pydantic_core import ErrorDetails
 
 from lamella.project import (
     SURFACE_TABLES,
+    BoundaryTable,
     FabricationTable,
     LamellaTable,
     MaterialTable,
@@ -20,17 +22,40 @@ from lamella.project import (
 from lamella.wording import cut, shown
 
 
-def _fields(model: Any, path: list[str]) -> dict[str, Any]:
-    """Fields of the table at a path of keys."""
+def _fields(values: dict[str, Any], path: list[str]) -> dict[str, Any]:
+    """Fields of the table at a path of keys; indices of lists are part of their keys: boundary[1]."""
     fields: dict[str, Any] = Project.model_fields
     for key in path:
-        if key == "materials":
+        name = key.partition("[")[0]
+        if name == "materials":
             return MaterialTable.model_fields if len(path) > 1 else {}
-        if key == "surface":
-            kind = model.get("surface", {}).get("kind")
-            return SURFACE_TABLES[kind].model_fields if kind in SURFACE_TABLES else {}
-        fields = fields[key].annotation.model_fields
+        if name == "surface":
+            kind = values.get("surface", {}).get("kind")
+            fields = SURFACE_TABLES[kind].model_fields if kind in SURFACE_TABLES else {}
+            continue
+        model = _model_of(fields[name].annotation) if name in fields else None
+        if model is None:
+            return {}
+        fields = model.model_fields
     return fields
+
+
+def _model_of(annotation: Any) -> type[Table] | None:
+    """The table an annotation stands for, in lists and options too."""
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        return annotation
+    return next(filter(None, map(_model_of, get_args(annotation))), None)
+
+
+def _keys(path: Iterable[int | str]) -> list[str]:
+    """Keys of a path, each with its index in a list: boundary[1]."""
+    keys: list[str] = []
+    for part in path:
+        if isinstance(part, int) and keys:
+            keys[-1] += f"[{part}]"
+        else:
+            keys.append(str(part))
+    return keys
 
 
 def _nearest(word: str, known: Any) -> str:
@@ -44,7 +69,6 @@ def _meant(near: str) -> str:
     return f", did you mean {near!r}?" if near else ""
 
 
-_PLANNED = {"form-found", "mesh"}
 _UMBILIC = {"sphere", "plane", "disc", "disk"}
 
 
@@ -62,8 +86,6 @@ def explain_kind(kind: object) -> tuple[str, str]:
             f"kind = {kind!r}: on a sphere or plane every point is umbilic (all directions bend alike), so no net of "
             "lamellas is singled out"
         )
-    elif kind.lower() in _PLANNED:
-        message = f"kind = {kind!r} is not part of this version yet"
     else:
         message = f"unknown kind {shown(kind)}" + _meant(_nearest(kind, SURFACE_TABLES))
     return message, f"choose one of {kinds}"
@@ -88,6 +110,8 @@ def _unknown(leaf: str, parent: dict[str, Any], at_top: bool) -> tuple[str, str]
     near = _nearest(leaf, parent)
     if leaf in Project.model_fields and not at_top:
         return "unknown key in this table", f"write {leaf} above all [tables]; keys of this table: {known}"
+    if leaf in BoundaryTable.model_fields and "boundary" in parent:
+        return "unknown key here: it belongs in a table [[surface.boundary]]", "move it below [[surface.boundary]]"
     homes = [name for name, model in _TABLES.items() if leaf in model.model_fields]
     if homes:
         return f"unknown key here: it belongs in the table [{homes[0]}]", f"move it below [{homes[0]}]"
@@ -114,9 +138,10 @@ def explain(error: ErrorDetails, values: dict[str, Any]) -> Told:
     kind, context = error["type"], error.get("ctx", {})
     if kind in ("union_tag_invalid", "union_tag_not_found") and isinstance(values["surface"], dict):
         return "surface.kind", *explain_kind(values["surface"].get("kind"))
-    path = [str(part) for part in error["loc"]]
-    if path[0] == "surface" and len(path) > 1:
-        del path[1]  # the kind, which pydantic puts in
+    place = list(error["loc"])
+    if place[0] == "surface" and len(place) > 1:
+        del place[1]  # the kind, which pydantic puts in
+    path = _keys(place)
     refusal = context.get("error")
     if isinstance(refusal, Refusal):
         return ".".join([*path, refusal.key] if refusal.key else path), str(refusal), refusal.remedy
@@ -130,6 +155,8 @@ def explain(error: ErrorDetails, values: dict[str, Any]) -> Told:
     told = shown(value)
     if kind == "missing" and key == "surface":
         return key, "missing: which surface the lamellas lie on", "add a table [surface] with kind = ..."
+    if kind == "missing" and leaf == "boundary":
+        return key, f"missing: {about}", f"add a table [[{key}]] with points, circle, file or part"
     if kind == "missing":
         example = f"{leaf} = {shown(field.examples[0]) if field and field.examples else '...'}"
         return key, f"missing: {about}", f"add {example}" + (f" (in{unit})" if unit else "")
@@ -156,5 +183,8 @@ def explain(error: ErrorDetails, values: dict[str, Any]) -> Told:
     if kind == "literal_error":
         return key, f"{told} is not one of {context['expected']}", f"choose one of {context['expected']}"
     if kind in ("model_type", "dict_type", "model_attributes_type", "union_tag_not_found"):
-        return key, f"{told} is not a table", f"write [{cut(key)}] and its keys below"
+        remedy = (
+            f"write {leaf} = {{...}} with its keys inside" if "[" in key else f"write [{cut(key)}] and its keys below"
+        )
+        return key, f"{told} is not a table", remedy
     return key, cut(error["msg"], 200), f"see the keys of [{path[0]}] in `lamella new`"

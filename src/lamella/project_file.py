@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from lamella.errors import InputError
-from lamella.project import Project
+from lamella.project import FormFoundTable, MeshTable, Project
 from lamella.project_errors import explain, told_once
 from lamella.wording import cut
 
@@ -117,6 +117,39 @@ def parse_project(values: dict[str, Any], *, source: str = "", text: str = "") -
     return project
 
 
+def moved(project: Project, folder: Path, other: Path) -> Project:
+    """The project as it has to read in another folder, so that the files it names are the same.
+
+    Parameters
+    ----------
+    project : Project
+    folder, other : Path
+        Where relative names of files begin, and where they are to begin.
+    """
+
+    def name(file: str) -> str:
+        if Path(file).is_absolute():
+            return file
+        there = os.path.realpath(folder / file)
+        try:
+            return Path(os.path.relpath(there, os.path.realpath(other))).as_posix()
+        except ValueError:
+            return there  # on another drive no relative name leads there
+
+    table: FormFoundTable | MeshTable
+    if isinstance(project.surface, MeshTable):
+        table = project.surface.model_copy(update={"file": name(project.surface.file)})
+    elif isinstance(project.surface, FormFoundTable):
+        loops = tuple(
+            loop.model_copy(update={"file": name(loop.file)}) if loop.file else loop
+            for loop in project.surface.boundary
+        )
+        table = project.surface.model_copy(update={"boundary": loops})
+    else:
+        return project
+    return project.model_copy(update={"surface": table})
+
+
 def _check_slots(project: Project) -> None:
     width, thickness = project.fabrication.slot_width, project.lamella.thickness
     if width is not None and width < thickness:
@@ -147,16 +180,37 @@ def _where(source: str, text: str, key: str) -> str:
 
 
 def _line_of(text: str, key: str) -> int:
-    """Line of a dotted key in TOML text (0 when it is not there), for tables and plain keys as people write them."""
+    """Line of a dotted key in TOML text (0 when it is not there), for tables and plain keys as people write them.
+
+    Lists of tables carry their index, from 0: surface.boundary[1].circle.radius.
+    """
     parent, _, leaf = key.rpartition(".")
+    # a list that is no list of tables is written where its key is
+    plain = key.partition("[")[0] if "." not in key else leaf.partition("[")[0]
     table, best = "", 0
+    counts: dict[str, int] = {}
     for number, line in enumerate(text.splitlines(), 1):
-        header = re.match(r"\s*\[+\s*([^\]]+?)\s*\]", line)
-        key_of = key if not table else leaf if table == parent else ""
+        header = re.match(r"\s*(\[+)\s*([^\]]+?)\s*\]", line)
+        key_of = key if not table else plain if table == parent else ""
         if header:
-            table = re.sub(r"""["']""", "", header[1])
-            if table == key:
+            named = re.sub(r"""["']""", "", header[2])
+            table = _indexed(named, counts, is_list=len(header[1]) > 1)
+            # a list as a whole is where its first table is
+            if table == key or (named == key and not best):
                 best = number
         elif key_of and re.match(rf"""\s*["']?{re.escape(key_of)}["']?\s*[=.]""", line):
             return number
     return best
+
+
+def _indexed(table: str, counts: dict[str, int], *, is_list: bool) -> str:
+    """A header's name with the index of each list of tables it is in; counts holds those met so far."""
+    if is_list:
+        counts[table] = counts.get(table, -1) + 1
+        for inner in [name for name in counts if name.startswith(f"{table}.")]:
+            del counts[inner]
+    name, keys = "", []
+    for part in table.split("."):
+        name = f"{name}.{part}" if name else part
+        keys.append(f"{part}[{counts[name]}]" if name in counts else part)
+    return ".".join(keys)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from typing import Any
 
@@ -10,6 +11,35 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from lamella.project import SURFACE_TABLES, FabricationTable, LamellaTable, NetworkTable
+
+# the film between a saddle-shaped rim of 12 x 9 m and a ring
+_BOUNDARY = """\
+# Closed boundary curves: the outer loop, then the holes. Each has points, a circle, a file or parts.
+[[surface.boundary]]
+name = "outer"
+points = [ # [m] splined; the first is not repeated
+{points}
+]
+#   interpolation = "spline" # or "polyline"
+
+[[surface.boundary]]
+name = "oculus"
+circle = {{center = [0.0, 0.0, 2.0], radius = 1.3}} # [m]
+#   file = "curves.3dm" # or .dxf, .json, instead of points or circle, with
+#   layer = "boundary"
+#   id = "oculus"
+#   unit = "mm" # when the file does not say
+#   slide = {{point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0]}} # free to slide on a plane, or with {{direction = ..}}
+# A loop of several parts has a table [[surface.boundary.part]] for each, with points or arc, and slide."""
+
+
+def _boundary() -> str:
+    turns = [2 * math.pi * k / 24 for k in range(24)]
+    points = [(6 * math.cos(t), 4.5 * math.sin(t), 2.5 - 2.5 * math.cos(2 * t)) for t in turns]
+    # + 0.0 makes a zero of a negative one
+    rows = [f"  [{', '.join(f'{round(x, 4) + 0.0}' for x in point)}]," for point in points]
+    return _BOUNDARY.format(points="\n".join(rows))
+
 
 # keys that come with a value of their own in a new project
 _ACTIVE = {"cells"}
@@ -47,8 +77,10 @@ def starter(kind: str, name: str) -> str:
         Name of the project.
     """
     model = SURFACE_TABLES[kind]
-    surface = _table("surface", model, frozenset({"kind"}))
+    surface = _table("surface", model, frozenset({"kind", "boundary"}))
     surface = surface.replace("[surface]", f'[surface]\nkind = "{kind}"', 1)
+    if kind == "form-found":
+        surface += f"\n\n{_boundary()}"
     parts = [
         "# A lamella project. Lengths in metres, angles in degrees, stresses in Pa.\n"
         f"# Run it with:  lamella run FILE\n{tomli_w.dumps({'name': name}).strip()}",

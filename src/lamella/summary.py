@@ -13,20 +13,19 @@ from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas
 from lamella.strip.material import Material
 from lamella.strip.unroll import development_deviation
-from lamella.surface.closed_form import ClosedForm
 from lamella.surface.mesh import SurfaceMesh
-from lamella.surface.sampling import area, measured_mean_curvature, places
+from lamella.surface.surface import Surface
 
 
-def surface_summary(surface: ClosedForm, mesh: SurfaceMesh) -> dict[str, Any]:
-    """The surface's figures; stability is not asked of closed forms."""
+def surface_summary(surface: Surface[Any], mesh: SurfaceMesh) -> dict[str, Any]:
+    """The surface's figures, with those it has to tell itself; its stability where that is one of them."""
     size = np.ptp(mesh.points, axis=0)
-    measured = measured_mean_curvature(surface, places(surface, 17, 17)[0])
+    measured = surface.measured_mean_curvature(surface.check_places())
     return {
         "kind": surface.kind,
         "mean_curvature": surface.mean_curvature,
         "mean_curvature_deviation_max": float(np.abs(measured - surface.mean_curvature).max()),
-        "area": area(surface),
+        "area": surface.area(),
         "size": size.tolist(),
         "k1_max": float(mesh.k1.max()),
         "k2_min": float(mesh.k2.min()),

@@ -247,13 +247,16 @@ def run_in_process(code, folder, seed="0"):
 
 
 def test_same_input_same_bytes(tmp_path):
-    for number in (1, 2):
+    # ezdxf 1.4 orders the classes it registers differently with these two seeds
+    for number in (1, 5):
         (tmp_path / str(number)).mkdir()
         run = run_in_process("written(Path(sys.argv[1]), random_strips(1), 0.6)", tmp_path / str(number), str(number))
         assert run.returncode == 0, run.stderr
         time.sleep(1.1)
     for file in ("A.dxf", "B.dxf", "sheets.dxf"):
-        assert (tmp_path / "1" / file).read_bytes() == (tmp_path / "2" / file).read_bytes()
+        assert (tmp_path / "1" / file).read_bytes() == (tmp_path / "5" / file).read_bytes()
+        classes = list(ezdxf.readfile(tmp_path / "1" / file).classes.classes)
+        assert classes == sorted(classes)
 
 
 def test_full_disk_is_an_os_error(tmp_path):

@@ -21,7 +21,6 @@ from lamella import (
     Unduloid,
     make_network,
 )
-from lamella.surface.sampling import area, measured_mean_curvature, surface_mesh
 from lamella.surface.umbilic import refuse_umbilic
 
 
@@ -182,10 +181,10 @@ def test_areas():
     def half(u):
         return np.pi * 0.7**2 * (u + np.sinh(u) * np.cosh(u))
 
-    assert area(Catenoid(0.7, (-1, 2))) == pytest.approx(half(2 / 0.7) + half(1 / 0.7), rel=1e-12)
-    assert area(Cylinder(1.5, (1, 4))) == pytest.approx(2 * np.pi * 1.5 * 3, rel=1e-12)
+    assert Catenoid(0.7, (-1, 2)).area() == pytest.approx(half(2 / 0.7) + half(1 / 0.7), rel=1e-12)
+    assert Cylinder(1.5, (1, 4)).area() == pytest.approx(2 * np.pi * 1.5 * 3, rel=1e-12)
     r = 1.3
-    assert area(Enneper(2, r, 2.0)) == pytest.approx(4 * np.pi * (r**2 + r**4 + r**6 / 3), rel=1e-12)
+    assert Enneper(2, r, 2.0).area() == pytest.approx(4 * np.pi * (r**2 + r**4 + r**6 / 3), rel=1e-12)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -193,12 +192,12 @@ def test_mesh_lies_on_the_surface_and_its_area_converges(kind):
     surface = draw_surface(kind, np.random.default_rng(9))
 
     def miss(tolerance):
-        mesh = surface_mesh(surface, tolerance, 2000)
+        mesh = surface.mesh(tolerance, 2000)
         p, f = mesh.points, mesh.faces
         cross = np.cross(p[f[:, 2]] - p[f[:, 0]], p[f[:, 3]] - p[f[:, 1]])
         first = np.cross(p[f[:, 1]] - p[f[:, 0]], p[f[:, 2]] - p[f[:, 0]])
         assert (np.einsum("ij,ij->i", first, mesh.normals[f[:, 0]]) > 0).all()  # counter-clockwise about n
-        return abs(np.linalg.norm(cross, axis=1).sum() / 2 / area(surface) - 1)
+        return abs(np.linalg.norm(cross, axis=1).sum() / 2 / surface.area() - 1)
 
     # the sag is the square of the edge: a quarter of it halves the edge and quarters the area error
     assert miss(5e-5) < 1e-3
@@ -257,7 +256,7 @@ def test_pieces_that_are_none(surface):
     """A slightly inflated catenoid is a good surface however large its bulges far away are."""
     refuse_umbilic(surface)
     where = np.linspace(surface.outline.start, surface.outline.end, 20) + 0.3j
-    assert measured_mean_curvature(surface, where) == pytest.approx(surface.mean_curvature, abs=1e-7)
+    assert surface.measured_mean_curvature(where) == pytest.approx(surface.mean_curvature, abs=1e-7)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -269,7 +268,7 @@ def test_mean_curvature_from_positions_and_normals(kind):
     scale = np.abs(surface.at(where).principal_curvatures[0]).max()
 
     def miss(step):
-        return np.abs(measured_mean_curvature(surface, where, step) - surface.mean_curvature).max() / scale
+        return np.abs(surface.measured_mean_curvature(where, step) - surface.mean_curvature).max() / scale
 
     assert miss(1e-3) < 1e-9
     assert miss(1e-2) < 1e-11 or 12 < miss(2e-2) / miss(1e-2) < 20

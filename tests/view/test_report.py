@@ -11,13 +11,15 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from exact_elements import sphere_cap
 from lamella.network.make import make_network
 from lamella.strip.lamellas import Section, make_lamellas
 from lamella.strip.material import find_material
 from lamella.surface.catenoid import Catenoid
+from lamella.surface.cylinder import Cylinder
 from lamella.surface.mesh import SurfaceMesh
-from lamella.surface.sampling import surface_mesh
 from lamella.view import report
+from lamella.view.quantity import surface_quantities
 from lamella.view.report import ReportData, report_html, write_report
 
 FIGURES = (
@@ -74,7 +76,8 @@ def full():
         kind="catenoid",
         figures=FIGURES,
         warnings=("Twists more than it bends.", "Closed with 12 cells."),
-        surface=surface_mesh(surface),
+        surface=surface.mesh(),
+        mean_curvature=0.0,
         network=network,
         lamellas=lamellas,
         material="1.4301",
@@ -287,7 +290,46 @@ def test_triangles_and_missing_curvatures(full):
     )
     data = payload(report_html(replace(full, surface=mesh, network=None, lamellas=None)))["surface"]
     np.testing.assert_array_equal(decode(data["triangles"]).reshape(-1, 3), [[0, 1, 2], [0, 2, 3]])
-    np.testing.assert_array_equal(decode(data["H"]), np.zeros(4))
-    np.testing.assert_array_equal(decode(data["K"]), np.full(4, np.nan))
-    np.testing.assert_allclose(decode(data["k1"]), [np.nan, 1, 2, np.nan])
-    np.testing.assert_array_equal(decode(data["k2"]), [np.nan, 1, 1, 1])
+    values = {colouring["key"]: decode(colouring["values"]) for colouring in data["colourings"]}
+    np.testing.assert_array_equal(values["deviation"], np.zeros(4))
+    np.testing.assert_array_equal(values["K"], np.full(4, np.nan))
+    np.testing.assert_allclose(values["k1"], [np.nan, 1, 2, np.nan])
+    np.testing.assert_array_equal(values["k2"], np.ones(4))
+
+
+def test_surface_colourings_come_back_within_their_limits(full):
+    found = sphere_cap(3)
+    data = payload(report_html(replace(full, surface=found.mesh(), mean_curvature=-0.5, network=None, lamellas=None)))
+    quantities = surface_quantities(found.mesh(), -0.5)
+    colourings = {colouring["key"]: colouring for colouring in data["surface"]["colourings"]}
+    assert list(colourings) == list(quantities)
+    for key, quantity in quantities.items():
+        spec = colourings[key]
+        back = decode(spec["values"])
+        span = quantity.high - quantity.low
+        # the colours are 256: no value is off by a hundredth of one
+        assert np.abs(back - np.clip(quantity.values, quantity.low, quantity.high)).max() <= span / 25600
+        for name in ("label", "unit", "remark", "low", "high", "least", "most"):
+            assert spec[name] == getattr(quantity, name)
+        assert spec["stops"] == list(quantity.stops)
+    deviation = colourings["deviation"]
+    assert deviation["low"] == -deviation["high"] < 0
+    assert deviation["remark"] == "H0 = −0.5 1/m"
+
+
+def test_colouring_at_the_start(full):
+    def first(**changes):
+        return payload(report_html(replace(full, **changes)))["surface"]["first"]
+
+    alone = {"network": None, "lamellas": None}
+    assert first() == "plain"
+    assert first(**alone) == "K"
+    cylinder = Cylinder(1.0, (0.0, 1.0))
+    assert first(surface=cylinder.mesh(), mean_curvature=0.5, **alone) == "plain"
+
+
+def test_a_colouring_without_variation_costs_nothing(full):
+    colourings = {c["key"]: c for c in payload(report_html(full))["surface"]["colourings"]}
+    assert colourings["deviation"]["values"]["type"] == "constant"
+    assert colourings["deviation"]["low"] == colourings["deviation"]["high"] == 0
+    assert colourings["deviation"]["remark"] == "to rounding, H0 = 0 1/m"

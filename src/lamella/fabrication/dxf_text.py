@@ -6,6 +6,7 @@ object for each of a million vertices would take minutes. Coordinates are format
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -181,6 +182,10 @@ class DxfFile:
         # ezdxf does not carry extents into the header where one corner is the origin
         self._document.header["$EXTMIN"], self._document.header["$EXTMAX"] = corners
         self._document.set_modelspace_vport(height=max(size, 1.0), center=centre)
+        # ezdxf registers what a drawing uses in the order of a set, which differs from process to process
+        classes = self._document.classes
+        classes.add_required_classes(self._document.dxfversion)
+        classes.classes = OrderedDict(sorted(classes.classes.items()))
         stream = StringIO()
         with _fixed_meta_data():
             self._document.write(stream)

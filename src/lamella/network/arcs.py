@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,6 +19,15 @@ Integers = NDArray[np.int64]
 POINTS, MOST_POINTS = 12, 768
 # share of the speed's series that its last two terms may have
 TAIL = 1e-12
+
+
+class Pieces(Protocol):
+    """Pieces of lamella, each with a parameter 0 <= sigma <= 1."""
+
+    owner: Integers
+
+    def speed(self, segment: Integers, sigma: Floats) -> Floats:
+        """Arc length per sigma, m, at parameters (p,) of segments (s,), shape (s, p)."""
 
 
 class Segments:
@@ -65,6 +76,13 @@ class ArcLengths:
     The speed is analytic beyond a cell, so that a dozen terms leave rounding only; segments on which they do not
     (close to where a surface runs to infinity) get more, until they do.
 
+    Parameters
+    ----------
+    segments : Pieces
+    tail : float
+        Share of the speed's series that its last two terms may have; infinite where the speed itself is not smooth
+        enough for more terms to tell more.
+
     Attributes
     ----------
     length : (s,)
@@ -76,7 +94,7 @@ class ArcLengths:
         The cells stretch so much that no series reaches full accuracy.
     """
 
-    def __init__(self, segments: Segments) -> None:
+    def __init__(self, segments: Pieces, tail: float = TAIL) -> None:
         count = len(segments.owner)
         self.length = np.empty(count)
         self._series: list[tuple[Floats, Floats]] = []
@@ -90,7 +108,7 @@ class ArcLengths:
                     "network.cells",
                 )
             speed, length = _speed_series(segments, left, points)
-            done = np.abs(speed[-2:]).max(0) <= TAIL * speed[0]
+            done = np.abs(speed[-2:]).max(0) <= tail * speed[0]
             self._group[left[done]] = len(self._series)
             self._member[left[done]] = np.arange(done.sum())
             self.length[left[done]] = length[done]
@@ -110,7 +128,7 @@ class ArcLengths:
         return np.where(fraction == 1, 1.0, np.where(fraction == 0, 0.0, sigma))
 
 
-def _speed_series(segments: Segments, segment: Integers, points: int) -> tuple[Floats, Floats]:
+def _speed_series(segments: Pieces, segment: Integers, points: int) -> tuple[Floats, Floats]:
     """Legendre coefficients of the speed, (points, s), and the lengths, (s,)."""
     x, weight = np.polynomial.legendre.leggauss(points)
     speed = segments.speed(segment, (x + 1) / 2)

@@ -14,7 +14,13 @@ MOST_SIDES = 6
 
 
 def trace_faces(
-    normals: Floats, tails: Integers, heads: Integers, directions: Floats, rim: list[Integers], rim_directions: Floats
+    normals: Floats,
+    tails: Integers,
+    heads: Integers,
+    directions: Floats,
+    rim: list[Integers],
+    rim_directions: Floats,
+    seam: NDArray[np.bool_] | None = None,
 ) -> tuple[Integers, Integers]:
     """Walk around the faces of a net embedded in a surface.
 
@@ -33,6 +39,8 @@ def trace_faces(
         Boundary nodes of each loop in order, the surface to the left.
     rim_directions : (n, 3)
         Direction of the rim at its nodes, forward along the loop (unused elsewhere).
+    seam : (n,) bool, optional
+        Nodes where an open net does not meet itself: no face across.
 
     Returns
     -------
@@ -67,6 +75,8 @@ def trace_faces(
     # the back side of lamella edges that are the rim belongs to no face either
     outside[: len(tails)] = np.isin(heads * n + tails, forward_tail * n + forward_head)
 
+    if seam is not None:
+        outside |= seam[tail]
     order = np.lexsort((angle, tail))
     place = np.empty(len(order), np.int64)
     place[order] = np.arange(len(order))

@@ -1,4 +1,4 @@
-"""Surfaces of constant mean curvature known in closed form.
+"""Surfaces of constant mean curvature known in closed form: they answer as `lamella.surface.surface.Surface` does.
 
 Each is given in conformal parameters zeta = U + i V, where the metric is lambda^2 (dU^2 + dV^2), together with
 its Hopf differential Q dzeta^2, which is holomorphic because H is constant. Everything else follows:
@@ -9,10 +9,12 @@ and isothermic coordinates, whose lines are the principal ones, are u + i v = w 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from lamella.surface import sampling
+from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.outline import Outline
 from lamella.surface.points import Complexes, Floats, SurfacePoints
 
@@ -67,7 +69,39 @@ class ClosedForm(ABC):
         Once around the axis; on a simply connected surface, along its longest principal line.
         """
 
-    def describe(self) -> dict[str, object]:
+    def places(self, rows: int, columns: int) -> tuple[Complexes, sampling.Integers]:
+        """A grid of places over the outline and its faces, see `lamella.surface.sampling.grid`."""
+        return sampling.grid(self.outline, rows, columns)
+
+    def check_places(self) -> Complexes:
+        """A grid over the whole outline."""
+        return self.places(17, 17)[0]
+
+    def mesh(self, tolerance: float = 1e-3, limit: int = 400) -> SurfaceMesh:
+        """Mesh whose chords miss the surface by about `tolerance` times its size.
+
+        Parameters
+        ----------
+        tolerance : float
+            Sag of the longest mesh edges over the diagonal of the bounding box.
+        limit : int
+            Most vertices along either parameter.
+        """
+        return sampling.surface_mesh(self, tolerance, limit)
+
+    def area(self) -> float:
+        """Area by quadrature, m^2."""
+        return sampling.area(self.outline, self.metric)
+
+    def measured_mean_curvature(self, where: Complexes, step: float = 1e-3) -> Floats:
+        """H from positions and normals alone, by differences over `step`, 1/m, (n,)."""
+        return sampling.measured_mean_curvature(self.at, where, step)
+
+    def singular_orders(self) -> tuple[int, ...]:
+        """The order of the zero of Q, if there is one."""
+        return (self.hopf_order,) if self.hopf_order else ()
+
+    def describe(self) -> dict[str, Any]:
         """Facts worth telling beside the project's own numbers (for the summary)."""
         return {}
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.optimize import brentq
 
@@ -80,7 +82,7 @@ class Unduloid(Delaunay):
         super().__init__(neck_radius, bulge_radius, 1)
         self.outline = self.between(*height)
 
-    def describe(self) -> dict[str, object]:
+    def describe(self) -> dict[str, Any]:
         """Length of a full period, m."""
         return {"period": float(self.profile(np.array([self.period])).z[0])}
 
@@ -132,6 +134,6 @@ class Nodoid(Delaunay):
         reach = self._fold_parameter
         return float(brentq(lambda u: float(self.profile(np.array([u])).z[0]) - z, -reach, reach, xtol=1e-15))
 
-    def describe(self) -> dict[str, object]:
+    def describe(self) -> dict[str, Any]:
         """Height of the fold, m."""
         return {"fold": self.fold}

@@ -9,6 +9,7 @@ from lamella.surface.closed_form import ClosedForm
 from lamella.surface.elliptic import first_kind, jacobi
 from lamella.surface.outline import Square
 from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.sampling import Integers, grid_faces, quadrature
 
 
 def asymptotic_to_conformal(p: Floats) -> Floats:
@@ -57,6 +58,19 @@ class Scherk(ClosedForm):
     def from_gudermannian(self, x: Floats, y: Floats) -> Complexes:
         """Places with given X, Y."""
         return np.asarray(asymptotic_to_conformal(x - y) + 1j * asymptotic_to_conformal(x + y))
+
+    def places(self, rows: int, columns: int) -> tuple[Complexes, Integers]:
+        """A grid over the square, by steps of X and Y."""
+        half = self.outline.half_side
+        x, y = np.meshgrid(np.linspace(-half, half, rows), np.linspace(-half, half, columns), indexing="ij")
+        return self.from_gudermannian(x.ravel(), y.ravel()), grid_faces(rows, columns, False)
+
+    def area(self) -> float:
+        """Quadrature of the area element of (X, Y), sqrt(1 - tanh^2 X tanh^2 Y), m^2."""
+        line, weight = quadrature(-self.outline.half_side, self.outline.half_side)
+        x, y = (a.ravel() for a in np.meshgrid(line, line, indexing="ij"))
+        element = np.sqrt(1 - (np.tanh(x) * np.tanh(y)) ** 2)
+        return float(self.scale**2 * (np.outer(weight, weight).ravel() * element).sum())
 
     def at(self, where: Complexes) -> SurfacePoints:
         (cosh_p, sinh_p), (cosh_q, sinh_q) = self.hyperbolic(where.imag), self.hyperbolic(where.real)

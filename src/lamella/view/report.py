@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 from lamella.surface.mesh import SurfaceMesh
+from lamella.view.quantity import Quantity, surface_quantities
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -50,6 +51,8 @@ class ReportData:
     warnings : tuple of str
         Shown above everything else.
     surface : SurfaceMesh
+    mean_curvature : float
+        H0, which the surface should have everywhere, 1/m.
     network : Network or None
         None after the stage "surface". Without lamellas its curvatures are still shown.
     lamellas : Lamellas or None
@@ -64,6 +67,7 @@ class ReportData:
     figures: tuple[tuple[str, str, str, str], ...]
     warnings: tuple[str, ...]
     surface: SurfaceMesh
+    mean_curvature: float
     network: Network | None
     lamellas: Lamellas | None
     material: str
@@ -185,7 +189,7 @@ def _payload(data: ReportData) -> tuple[Spec, list[str]]:
         "schema": "lamella/report/1",
         "name": data.name,
         "centre": centre.tolist(),
-        "surface": _surface_payload(data.surface, centre, notes),
+        "surface": _surface_payload(data, centre, notes),
         "network": None,
         "lamellas": None,
     }
@@ -211,7 +215,9 @@ def _centre(clouds: list[Floats]) -> Floats:
     return np.asarray((low + high) / 2, dtype=np.float64)
 
 
-def _surface_payload(surface: SurfaceMesh, centre: Floats, notes: list[str]) -> Spec:
+def _surface_payload(data: ReportData, centre: Floats, notes: list[str]) -> Spec:
+    surface = data.surface
+    quantities = surface_quantities(surface, data.mean_curvature)
     triangles = np.concatenate([surface.faces[:, [0, 1, 2]], surface.faces[:, [0, 2, 3]]])
     kept, labels = _clusters(surface.points, VERTEX_LIMIT)
     if len(kept) < len(surface.points):
@@ -223,10 +229,30 @@ def _surface_payload(surface: SurfaceMesh, centre: Floats, notes: list[str]) -> 
         "points": _float32(surface.points[kept] - centre),
         "normals": _direction16(surface.normals[kept]),
         "triangles": _integers(_distinct_triangles(triangles, len(kept))),
-        "H": _quantised(surface.mean_curvature[kept]),
-        "K": _quantised(surface.gaussian_curvature[kept]),
-        "k1": _quantised(surface.k1[kept]),
-        "k2": _quantised(surface.k2[kept]),
+        "colourings": [_colouring(quantity, kept) for quantity in quantities.values()],
+        # without strips to look at, the surface is what there is to see
+        "first": "plain" if data.network is not None or quantities["K"].is_constant else "K",
+    }
+
+
+def _colouring(quantity: Quantity, kept: Integers) -> Spec:
+    """A quantity as report.js reads it: values at the kept vertices, no farther out than the colours reach."""
+    if quantity.is_constant:
+        values = np.full(len(kept), quantity.low)
+    else:
+        values = quantity.values[kept]
+        values = np.where(np.isfinite(values), np.clip(values, quantity.low, quantity.high), np.nan)
+    return {
+        "key": quantity.key,
+        "label": quantity.label,
+        "unit": quantity.unit,
+        "remark": quantity.remark,
+        "low": quantity.low,
+        "high": quantity.high,
+        "least": quantity.least,
+        "most": quantity.most,
+        "stops": list(quantity.stops),
+        "values": _quantised(values),
     }
 
 

@@ -30,7 +30,7 @@
     const raw = JSON.parse(document.getElementById("data").textContent);
     return {
       ...raw,
-      surface: decodeAll(raw.surface),
+      surface: { ...decodeAll(raw.surface), colourings: raw.surface.colourings.map(decodeAll) },
       network: decodeAll(raw.network),
       lamellas: decodeAll(raw.lamellas),
     };
@@ -97,8 +97,6 @@
     signed: [FAMILY_COLOURS.B, "#eab68d", "#d9dade", "#8fb2d2", FAMILY_COLOURS.A],
     // Pure red from 0.005 on, as in the paper.
     planarity: ["#e9e6e1", "#f3b9a4", "#f87a63", "#ff0000"],
-    surface: ["#26456e", "#3f7fa0", "#7fb5a5", "#d5d49a", "#f3efd0"],
-    surfaceSigned: ["#7b3f8c", "#b99ac4", "#e4e3e6", "#9cc3a5", "#2f7d4a"],
   };
   const MISSING_COLOUR = "#8a8f96";
   const LEVELS = 256;
@@ -147,7 +145,7 @@
   /** Ways to colour the lamellas: key, label, unit, values at the samples, colour scale. */
   function lamellaColourings(network, strips) {
     if (!network) return [];
-    const upTo = (values, high) => ({ values, domain: [0, high], capped: largest(values) > high });
+    const upTo = (values, high) => ({ values, domain: [0, high] });
     const magnitude = (values, high = largest(values)) => ({ ...upTo(values, high), stops: RAMPS.magnitude });
     const torsion = network.geodesicTorsion;
     const family = { key: "family", label: "Family" };
@@ -173,23 +171,13 @@
     ];
   }
 
+  /** Ways to colour the surface, as lamella.view.quantity describes them. */
   function surfaceColourings(surface) {
-    const scale = Math.max(largest(surface.k1), largest(surface.k2));
-    const colouring = (key, label, unit, values, size) => {
-      const [low, high] = extent(values);
-      if (high - low <= 1e-6 * size)
-        return { key, label, unit, values, domain: [low, low], stops: [RAMPS.surface[1]] };
-      if (low < 0 && high > 0)
-        return { key, label, unit, values, domain: signedDomain(values), stops: RAMPS.surfaceSigned };
-      return { key, label, unit, values, domain: [low, high], stops: RAMPS.surface };
-    };
-    return [
-      { key: "plain", label: "Plain" },
-      colouring("H", "Mean curvature H", "1/m", surface.H, scale),
-      colouring("K", "Gaussian curvature K", "1/m²", surface.K, scale * scale),
-      colouring("k1", "Principal curvature k1", "1/m", surface.k1, scale),
-      colouring("k2", "Principal curvature k2", "1/m", surface.k2, scale),
-    ];
+    const ofVertices = surface.colourings.map(({ low, high, ...colouring }) => ({
+      ...colouring,
+      domain: [low, high],
+    }));
+    return [{ key: "plain", label: "Plain" }, ...ofVertices];
   }
 
   // -------------------------------------------------------------------------------- legends
@@ -209,27 +197,37 @@
     );
   }
 
-  function rampLegend({ label, unit, stops, values, domain: [low, high], capped }) {
-    if (low === high) return legend(label, unit, swatch(stops[0], `${format(low, 4)}, constant`));
+  /** Colours of a quantity; `least` and `most` (its extent) may lie beyond them, and the ends then say so. */
+  function rampLegend({
+    label,
+    unit,
+    stops,
+    values,
+    domain: [low, high],
+    remark = "",
+    least = extent(values)[0],
+    most = extent(values)[1],
+  }) {
+    if (low === high)
+      return legend(label, unit, swatch(stops[0], `${format(low, 4)} ${remark || "everywhere"}`));
     const bar = element("div", { class: "bar" });
     bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
     const ticks = element("div", { class: "ticks" });
+    const span = high - low;
     const round = niceTicks(low, high, 5);
-    for (const value of round.ticks) {
-      const place = (value - low) / (high - low);
-      // The last label of a capped scale is longer.
-      if (capped && place > 0.75 && place < 0.999) continue;
-      const tick = element(
-        "span",
-        { class: place < 0.02 ? "first" : place > 0.96 ? "last" : "" },
-        round.text(value),
-      );
-      if (capped && place > 0.999) tick.prepend("≥ ");
+    const beyond = [least < low - 1e-6 * span, most > high + 1e-6 * span];
+    const marks = round.ticks.map((value) => [(value - low) / span, round.text(value)]);
+    // An end with values beyond it is labelled, and room made for that longer label.
+    const shown = marks.filter(([place]) => !(beyond[0] && place < 0.25) && !(beyond[1] && place > 0.75));
+    if (beyond[0]) shown.unshift([0, `≤ ${format(low, 2)}`]);
+    if (beyond[1]) shown.push([1, `≥ ${format(high, 2)}`]);
+    for (const [place, text] of shown) {
+      const tick = element("span", { class: place < 0.02 ? "first" : place > 0.96 ? "last" : "" }, text);
       tick.style.left = `${100 * place}%`;
       ticks.append(tick);
     }
-    const [least, most] = extent(values);
-    return legend(label, `${unit} (${format(least)} to ${format(most)})`, bar, ticks);
+    const about = `(${format(least)} to ${format(most)})${remark && ` · ${remark}`}`;
+    return legend(label, [unit, about].filter(Boolean).join(" "), bar, ticks);
   }
 
   function familyLegend() {
@@ -282,6 +280,8 @@
 
     const parts = {
       surface: surfaceMesh(surface),
+      // Under lamellas it would be one line among many.
+      rim: network ? new THREE.Group() : rimLines(surface),
       families: network ? { A: familyPart(data, "A", size), B: familyPart(data, "B", size) } : {},
       nodes: network ? nodePoints(network) : new THREE.Group(),
       highlight: new THREE.Group(),
@@ -290,6 +290,7 @@
     parts.marker.visible = false;
     scene.add(
       parts.surface,
+      parts.rim,
       ...Object.values(parts.families).map((part) => part.group),
       parts.nodes,
       parts.highlight,
@@ -353,7 +354,7 @@
       for (const points of parts.nodes.children)
         points.material.color.set(themed(points.userData.style.colour, dark));
       parts.marker.material.color.set(themed(["#111418", "#ffffff"], dark));
-      for (const lines of parts.highlight.children)
+      for (const lines of [...parts.highlight.children, ...parts.rim.children])
         lines.material.color.set(themed(["#111418", "#ffffff"], dark));
       redraw();
     }
@@ -380,6 +381,7 @@
     function show(name, visible) {
       const part = parts.families[name]?.group ?? parts[name];
       part.visible = visible;
+      if (name === "surface") parts.rim.visible = visible;
       redraw();
     }
 
@@ -533,6 +535,27 @@
     const mesh = new THREE.Mesh(geometry, material);
     mesh.userData.plain = new THREE.Color();
     return mesh;
+  }
+
+  /** Edges of one triangle only, as lines. */
+  function rimLines({ points, triangles }) {
+    const count = points.length / 3;
+    const open = new Map();
+    for (let i = 0; i < triangles.length; i += 3) {
+      for (let k = 0; k < 3; k++) {
+        const [a, b] = [triangles[i + k], triangles[i + ((k + 1) % 3)]];
+        // The neighbour runs along the edge the other way.
+        if (!open.delete(b * count + a)) open.set(a * count + b, [a, b]);
+      }
+    }
+    const group = new THREE.Group();
+    if (!open.size) return group;
+    const pairs = new Float32Array(6 * open.size);
+    [...open.values()]
+      .flat()
+      .forEach((vertex, i) => pairs.set(points.subarray(3 * vertex, 3 * vertex + 3), 3 * i));
+    group.add(lineSegments(pairs, { linewidth: 2 }));
+    return group;
   }
 
   /** Samples that have a next one in their lamella, of one family. */
@@ -1131,7 +1154,8 @@
     const panel = hasLamellas ? createPanel(data, (sample) => view?.mark(sample)) : null;
     let selected = null;
 
-    const chosen = (list, key) => list.find((item) => item.key === key) ?? list[0];
+    const chosen = (list, key, otherwise = list[0]?.key) =>
+      list.find((item) => item.key === key) ?? list.find((item) => item.key === otherwise);
 
     function select(lamella) {
       selected = lamella;
@@ -1152,7 +1176,7 @@
       if (colourings.length) parameters.colour = byId("colouring").value;
       parameters.surface = byId("surface-colouring").value;
       if (parameters.colour === colourings[0]?.key) delete parameters.colour;
-      if (parameters.surface === "plain") delete parameters.surface;
+      if (parameters.surface === surface.first) delete parameters.surface;
       const { lamella, ...others } = parameters;
       const parts = Object.entries(others).map(
         ([key, value]) => `${encodeURIComponent(key)}=${encodeURIComponent(value)}`,
@@ -1198,7 +1222,7 @@
     function applyHash() {
       const parameters = readHash();
       applyTheme();
-      byId("surface-colouring").value = chosen(surfaces, parameters.surface).key;
+      byId("surface-colouring").value = chosen(surfaces, parameters.surface, surface.first).key;
       if (colourings.length) byId("colouring").value = chosen(colourings, parameters.colour).key;
       for (const name of ["a", "b", "nodes"]) {
         if (name in parameters) byId(`show-${name}`).checked = parameters[name] !== "0";

@@ -1,0 +1,273 @@
+"""The network of a surface of elements: umbilics, isothermic coordinates, lattice, lamellas."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.errors import InputError
+from lamella.network.cell_map import CellMap
+from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
+from lamella.network.isothermic import Isothermic, Transition, integrate, with_shifts
+from lamella.network.net_mesh import NetMesh, make_net_mesh
+from lamella.network.network import Network, Period
+from lamella.network.trace_elements import trace_elements
+from lamella.network.umbilics import Umbilics, find_umbilics
+from lamella.surface.element.quadrature import triangle_rule
+from lamella.surface.element.rim import element_rims
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.points import Complexes, Floats
+from lamella.surface.umbilic import refuse_umbilic
+
+Progress = Callable[[str], None]
+Closing = Literal["open", "round"]
+
+# of a cell: a shift nearer to whole numbers closes the net (docs/files.md)
+CLOSES = 1e-3
+
+
+def _silent(message: str) -> None:
+    """Tell nobody."""
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """How the lattice of cells lies on a surface.
+
+    Attributes
+    ----------
+    origin : complex
+        w of a lattice point, sqrt(m).
+    step : float
+        l0, sqrt(m).
+    cells : int
+    requested : str
+    estimated_nodes : int
+    """
+
+    origin: complex
+    step: float
+    cells: int
+    requested: str
+    estimated_nodes: int
+
+
+@dataclass(frozen=True)
+class ElementNetwork:
+    """A network with what it rests on.
+
+    Attributes
+    ----------
+    network : Network
+    umbilics : Umbilics
+    lattice : Lattice
+    residual : float
+        Distance of the surface from constant mean curvature, see `Isothermic.residual`.
+    off : (t,)
+        How far each transition is from whole numbers of cells, before rounding.
+    where : tuple of str
+        What each transition lies between.
+    """
+
+    network: Network
+    umbilics: Umbilics
+    lattice: Lattice
+    residual: float
+    off: Floats
+    where: tuple[str, ...]
+
+
+def element_network(
+    surface: ElementSurface,
+    *,
+    cells: int | None = None,
+    spacing: float | None = None,
+    closing: Closing = "open",
+    minimum_length: float = 0.5,
+    loop_names: tuple[str, ...] = (),
+    progress: Progress = _silent,
+) -> ElementNetwork:
+    """The network of lamellas on a surface of elements.
+
+    Parameters
+    ----------
+    surface : ElementSurface
+    cells, spacing, minimum_length
+        See `lamella.network.make.make_network`.
+    closing : "open" or "round"
+        What is done where shifts are not whole: a seam, or the nearest whole numbers by the smallest change of the
+        coordinates.
+    loop_names : tuple of str
+        Of the boundary loops.
+    progress : callable
+
+    Raises
+    ------
+    InputError
+    """
+    refuse_umbilic(surface)
+    umbilics = find_umbilics(surface)
+    told = ", ".join(f"order {m}" for m in umbilics.orders.tolist())
+    progress(f"  {len(umbilics.orders)} umbilics" + (f" ({told})" if told else ""))
+    mesh = make_net_mesh(surface, umbilics)
+    iso = integrate(mesh, mesh.umbilics[umbilics.orders % 2 == 1])
+    progress(
+        f"  isothermic coordinates on {mesh.connectivity.node_count:,} nodes: off by {iso.residual:.1e} of their slope"
+    )
+    names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
+    lattice = choose_lattice(iso, umbilics, cells, spacing)
+    raw = CellMap.of(iso, lattice.origin, lattice.step)
+    near = np.round(raw.shifts.real) + 1j * np.round(raw.shifts.imag)
+    off = np.maximum(np.abs((raw.shifts - near).real), np.abs((raw.shifts - near).imag))
+    wanted = np.where((off <= CLOSES) | (closing == "round"), near, np.nan)
+    iso = _closed(iso, raw, wanted, lattice)
+    rim_loop = mesh.loop[mesh.connectivity.rim_nodes[:, 0]]
+    network = trace_elements(
+        CellMap.of(iso, lattice.origin, lattice.step),
+        iso.cut,
+        mesh.umbilics,
+        umbilics.orders,
+        mean_curvature=surface.mean_curvature,
+        rim_loop=rim_loop,
+        count=lattice.cells,
+        periods=_periods(iso, raw, rim_loop, names),
+        minimum_length=minimum_length,
+    )
+    where = tuple(_named(piece, mesh, names) for piece in iso.transitions)
+    return ElementNetwork(network, umbilics, lattice, iso.residual, off, where)
+
+
+def _closed(iso: Isothermic, raw: CellMap, wanted: Complexes, lattice: Lattice) -> Isothermic:
+    """The coordinates with whole shifts, nan: free."""
+    if np.isnan(wanted).all():
+        return iso
+    shifts = wanted * lattice.step / (1 + 1j) - (raw.signs - 1) * lattice.origin
+    try:
+        return with_shifts(iso, shifts)
+    except ValueError:
+        raise InputError(
+            "the nearest whole numbers of cells of this net contradict each other where its cuts meet",
+            'choose another number of cells, or closing = "open"',
+            "network.closing",
+        ) from None
+
+
+def choose_lattice(iso: Isothermic, umbilics: Umbilics, cells: int | None, spacing: float | None) -> Lattice:
+    """Origin and step: a singular node on the lattice, a whole number of cells around the first hole or across."""
+    mesh = iso.mesh
+    corner = iso.value[:, :3]
+    origin = complex(corner.mean())
+    if len(umbilics.orders):
+        # odd zeros are where the sheets meet: the first of them is a node
+        odd = np.flatnonzero(umbilics.orders % 2 == 1)
+        vertex = mesh.umbilics[odd[0] if len(odd) else 0]
+        origin = complex(corner[mesh.connectivity.faces == vertex].mean())
+    whole = _whole_length(iso)
+    points, weights = triangle_rule(8)
+    mu_area, edge = _cell_densities(iso, points, weights)
+    requested = f"cells = {cells}"
+    key = "network.cells"
+    if cells is None and spacing is None:
+        cells, requested = 24, "cells = 24 (default)"
+    if spacing is not None:
+        key, requested = "network.spacing", f"spacing = {spacing:g} m"
+        order = np.argsort(edge)
+        running = np.cumsum(mu_area[order])
+        median = float(edge[order][np.searchsorted(running, running[-1] / 2)])
+        cells = max(round(whole * median / spacing), 1)
+        if cells < LEAST_CELLS:
+            raise InputError(
+                f"spacing = {spacing:g} m leaves {whole * median / spacing:.2g} cells across the surface, at least "
+                f"{LEAST_CELLS} are needed",
+                f"choose a spacing of at most {whole * median / LEAST_CELLS:.3g} m",
+                key,
+            )
+    assert cells is not None
+    if cells < LEAST_CELLS:
+        raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
+    step = whole / cells
+    estimate = float(mu_area.sum() / step**2)
+    if estimate > MOST_NODES:
+        memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
+        most = int(cells * np.sqrt(MOST_NODES / estimate))
+        raise InputError(
+            f"{requested} would make about {estimate:,.0f} nodes and take about {memory:,.0f} GB of memory (limit "
+            f"{MOST_NODES:,} nodes)",
+            f"at most {most} cells fit this surface"
+            if spacing is None
+            else f"choose a spacing of at least {spacing * cells / most:.3g} m",
+            key,
+        )
+    return Lattice(origin, step, cells, requested, round(estimate))
+
+
+def _cell_densities(iso: Isothermic, points: Floats, weights: Floats) -> tuple[Floats, Floats]:
+    """Area of the cell plane, 2 |dw|^2, m, and cell edge over l0, 1 / (sqrt2 mu), at integration points."""
+    connectivity = iso.mesh.connectivity
+    basis = connectivity.basis
+    x, y = basis.basis(points, 1, 0), basis.basis(points, 0, 1)
+    w_x, w_y = iso.value @ x.T, iso.value @ y.T
+    area = np.abs(w_x.real * w_y.imag - w_x.imag * w_y.real) * weights
+    corners = iso.mesh.nodes[connectivity.elements]
+    flat = np.linalg.norm(np.cross(np.matmul(x, corners), np.matmul(y, corners)), axis=2) * weights
+    edge = np.sqrt(flat / np.maximum(2 * area, 1e-300))
+    return (2 * area).ravel(), edge.ravel()
+
+
+def _whole_length(iso: Isothermic) -> float:
+    """What `cells` divides: the period around the first hole, or the longest principal line, sqrt(m)."""
+    for piece in iso.transitions:
+        if piece.sign == 1:
+            a, b = piece.shift.real, piece.shift.imag
+            return float(max(abs(a + b), abs(a - b)))
+    corner = iso.value[:, :3]
+    return float(max(np.ptp(corner.real), np.ptp(corner.imag)))
+
+
+def _periods(iso: Isothermic, raw: CellMap, rim_loop: NDArray[np.int64], names: tuple[str, ...]) -> tuple[Period, ...]:
+    """Cells crossed on the way around each hole, where the coordinates come back as themselves."""
+    mesh = iso.mesh
+    rims = element_rims(mesh.connectivity, mesh.nodes, rim_loop)
+    periods = []
+    for hole in range(1, len(rims)):
+        place = {int(v): float(t) for v, t in zip(rims[hole].vertices, rims[hole].starts, strict=True)}
+        passed = []
+        for number, piece in enumerate(iso.transitions):
+            tips = _tip_vertices(mesh, piece)
+            for side, end in enumerate(piece.ends):
+                if end == -1 - hole:
+                    passed.append((place[tips[side]], number, side == 0))
+        sign, shift = 1, 0j
+        for _, number, inwards in sorted(passed):
+            s, c = int(raw.signs[number]), complex(raw.shifts[number])
+            # from before the piece to behind it: left to right where it leads away from the rim
+            sign, shift = (s * sign, s * shift + c) if inwards else (s * sign, s * (shift - c))
+        if sign == 1:
+            name = names[hole] if hole < len(names) else f"hole {hole}"
+            periods.append(Period(name, abs(shift.imag), abs(shift.real)))
+    return tuple(periods)
+
+
+def _tip_vertices(mesh: NetMesh, piece: Transition) -> tuple[int, int]:
+    """First and last vertex of a piece of the cut."""
+    faces = mesh.connectivity.faces
+    first = faces[piece.left[0], piece.left_edge[0]]
+    last = faces[piece.left[-1], (piece.left_edge[-1] + 1) % 3]
+    return int(first), int(last)
+
+
+def _named(piece: Transition, mesh: NetMesh, names: tuple[str, ...]) -> str:
+    """What a piece of the cut lies between."""
+
+    def one(end: int) -> str:
+        if end < 0:
+            return f"the loop {names[-1 - end]!r}" if -1 - end < len(names) else "the rim"
+        x, y, z = mesh.nodes[end]
+        kind = "the singular node" if end in mesh.umbilics else "the seam"
+        return f"{kind} at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+
+    return f"between {one(piece.ends[0])} and {one(piece.ends[1])}"

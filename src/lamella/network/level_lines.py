@@ -1,0 +1,312 @@
+"""Lamellas as chains through small flat triangles: which crosses which, before anything is placed exactly.
+
+Every element is cut into small triangles on which chi is taken as linear. A level line then enters and leaves each of
+them once, and a whole number of chi inside lies on one line of either family: the net's combinatorics follow without
+tolerances. Exact places come afterwards, from Newton's method.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components, depth_first_order
+
+from lamella.network.cell_map import CellMap
+from lamella.network.isothermic import sectors
+from lamella.surface.element.connectivity import connect
+from lamella.surface.element.lagrange import local_faces
+from lamella.surface.points import Complexes, Floats
+
+Integers = NDArray[np.int64]
+
+# small triangles reach over at most this many cells; parts of an element's edge at least and at most
+REACH, FEWEST, MOST = 0.4, 3, 24
+# cells; values as near as this to a whole number are moved off it
+NUDGE = 1e-9
+# a shift as near as this to a whole number of cells closes the net
+WHOLE = 1e-6
+# how a chain ends
+CLOSED, RIM, SINGULAR_END, SEAM_END = range(4)
+
+
+@dataclass(frozen=True)
+class SmallTriangles:
+    """Elements cut into small triangles.
+
+    Attributes
+    ----------
+    element : (t,) int
+    corners : (t, 3) int
+        Grid points, the same across edges that are not cut.
+    local : (t, 3, 2)
+        Local coordinates of the corners.
+    chi : (g,) complex
+        At the grid points.
+    singular : (g,) bool
+        Grid points that are umbilics on the lattice.
+    """
+
+    element: Integers
+    corners: Integers
+    local: Floats
+    chi: Complexes
+    singular: NDArray[np.bool_]
+    cut_left: Integers
+    cut_right: Integers
+    cut_piece: Integers
+
+
+@dataclass(frozen=True)
+class Chains:
+    """The level lines of one family, link by link.
+
+    Attributes
+    ----------
+    offsets : (c + 1,) int
+        Where each chain's links begin.
+    triangle : (l,) int
+        Small triangle of each link.
+    level : (l,) int
+        The line's whole number on that triangle's sheet.
+    start, end : (l,)
+        The other coordinate where the link begins and ends, on that sheet.
+    local_start, local_end : (l, 2)
+        Local coordinates there.
+    ends : (c, 2) int
+        How each chain begins and ends: `CLOSED`, `RIM`, `SINGULAR_END`, `SEAM_END`.
+    """
+
+    offsets: Integers
+    triangle: Integers
+    level: Integers
+    start: Floats
+    end: Floats
+    local_start: Floats
+    local_end: Floats
+    ends: Integers
+
+    @property
+    def owner(self) -> Integers:
+        """Chain of each link, (l,)."""
+        return np.repeat(np.arange(len(self.offsets) - 1), np.diff(self.offsets))
+
+
+def small_triangles(cells: CellMap, cut: NDArray[np.bool_], umbilics: Integers) -> SmallTriangles:
+    """Cut the elements of a cell map.
+
+    Parameters
+    ----------
+    cells : CellMap
+    cut : (m, 3) bool
+        Edges that are cut.
+    umbilics : (z,) int
+        Vertices that may be singular nodes.
+    """
+    connectivity = cells.mesh.connectivity
+    corner = cells.value[:, :3]
+    span = np.abs(corner - np.roll(corner, 1, 1)).max()
+    parts = int(np.clip(np.ceil(span / REACH), FEWEST, MOST))
+    grid = connect(connectivity.faces, int(connectivity.faces.max()) + 1, parts)
+    local = grid.basis.nodes
+    point = sectors(grid, cut)
+    values = cells.value @ connectivity.basis.basis(local).T
+    chi = np.zeros(int(point.max()) + 1, complex)
+    chi[point] = values
+    # umbilics on the lattice have whole values; no other grid point may
+    singular = np.zeros(len(chi), bool)
+    for vertex in umbilics.tolist():
+        element, which = np.nonzero(connectivity.faces == vertex)
+        at = np.unique(point[element, which])
+        near = np.round(chi[at].real) + 1j * np.round(chi[at].imag)
+        if (np.abs(chi[at] - near) < WHOLE).all():
+            chi[at], singular[at] = near, True
+    off_real, off_imag = (np.abs(part - np.round(part)) < NUDGE for part in (chi.real, chi.imag))
+    chi = chi + np.where(off_real & ~singular, 3 * NUDGE, 0) + 1j * np.where(off_imag & ~singular, 3 * NUDGE, 0)
+    # both sides of a cut alike to the last digit, where the net goes on across it
+    element, edge = np.nonzero(cells.across > 0)
+    piece = cells.across[element, edge] - 1
+    neighbour, other = connectivity.neighbours[element, edge], connectivity.neighbour_edges[element, edge]
+    left = point[element[:, None], grid.basis.edge_nodes[edge]]
+    right = point[neighbour[:, None], grid.basis.edge_nodes[other][:, ::-1]]
+    whole = whole_shifts(cells)
+    for number in np.flatnonzero(~np.isnan(whole)):
+        mine = piece == number
+        target = right[mine].ravel()
+        wanted = cells.signs[number] * chi[left[mine].ravel()] + whole[number]
+        free = ~singular[target]
+        chi[target[free]] = wanted[free]
+    faces = local_faces(parts)
+    m = len(connectivity.elements)
+    return SmallTriangles(
+        np.repeat(np.arange(m), len(faces)),
+        point[:, faces].reshape(-1, 3),
+        np.tile(local[faces], (m, 1, 1)),
+        chi,
+        singular,
+        np.stack([left[:, :-1].ravel(), left[:, 1:].ravel()], 1),
+        np.stack([right[:, :-1].ravel(), right[:, 1:].ravel()], 1),
+        np.repeat(piece, parts),
+    )
+
+
+def whole_shifts(cells: CellMap) -> Complexes:
+    """Shifts of the transitions as whole numbers, nan where the net does not go on, (t,)."""
+    near = np.round(cells.shifts.real) + 1j * np.round(cells.shifts.imag)
+    return np.where(np.abs(cells.shifts - near) < WHOLE, near, np.nan)
+
+
+def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
+    """All level lines of a family (0: A, Im chi whole; 1: B, Re chi whole)."""
+    value, other = (small.chi.imag, small.chi.real) if family == 0 else (small.chi.real, small.chi.imag)
+    order = np.argsort(value[small.corners], axis=1)
+    rank = np.take_along_axis(small.corners, order, 1)
+    low, middle, high = value[rank].T
+    first, last = np.ceil(low).astype(np.int64), np.floor(high).astype(np.int64)
+    count = np.maximum(last - first + 1, 0)
+    triangle = np.repeat(np.arange(len(count)), count)
+    level = first[triangle] + np.arange(len(triangle)) - np.repeat(np.cumsum(count) - count, count)
+    # a line that only touches a singular corner is not there
+    keep = (level != low[triangle]) & (level != high[triangle])
+    triangle, level = triangle[keep], level[keep]
+    at_corner = level == middle[triangle]
+    below = level < middle[triangle]
+    # ends of each link: the long edge, and the short one on the level's side
+    long_edge = rank[triangle][:, [0, 2]]
+    short_edge = np.where(below[:, None], rank[triangle][:, [0, 1]], rank[triangle][:, [1, 2]])
+    points = len(small.chi)
+
+    def key(edge: Integers) -> Integers:
+        return np.asarray(edge.min(1) * points + edge.max(1))
+
+    edges, number = np.unique(np.concatenate([key(long_edge), key(short_edge)]), return_inverse=True)
+    base = int(level.min(initial=0)) - 1
+    width = int(level.max(initial=0)) - base + 2
+    crossing = number * width + np.concatenate([level, level]) - base
+    # a link that ends in a singular corner has an end of its own there
+    ended = np.flatnonzero(at_corner)
+    crossing[len(level) + ended] = len(edges) * width + ended
+    names, crossing = np.unique(crossing, return_inverse=True)
+    one, two = crossing[: len(level)], crossing[len(level) :]
+    jump_left, jump_right = _jumps(small, cells, family, edges, names, width, base, points)
+    total = len(names)
+    links = len(one)
+    tail, head = np.concatenate([one, jump_left]), np.concatenate([two, jump_right])
+    degree = np.bincount(np.concatenate([tail, head]), minlength=total)
+    graph = coo_matrix((np.ones(len(tail)), (tail, head)), (total, total))
+    chains, group = connected_components(graph, directed=False)
+    # each chain begins at a loose end; a closed one anywhere, with one link taken out
+    begin = np.full(chains, -1)
+    loose = np.flatnonzero(degree == 1)
+    # a singular end goes first
+    is_singular = names >= len(edges) * width
+    for some in (loose[::-1], loose[is_singular[loose]][::-1]):
+        begin[group[some]] = some
+    closed = begin < 0
+    opened = np.zeros(len(tail), bool)
+    for chain in np.flatnonzero(closed):
+        link = int(np.flatnonzero(group[tail] == chain)[0])
+        opened[link], begin[chain] = True, head[link]
+    kept = np.flatnonzero(~opened)
+    source = np.full(chains, total)
+    graph = coo_matrix(
+        (np.ones(len(kept) + chains), (np.r_[tail[kept], source], np.r_[head[kept], begin])), (total + 1, total + 1)
+    ).tocsr()
+    walk, _ = depth_first_order(graph + graph.T, total, directed=False)
+    walk = walk[1:]
+    position = np.empty(total, np.int64)
+    position[walk] = np.arange(total)
+    real = np.arange(len(tail)) < links
+    # a link's place in its chain: that of its earlier end, a closed chain's opened link last
+    early = np.minimum(position[tail], position[head])
+    early[opened] = np.maximum(position[tail], position[head])[opened]
+    forward = (position[tail] < position[head]) ^ opened
+    use = np.flatnonzero(real)
+    use = use[np.argsort(early[use], kind="stable")]
+    chain_rank = np.argsort(position[begin], kind="stable")
+    new_number = np.empty(chains, np.int64)
+    new_number[chain_rank] = np.arange(chains)
+    owner = new_number[group[tail[use]]]
+    use = use[np.argsort(owner, kind="stable")]
+    owner = np.sort(owner)
+    offsets = np.searchsorted(owner, np.arange(chains + 1))
+    way = forward[use]
+    triangle, level = triangle[use], level[use]
+    ends = []
+    for edge, at_end in ((long_edge[use], np.zeros(len(use), bool)), (short_edge[use], at_corner[use])):
+        share = np.where(
+            at_end, 0.0, (level - value[edge[:, 0]]) / np.where(at_end, 1, value[edge[:, 1]] - value[edge[:, 0]])
+        )
+        corner = rank[triangle][:, 1]
+        t = np.where(at_end, other[corner], other[edge[:, 0]] + share * (other[edge[:, 1]] - other[edge[:, 0]]))
+        place = _local_of(small, triangle, edge, share)
+        tip = _local_of(small, triangle, np.stack([corner, corner], 1), np.zeros(len(use)))
+        ends.append((t, np.where(at_end[:, None], tip, place)))
+    (t_long, p_long), (t_short, p_short) = ends
+    start, end = np.where(way, t_long, t_short), np.where(way, t_short, t_long)
+    local_start = np.where(way[:, None], p_long, p_short)
+    local_end = np.where(way[:, None], p_short, p_long)
+    kinds = np.full((chains, 2), CLOSED)
+    tips = np.full((chains, 2), -1)
+    tips[:, 0] = begin
+    far = loose[begin[group[loose]] != loose]
+    tips[group[far], 1] = far
+    on_cut = np.isin(edges, key(np.concatenate([small.cut_left, small.cut_right])))
+    for side in range(2):
+        at = tips[:, side]
+        there = (at >= 0) & ~closed
+        name = names[at[there]]
+        edge_number = np.minimum(name // width, len(edges) - 1)
+        kind = np.where(on_cut[edge_number], SEAM_END, RIM)
+        kinds[there, side] = np.where(name >= len(edges) * width, SINGULAR_END, kind)
+    return Chains(offsets, triangle, level, start, end, local_start, local_end, kinds[chain_rank])
+
+
+def _local_of(small: SmallTriangles, triangle: Integers, edge: Integers, share: Floats) -> Floats:
+    """Local coordinates of points on edges of small triangles."""
+    corners = small.corners[triangle]
+    rows = np.arange(len(triangle))
+    a = small.local[triangle][rows, (corners == edge[:, :1]).argmax(1)]
+    b = small.local[triangle][rows, (corners == edge[:, 1:]).argmax(1)]
+    return np.asarray(a + share[:, None] * (b - a))
+
+
+def _jumps(
+    small: SmallTriangles,
+    cells: CellMap,
+    family: int,
+    edges: Integers,
+    names: Integers,
+    width: int,
+    base: int,
+    points: int,
+) -> tuple[Integers, Integers]:
+    """Pairs of crossings that are the same point on both sides of a cut."""
+    whole = whole_shifts(cells)
+    goes_on = ~np.isnan(whole[small.cut_piece]) if len(whole) else np.zeros(0, bool)
+    left, right, piece = small.cut_left[goes_on], small.cut_right[goes_on], small.cut_piece[goes_on]
+    if not len(left):
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    value = small.chi.imag if family == 0 else small.chi.real
+    low, high = value[left].min(1), value[left].max(1)
+    first, last = np.ceil(low).astype(np.int64), np.floor(high).astype(np.int64)
+    count = np.maximum(last - first + 1, 0)
+    edge = np.repeat(np.arange(len(count)), count)
+    level = first[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
+    shift = whole[piece].imag if family == 0 else whole[piece].real
+    there = cells.signs[piece[edge]] * level + np.rint(shift[edge]).astype(np.int64)
+
+    def crossing(pair: Integers, at: Integers) -> tuple[Integers, NDArray[np.bool_]]:
+        key = pair.min(1) * points + pair.max(1)
+        number = np.minimum(np.searchsorted(edges, key), len(edges) - 1)
+        inside = (edges[number] == key) & (at - base >= 0) & (at - base < width)
+        name = number * width + at - base
+        index = np.minimum(np.searchsorted(names, name), len(names) - 1)
+        return index, inside & (names[index] == name)
+
+    one, has_one = crossing(left[edge], level)
+    two, has_two = crossing(right[edge], there)
+    both = has_one & has_two
+    return one[both], two[both]

@@ -1,0 +1,147 @@
+"""Umbilics: the zeros of the trace-free shape operator, where lamellas meet in singular nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from lamella.surface.element.lagrange import subdivision
+from lamella.surface.element.places import Places
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.points import Complexes, Floats
+
+Integers = NDArray[np.int64]
+
+# small triangles along an element's edge in which a zero is looked for
+PARTS = 4
+# Newton steps from a small triangle's middle
+MOST_STEPS = 30
+# zeros nearer to each other than this part of the surface's size are one of higher order; the least that serves
+REACHES = (2e-3, 6e-3, 2e-2, 6e-2)
+
+
+@dataclass(frozen=True)
+class Umbilics:
+    """Zeros of the Hopf differential.
+
+    Attributes
+    ----------
+    places : Places
+    position : (n, 3)
+        m.
+    orders : (n,) int
+        Order m of each zero; 2 (m + 2) lamella rays leave it.
+    """
+
+    places: Places
+    position: Floats
+    orders: Integers
+
+    @property
+    def rays(self) -> Integers:
+        """Lamella rays of each, (n,)."""
+        return 2 * (self.orders + 2)
+
+
+def find_umbilics(surface: ElementSurface) -> Umbilics:
+    """All zeros of the trace-free shape operator of a surface of elements, to Newton precision.
+
+    A zero of order m turns the deviator m times around it. Every small triangle whose corners turn it, and its
+    neighbours, is a place to begin from; zeros closer together than `REACHES` times the size count as one of the sum of
+    their orders, since the surface cannot tell them apart.
+    """
+    local, faces = subdivision(PARTS)
+    m = len(surface.connectivity.elements)
+    every = Places(np.repeat(np.arange(m), len(local)), np.tile(local, (m, 1)))
+    value = deviator_in_element(surface, every).reshape(m, len(local))
+    corners = value[:, faces]
+    turn = np.angle(np.roll(corners, -1, 2) / np.where(corners == 0, 1, corners)).sum(2) / (2 * np.pi)
+    # a small value beside the corners' differences may hide a zero next to the triangle's edge
+    spread = np.abs(corners - np.roll(corners, 1, 2)).max(2)
+    start = (np.rint(turn) != 0) | (np.abs(corners).min(2) < 0.5 * spread)
+    element, small = np.nonzero(start)
+    found, inside = _newton(surface, Places(element, local[faces[small]].mean(1)))
+    found = found[inside]
+    size = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
+    if not len(found):
+        return Umbilics(found, np.zeros((0, 3)), np.zeros(0, np.int64))
+    position = surface.measured(found).position
+    for reach in REACHES:
+        places, position, orders = _gathered(surface, position, reach * size)
+        # the Hopf differential is holomorphic: a negative turn is noise next to a zero of higher order
+        if (orders >= 0).all():
+            break
+    kept = orders > 0
+    return Umbilics(places[kept], position[kept], orders[kept])
+
+
+def _gathered(surface: ElementSurface, position: Floats, reach: float) -> tuple[Places, Floats, Integers]:
+    """Zeros nearer to each other than `reach` (m) as one, with the turns of the deviator around them."""
+    pairs = np.array(list(cKDTree(position).query_pairs(reach)), np.int64).reshape(-1, 2)
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), (len(position), len(position)))
+    _, group = connected_components(graph, directed=False)
+    centre = np.stack([np.bincount(group, position[:, c]) for c in range(3)], 1) / np.bincount(group)[:, None]
+    places, position = surface.closest(centre)
+    return places, position, _turns(surface, position, reach)
+
+
+def deviator_in_element(surface: ElementSurface, where: Places) -> Complexes:
+    """Trace-free shape operator in one orthonormal frame an element, 1/m, (n,): no turn of the frame is in it."""
+    m = len(surface.connectivity.elements)
+    middle = surface.measured(Places(np.arange(m), np.full((m, 2), 1 / 3)))
+    at = surface.at(where)
+    return np.asarray(at.deviator * _frame_turn(at.e_u, at.e_v, middle.e_u[where.element]) ** 2)
+
+
+def _frame_turn(e_u: Floats, e_v: Floats, reference: Floats) -> Complexes:
+    """Unit complex number of a reference direction in frames (e_u, e_v)."""
+    turn = (reference * e_u).sum(1) + 1j * (reference * e_v).sum(1)
+    return np.asarray(turn / np.abs(turn))
+
+
+def _newton(surface: ElementSurface, start: Places) -> tuple[Places, NDArray[np.bool_]]:
+    """Zeros from starting places; which of them ended inside their element."""
+    element, local = start.element, start.local.copy()
+    step = 1e-5
+    for _ in range(MOST_STEPS):
+        value = deviator_in_element(surface, Places(element, local))
+        slope = np.empty((len(element), 2, 2))
+        for axis in range(2):
+            ahead = local.copy()
+            ahead[:, axis] += step
+            change = (deviator_in_element(surface, Places(element, ahead)) - value) / step
+            slope[:, 0, axis], slope[:, 1, axis] = change.real, change.imag
+        determinant = np.linalg.det(slope)
+        slope[np.abs(determinant) < 1e-300] = np.eye(2)
+        move = -np.linalg.solve(slope, np.stack([value.real, value.imag], 1)[..., None])[..., 0]
+        move *= np.minimum(1, 0.3 / np.maximum(np.abs(move).max(1), 1e-300))[:, None]
+        local = np.clip(local + move, -0.2, 1.2)
+        if np.abs(move).max(initial=0.0) < 1e-12:
+            break
+    # a zero on an edge is found from either side
+    inside = (local.min(1) > -1e-6) & (local.sum(1) < 1 + 1e-6)
+    inside &= np.abs(move).max(1) < 1e-6
+    return Places(element, np.clip(local, 0, 1)), inside
+
+
+def _turns(surface: ElementSurface, centre: Floats, radius: float) -> Integers:
+    """Turns of the deviator once around places on the surface, at a radius (m), (n,)."""
+    count = 48
+    at, _ = surface.closest(centre)
+    frame = surface.at(at)
+    angle = 2 * np.pi * np.arange(count) / count
+    ring = (
+        centre[:, None]
+        + radius * np.cos(angle)[:, None] * frame.e_u[:, None]
+        + radius * np.sin(angle)[:, None] * frame.e_v[:, None]
+    )
+    there = surface.at(surface.closest(ring.reshape(-1, 3))[0])
+    reference = np.repeat(frame.e_u, count, axis=0)
+    value = (there.deviator * _frame_turn(there.e_u, there.e_v, reference) ** 2).reshape(-1, count)
+    turns = np.angle(np.roll(value, -1, 1) / value).sum(1) / (2 * np.pi)
+    return np.asarray(np.rint(turns), np.int64)

@@ -1,0 +1,170 @@
+"""The tables [[surface.boundary]] of a project file: boundary curves, and where they slide."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from lamella.project_values import (
+    Direction,
+    Point,
+    Points,
+    Refusal,
+    Table,
+    Unit,
+    file_of,
+    length,
+    list_of_tables,
+    number,
+)
+
+CURVE_FILES = (".3dm", ".dxf", ".json")
+MOST_PARTS = 200
+
+
+class CircleTable(Table):
+    """A circle, counter-clockwise about its normal."""
+
+    center: Point = number("Centre [x, y, z].", "m", examples=[[0.0, 0.0, 2.0]])
+    radius: float = length("Radius.", examples=[1.3])
+    normal: Direction = number("Normal of the circle's plane.", "", default=(0.0, 0.0, 1.0))
+
+
+class SlideTable(Table):
+    """A curve that may slide and is met at 90 degrees: on a plane (point, normal) or up a wall (direction)."""
+
+    point: Point | None = number("A point of the plane the curve lies and slides on.", "m", default=None)
+    normal: Direction | None = number("Normal of that plane.", "", default=None)
+    direction: Direction | None = number(
+        "Direction of the line every point of the curve slides along: that of the wall above it.", "", default=None
+    )
+
+    @model_validator(mode="after")
+    def _possible(self) -> SlideTable:
+        if (self.direction is None) == (self.point is None) or (self.point is None) != (self.normal is None):
+            given = ", ".join(key for key in ("point", "normal", "direction") if getattr(self, key) is not None)
+            raise Refusal(
+                f"{given or 'nothing'} is given: has to be point and normal, or direction",
+                "write slide = {point = [0, 0, 0], normal = [0, 0, 1]} or slide = {direction = [0, 0, 1]}",
+            )
+        return self
+
+
+class ArcTable(Table):
+    """An arc of a circle through three points."""
+
+    start: Point = number("Where the arc begins.", "m", examples=[[0.0, 0.0, 0.0]])
+    middle: Point = number("A point on the way.", "m", examples=[[1.0, 1.0, 0.0]])
+    end: Point = number("Where the arc ends.", "m", examples=[[2.0, 0.0, 0.0]])
+
+
+def _with_interpolation(values: Any) -> Any:
+    """Points are splined where nothing else is said; circles, arcs and files have no such key."""
+    if isinstance(values, dict) and "points" in values and "interpolation" not in values:
+        return values | {"interpolation": "spline"}
+    return values
+
+
+Interpolation = Literal["spline", "polyline"]
+_INTERPOLATION = (
+    'How points are joined: "spline" (quintic through 7 points and more, cubic through fewer) or "polyline", whose '
+    'corners are kept; "spline" when not given.'
+)
+
+
+class PartTable(Table):
+    """A part of a loop, from its first to its last point; parts join end to end, the last one with the first."""
+
+    points: Points | None = number(
+        "Points [x, y, z]; two make a straight part.", "m", default=None, examples=[[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]]]
+    )
+    interpolation: Interpolation | None = Field(default=None, description=_INTERPOLATION)
+    arc: ArcTable | None = Field(default=None, description="An arc {start, middle, end} instead of points.")
+    slide: SlideTable | None = Field(default=None, description="Where this part may slide; fixed when not given.")
+
+    _default = model_validator(mode="before")(_with_interpolation)
+
+    @model_validator(mode="after")
+    def _possible(self) -> PartTable:
+        if (self.points is None) == (self.arc is None):
+            given = "points and arc are both given" if self.points else "a part needs points or arc"
+            raise Refusal(given, "write points = [[x, y, z], ...] or arc = {start = .., middle = .., end = ..}")
+        if self.arc is not None and self.interpolation is not None:
+            raise Refusal("an arc has no interpolation", "leave interpolation out", "interpolation")
+        return self
+
+
+_SHAPES = ("points", "circle", "file", "part")
+
+
+class BoundaryTable(Table):
+    """A closed boundary curve: one of points, circle, file or part. The first is the outer loop, the others are holes.
+
+    The surface's normal follows the outer loop by the right-hand rule.
+    """
+
+    name: str = Field(
+        default="", max_length=100, description='Name in messages and files; "outer", "hole 1", ... when not given.'
+    )
+    points: Points | None = number(
+        "Points [x, y, z] of the curve, the first not repeated.",
+        "m",
+        default=None,
+        examples=[[[0.0, 0.0, 0.0], [4.0, 0.0, 1.0], [4.0, 4.0, 0.0], [0.0, 4.0, 1.0]]],
+    )
+    interpolation: Interpolation | None = Field(default=None, description=_INTERPOLATION)
+    circle: CircleTable | None = Field(default=None, description="A circle {center, radius, normal}.")
+    file: str | None = Field(
+        default=None,
+        max_length=1000,
+        description="Curve file (.3dm, .dxf or .json), relative to the project file.",
+        examples=["curves.3dm"],
+    )
+    layer: str | None = Field(
+        default=None, max_length=300, description="Layer of the curve in the file.", examples=["boundary"]
+    )
+    id: str | None = Field(
+        default=None,
+        max_length=300,
+        description="Object name or id (.3dm), handle (.dxf) or name (.json) of the curve in the file.",
+        examples=["oculus"],
+    )
+    unit: Unit | None = Field(
+        default=None, description="Unit of the file; the one in its header when not given.", examples=["mm"]
+    )
+    part: Annotated[tuple[PartTable, ...], Field(strict=False)] | None = Field(
+        default=None,
+        description="Tables [[surface.boundary.part]] joined end to end.",
+        json_schema_extra={"minItems": 1, "maxItems": MOST_PARTS},
+    )
+    slide: SlideTable | None = Field(default=None, description="Where the loop may slide; fixed when not given.")
+
+    _default = model_validator(mode="before")(_with_interpolation)
+
+    @field_validator("file", mode="before")
+    @classmethod
+    def _readable(cls, value: Any) -> Any:
+        return file_of(value, CURVE_FILES)
+
+    @field_validator("part", mode="before")
+    @classmethod
+    def _parts(cls, value: Any) -> Any:
+        return list_of_tables(value, "surface.boundary.part", MOST_PARTS)
+
+    @model_validator(mode="after")
+    def _possible(self) -> BoundaryTable:
+        given = [key for key in _SHAPES if getattr(self, key) is not None]
+        if len(given) != 1:
+            told = f"{' and '.join(given)} are given" if given else "no curve is given"
+            remedy = f"keep one of {', '.join(given)}" if given else "add one of them"
+            raise Refusal(f"{told}: has to be one of {', '.join(_SHAPES)}", remedy)
+        if self.interpolation is not None and self.points is None:
+            raise Refusal("interpolation goes with points", "leave interpolation out", "interpolation")
+        for key in ("layer", "id", "unit"):
+            if getattr(self, key) is not None and self.file is None:
+                remedy = "lengths here are in metres" if key == "unit" else f"leave {key} out"
+                raise Refusal(f"{key} goes with file", remedy, key)
+        if self.slide is not None and self.part is not None:
+            raise Refusal("a loop of parts slides by its parts", "move slide into the parts that slide", "slide")
+        return self

@@ -1,0 +1,201 @@
+"""Sparse symmetric systems: the pattern is analysed once, the numbers are factored many times.
+
+Two back ends do the same: `rslab` (supernodal L D L^T) and scipy's SuperLU, which is always there. Both give the
+inertia, the number of negative eigenvalues, which tells a stable film from an unstable one (Sylvester's law).
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import Any, Literal, Protocol, cast
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Backend = Literal["rslab", "splu"]
+
+# minimum degree orders small systems faster, nested dissection larger ones better
+DISSECTION_FROM = 30_000
+
+
+def default_backend() -> Backend:
+    """Back end in use: LAMELLA_SOLVER where it is set, else `rslab` where it can be imported, else "splu"."""
+    wanted = os.environ.get("LAMELLA_SOLVER", "")
+    if wanted in ("rslab", "splu"):
+        return cast(Backend, wanted)
+    try:
+        import rslab  # noqa: F401
+    except ImportError:
+        return "splu"
+    return "rslab"
+
+
+def packed(blocks: Floats) -> Floats:
+    """Lower triangles of symmetric blocks (e, k, k), row by row, (e, k (k + 1) / 2)."""
+    i, j = np.tril_indices(blocks.shape[1])
+    return np.asarray(blocks[:, i, j])
+
+
+class SingularError(ArithmeticError):
+    """The matrix has no inverse to working precision."""
+
+
+class Factor(Protocol):
+    """A factored symmetric matrix."""
+
+    negative: int
+    """Number of negative eigenvalues."""
+
+    def solve(self, right: Floats) -> Floats:
+        """Solution for one (n,) or several (n, k) right-hand sides."""
+
+
+class _RslabFactor:
+    def __init__(self, factor: Any) -> None:
+        self._factor = factor
+        _, self.negative, zero = (int(x) for x in factor.inertia)
+        if zero:
+            raise SingularError(f"{zero} eigenvalues vanish")
+
+    def solve(self, right: Floats) -> Floats:
+        if right.ndim == 1:
+            return np.asarray(self._factor.solve(np.ascontiguousarray(right)))
+        return np.asarray(self._factor.solve_many(np.ascontiguousarray(right)))
+
+
+class _SuperLuFactor:
+    def __init__(self, matrix: sp.csc_matrix) -> None:
+        from scipy.sparse.linalg import splu
+
+        try:
+            self._factor = splu(
+                matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+            )
+        except RuntimeError as error:
+            raise SingularError(str(error)) from None
+        # rows are not exchanged beyond the symmetric ordering, so U's diagonal is that of D in L D L^T
+        self.negative = int((self._factor.U.diagonal() < 0).sum())
+
+    def solve(self, right: Floats) -> Floats:
+        return np.asarray(self._factor.solve(right))
+
+
+@dataclass(frozen=True)
+class SymmetricPattern:
+    """Where the entries of a symmetric matrix assembled from element blocks are, the same for all its values.
+
+    Attributes
+    ----------
+    size : int
+        Number of unknowns, border included.
+    columns, rows : (size + 1,), (nnz,)
+        Lower triangle in compressed columns, rows ascending.
+    border : int
+        Number of last unknowns that are coupled with all others (a multiplier of a volume, a step length).
+    backend : "rslab" or "splu"
+    """
+
+    size: int
+    columns: Integers
+    rows: Integers
+    border: int
+    backend: Backend
+    _target: Integers = field(repr=False)  # entry of each kept block value
+    _kept: Integers = field(repr=False)  # flat index of each kept block value
+    _border_target: Integers = field(repr=False)  # (border, size) entries of the border's rows
+    _symbolic: dict[str, Any] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def from_elements(
+        cls, unknowns: Integers, count: int, *, border: int = 0, backend: Backend | None = None
+    ) -> SymmetricPattern:
+        """Pattern of element blocks.
+
+        Parameters
+        ----------
+        unknowns : (e, k) int
+            Unknown of each local one; -1: held, its rows and columns are left out.
+        count : int
+            Number of unknowns without the border.
+        border : int
+            Unknowns after those, coupled with all.
+        backend : optional
+            Default: `default_backend`.
+        """
+        first, second = np.tril_indices(unknowns.shape[1])
+        one, other = unknowns[:, first].ravel(), unknowns[:, second].ravel()
+        kept = np.flatnonzero((one >= 0) & (other >= 0))
+        size = count + border
+        low, high = np.minimum(one, other)[kept], np.maximum(one, other)[kept]
+        keys = low * size + high
+        rows = np.arange(count, size)
+        border_keys = np.arange(size) * size + rows[:, None]
+        below = rows[:, None] >= np.arange(size)
+        # the whole diagonal is there, whatever the elements
+        unique, inverse = np.unique(
+            np.concatenate([np.arange(size) * (size + 1), keys, border_keys[below]]), return_inverse=True
+        )
+        columns = np.searchsorted(unique, np.arange(size + 1) * size)
+        border_target = np.full((border, size), -1)
+        border_target[below] = inverse[size + len(keys) :]
+        return cls(
+            size,
+            columns,
+            unique % size,
+            border,
+            backend or default_backend(),
+            inverse[size : size + len(keys)],
+            kept,
+            border_target,
+        )
+
+    def assemble(self, blocks: Floats, border: Floats | None = None) -> Floats:
+        """Entries of the lower triangle, (nnz,).
+
+        Parameters
+        ----------
+        blocks : (e, k (k + 1) / 2)
+            Lower triangles of the element blocks, see `packed`.
+        border : (border, size), optional
+            Rows of the border.
+        """
+        values = np.bincount(self._target, blocks.ravel()[self._kept], len(self.rows)).astype(np.float64)
+        if border is not None:
+            inside = self._border_target >= 0
+            values[self._border_target[inside]] += border[inside]
+        return np.asarray(values)
+
+    def matrix(self, values: Floats) -> sp.csc_matrix:
+        """The full symmetric matrix."""
+        lower = sp.csc_matrix((values, self.rows, self.columns), (self.size, self.size))
+        return (lower + sp.tril(lower, -1).T).tocsc()
+
+    def factor(self, values: Floats) -> Factor:
+        """Factor the matrix of these entries.
+
+        Raises
+        ------
+        SingularError
+        """
+        if not np.isfinite(values).all():
+            raise SingularError("entries that are no numbers")
+        if self.backend == "splu":
+            return _SuperLuFactor(self.matrix(values))
+        return self._factor_rslab(values)
+
+    def _factor_rslab(self, values: Floats) -> Factor:
+        import rslab
+
+        symbolic = self._symbolic.get("rslab")
+        if symbolic is None:
+            lower = sp.csc_matrix((values, self.rows, self.columns), (self.size, self.size))
+            ordering = "metis" if self.size >= DISSECTION_FROM else "amd"
+            symbolic = self._symbolic["rslab"] = rslab.analyze(lower, path="ldlt", ordering=ordering)
+        try:
+            return _RslabFactor(symbolic.factor(values))
+        except (RuntimeError, ValueError, ArithmeticError) as error:
+            raise SingularError(str(error)) from None

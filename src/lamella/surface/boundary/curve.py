@@ -1,0 +1,236 @@
+"""Boundary loops: closed curves by arc length, with their corners and the parts that may slide."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lamella.errors import InputError
+from lamella.surface.boundary.course import Course
+from lamella.surface.boundary.pieces import Floats, Integers, Pieces
+
+CORNER_ANGLE = 1e-6
+"""Radians. A larger jump of the tangent is a corner.
+
+Every jump counts, however small, because no element may run across one: an edge of length h that does misses the curve
+by h angle / 4, and the surface's curvature there by angle / h. Below 1e-6 that is less than the finest tolerance; it is
+also what drawings that are rounded to micrometres leave at tangent joints.
+"""
+
+_STANDSTILL = 1e-9
+"""Of a piece's mean speed: a slower end has no tangent."""
+
+
+@dataclass(frozen=True, eq=False)
+class Slide:
+    """A part of a loop that is free to slide, on a plane or along lines of one direction.
+
+    Attributes
+    ----------
+    start, end : float
+        Fractions of the loop's length, 0 <= start < 1, start < end <= start + 1; a whole loop: 0 and 1.
+    point, normal : (3,) or None
+        The plane, m, with its unit normal.
+    direction : (3,) or None
+        Unit direction of the line every point slides along: the wall above the curve.
+    """
+
+    start: float
+    end: float
+    point: Floats | None = None
+    normal: Floats | None = None
+    direction: Floats | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """A closed curve with the fraction t of its arc length as parameter, periodic with period 1.
+
+    Attributes
+    ----------
+    name : str
+    course : Course
+        The exact curve.
+    corners : (c,)
+        t where the tangent jumps by more than `CORNER_ANGLE` or a sliding part begins or ends; sorted.
+    turns : (c,)
+        Jump of the tangent at each corner, radians in 0..pi.
+    slides : tuple of Slide
+    """
+
+    name: str
+    course: Course = field(repr=False)
+    corners: Floats
+    turns: Floats
+    slides: tuple[Slide, ...] = ()
+
+    @property
+    def length(self) -> float:
+        """m."""
+        return self.course.length
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the bounding box of the curve's control points, m."""
+        return self.course.pieces.extent
+
+    def _locate(self, t: ArrayLike) -> tuple[Integers, Floats, tuple[int, ...]]:
+        fraction = np.asarray(t, float)
+        arc = np.mod(fraction, 1.0) * self.length
+        return *self.course.locate(arc.ravel()), fraction.shape
+
+    def at(self, t: ArrayLike) -> Floats:
+        """Points of the curve.
+
+        Parameters
+        ----------
+        t : (...)
+            Any real fractions of the length.
+
+        Returns
+        -------
+        (..., 3)
+            m.
+        """
+        piece, s, shape = self._locate(t)
+        position = self.course.pieces.evaluate(piece, s)[0] + self.course.origin
+        return np.asarray(position.reshape(*shape, 3))
+
+    def tangent(self, t: ArrayLike) -> Floats:
+        """Unit tangents (..., 3); at a corner that of the curve behind it."""
+        piece, s, shape = self._locate(t)
+        return _unit(self.course.pieces.evaluate(piece, s)[1]).reshape(*shape, 3)
+
+    def curvature(self, t: ArrayLike) -> Floats:
+        """Curvature of the curve, 1/m, (...), not negative; at a corner that of the curve behind it."""
+        piece, s, shape = self._locate(t)
+        _, first, second = self.course.pieces.evaluate(piece, s)
+        turning = np.linalg.norm(np.cross(first, second), axis=-1)
+        return np.asarray((turning / np.linalg.norm(first, axis=-1) ** 3).reshape(shape))
+
+    def reversed(self) -> Loop:
+        """The loop run through the other way, from the same first point: `at(t)` is the old `at(-t)`."""
+        corners = np.mod(-self.corners, 1.0)
+        order = np.argsort(corners)
+        slides = []
+        for slide in self.slides:
+            start = (1.0 - slide.end) % 1.0
+            slides.append(replace(slide, start=start, end=start + slide.end - slide.start))
+        pieces = self.course.pieces.reversed().transformed(1.0, self.course.origin)
+        return Loop(self.name, Course(pieces), corners[order], self.turns[order], tuple(slides))
+
+    def scaled(self, factor: float, shift: ArrayLike = (0.0, 0.0, 0.0)) -> Loop:
+        """The loop of the points factor x + shift, factor > 0, shift (3,) in m."""
+        if not factor > 0:
+            raise ValueError(f"factor = {factor!r} has to be above 0")
+        move = np.asarray(shift, float)
+        pieces = self.course.pieces.transformed(factor, factor * self.course.origin + move)
+        slides = tuple(
+            replace(slide, point=None if slide.point is None else factor * slide.point + move) for slide in self.slides
+        )
+        return replace(self, course=Course(pieces), slides=slides)
+
+
+@dataclass(frozen=True, eq=False)
+class Sliding:
+    """A run of pieces of a loop that slides, before the loop's length is known.
+
+    Attributes
+    ----------
+    first, count : int
+        The pieces.
+    point, normal, direction : (3,) or None
+        As in `Slide`, of any length.
+    """
+
+    first: int
+    count: int
+    point: Floats | None = None
+    normal: Floats | None = None
+    direction: Floats | None = None
+
+
+def make_loop(name: str, pieces: Pieces, sliding: Sequence[Sliding] = (), *, where: str = "") -> Loop:
+    """A loop from pieces that join end to end, the last one with the first.
+
+    Parameters
+    ----------
+    name : str
+    pieces : Pieces
+        m.
+    sliding : sequence of Sliding, optional
+    where : str, optional
+        Key for messages.
+
+    Raises
+    ------
+    InputError
+        Numbers that are not finite, no length, or a place where the curve stands still.
+    """
+    called = f"the loop {name!r}" if name else "the loop"
+    if not np.isfinite(pieces.controls).all():
+        raise InputError(f"{called} has coordinates that are not finite numbers", "give finite numbers in m", where)
+    if not pieces.controls[..., 3].min() > 0:
+        raise InputError(
+            f"{called} has a weight that is not positive", "rebuild the curve with positive weights", where
+        )
+    if not pieces.extent > 0:
+        raise InputError(f"{called} has no length: all its points are one", "give at least three points", where)
+    course = Course(pieces)
+    _check_moving(called, course, where)
+    m = pieces.count
+    one, zero = np.ones(m), np.zeros(m)
+    behind = _unit(course.pieces.evaluate(np.arange(m), zero)[1])
+    before = _unit(course.pieces.evaluate(np.arange(m) - 1, one)[1])
+    turn = angle_between(before, behind)
+    corner = turn > CORNER_ANGLE
+    marks = [(part.first, part.first + part.count) for part in sliding if part.count < m]
+    for first, last in marks:
+        corner[[first, last % m]] = True
+    joints = np.append(course.joints, course.length) / course.length
+    slides = tuple(
+        Slide(
+            float(joints[part.first]),
+            float(joints[part.first + part.count]),
+            part.point,
+            None if part.normal is None else _unit(part.normal),
+            None if part.direction is None else _unit(part.direction),
+        )
+        for part in sliding
+    )
+    return Loop(name, course, joints[:-1][corner], turn[corner], slides)
+
+
+def _check_moving(called: str, course: Course, where: str) -> None:
+    """Refuse a curve that stands still: it has no tangent there, and no accurate arc length."""
+    piece = np.concatenate([course.cell_piece, course.cell_piece])
+    s = np.concatenate([course.cell_start, course.cell_stop])
+    position, first, _ = course.pieces.evaluate(piece, s)
+    speed = np.linalg.norm(first, axis=-1)
+    mean = np.diff(np.append(course.joints, course.length))
+    slowest = int(np.argmin(speed / np.maximum(mean[piece], 1e-300)))
+    if not speed[slowest] > _STANDSTILL * mean[piece[slowest]]:
+        raise InputError(
+            f"{called} has a cusp or stacked control points at {place(position[slowest] + course.origin)}: its "
+            "parametrisation stands still there",
+            "rebuild the curve there, or split it into parts",
+            where,
+        )
+
+
+def place(point: Floats) -> str:
+    """A point in a message."""
+    # nanometres are rounding
+    return "({:.6g}, {:.6g}, {:.6g}) m".format(*(np.round(point, 9) + 0.0))
+
+
+def angle_between(a: Floats, b: Floats) -> Floats:
+    """Angles between unit vectors (n, 3), radians in 0..pi, exact for small and for straight angles."""
+    return np.asarray(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.einsum("...i,...i", a, b)))
+
+
+def _unit(vectors: Floats) -> Floats:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))

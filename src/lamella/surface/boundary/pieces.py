@@ -1,0 +1,166 @@
+"""Rational Bezier pieces: the one form every boundary curve is brought into.
+
+Lines, polynomial splines, circles, ellipses and NURBS all are rational piecewise polynomials, so one vectorised
+evaluation serves them exactly, and whatever works on curves (arc length, corners, crossings) is written once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Consecutive rational Bezier pieces of one degree, each with its parameter s from 0 to 1.
+
+    Attributes
+    ----------
+    controls : (m, degree + 1, 4)
+        Homogeneous control points (w x, w y, w z, w), m; w > 0.
+    """
+
+    controls: Floats
+
+    @property
+    def count(self) -> int:
+        """Number of pieces."""
+        return len(self.controls)
+
+    @property
+    def degree(self) -> int:
+        """Degree of all pieces."""
+        return int(self.controls.shape[1]) - 1
+
+    @property
+    def starts(self) -> Floats:
+        """First point of each piece, m, (m, 3)."""
+        return np.asarray(self.controls[:, 0, :3] / self.controls[:, 0, 3:])
+
+    @property
+    def ends(self) -> Floats:
+        """Last point of each piece, m, (m, 3)."""
+        return np.asarray(self.controls[:, -1, :3] / self.controls[:, -1, 3:])
+
+    @property
+    def hull(self) -> Floats:
+        """Control points in space, m, (m (degree + 1), 3); the curve lies in their convex hull."""
+        flat = self.controls.reshape(-1, 4)
+        return np.asarray(flat[:, :3] / flat[:, 3:])
+
+    @property
+    def extent(self) -> float:
+        """Diagonal of the control points' bounding box, m."""
+        return float(np.linalg.norm(np.ptp(self.hull, axis=0)))
+
+    def evaluate(self, piece: Integers, s: Floats) -> tuple[Floats, Floats, Floats]:
+        """Position and its first two derivatives by s.
+
+        Parameters
+        ----------
+        piece : (n,)
+            Indices of pieces.
+        s : (n,)
+            Parameters in 0..1.
+
+        Returns
+        -------
+        position, first, second : (n, 3)
+            m.
+        """
+        d = max(self.degree, 2)
+        controls = self.raised(d).controls
+        # the last three points of de Casteljau's scheme hold value and derivatives; Bernstein's basis reaches them
+        basis = _bernstein(d - 2, s)
+        b0, b1, b2 = (np.einsum("ni,nij->nj", basis, controls[piece, r : d - 1 + r]) for r in range(3))
+        rest, s = (1 - s)[:, None], s[:, None]
+        low, high = rest * b0 + s * b1, rest * b1 + s * b2
+        x = rest * low + s * high
+        dx, ddx = d * (high - low), d * (d - 1) * ((b2 - b1) - (b1 - b0))
+        w, dw, ddw = x[:, 3:], dx[:, 3:], ddx[:, 3:]
+        position = x[:, :3] / w
+        first = (dx[:, :3] - position * dw) / w
+        second = (ddx[:, :3] - 2 * first * dw - position * ddw) / w
+        return position, first, second
+
+    def speed(self, piece: Integers, s: Floats) -> Floats:
+        """Length of the first derivative at several parameters of each piece.
+
+        Parameters
+        ----------
+        piece : (n,)
+        s : (n, q)
+
+        Returns
+        -------
+        (n, q)
+            m.
+        """
+        d = self.degree
+        basis = _bernstein(d - 1, s)
+        controls = self.controls[piece]
+        low, high = basis @ controls[:, :-1], basis @ controls[:, 1:]
+        dx = d * (high - low)
+        if not self._rational:
+            return np.asarray(np.sqrt(np.einsum("...i,...i", dx[..., :3], dx[..., :3])))
+        s = s[..., None]
+        x = (1 - s) * low + s * high
+        first = (dx[..., :3] - x[..., :3] * (dx[..., 3:] / x[..., 3:])) / x[..., 3:]
+        return np.asarray(np.sqrt(np.einsum("...i,...i", first, first)))
+
+    @cached_property
+    def _rational(self) -> bool:
+        return bool((self.controls[..., 3] != 1).any())
+
+    def raised(self, degree: int) -> Pieces:
+        """The same curve with control points of a higher degree."""
+        controls = self.controls
+        while (d := controls.shape[1] - 1) < degree:
+            share = (np.arange(1, d + 1) / (d + 1))[None, :, None]
+            inner = share * controls[:, :-1] + (1 - share) * controls[:, 1:]
+            controls = np.concatenate([controls[:, :1], inner, controls[:, -1:]], axis=1)
+        return Pieces(controls)
+
+    def reversed(self) -> Pieces:
+        """The same curve run through backwards."""
+        return Pieces(np.ascontiguousarray(self.controls[::-1, ::-1]))
+
+    def transformed(self, factor: float, shift: Floats) -> Pieces:
+        """The curve factor x + shift."""
+        w = self.controls[..., 3:]
+        return Pieces(np.concatenate([factor * self.controls[..., :3] + w * shift, w], axis=-1))
+
+    def from_to(self, start: Floats, end: Floats) -> Pieces:
+        """The curve with its very first and last point moved, to close gaps of rounding."""
+        controls = self.controls.copy()
+        controls[0, 0, :3] = start * controls[0, 0, 3]
+        controls[-1, -1, :3] = end * controls[-1, -1, 3]
+        return Pieces(controls)
+
+
+def stack(parts: Sequence[Pieces]) -> Pieces:
+    """Pieces of several curves one after the other, of the highest degree among them."""
+    degree = max(part.degree for part in parts)
+    return Pieces(np.concatenate([part.raised(degree).controls for part in parts]))
+
+
+def lines(points: Floats, *, closed: bool) -> Pieces:
+    """Straight pieces between consecutive points (n, 3), and back to the first where the curve is closed."""
+    corners = np.vstack([points, points[:1]]) if closed else points
+    homogeneous = np.hstack([corners, np.ones((len(corners), 1))])
+    return Pieces(np.stack([homogeneous[:-1], homogeneous[1:]], axis=1))
+
+
+def _bernstein(degree: int, s: Floats) -> Floats:
+    """Bernstein polynomials at s (...): (..., degree + 1)."""
+    i = np.arange(degree + 1)
+    factors = np.array([comb(degree, k) for k in i], float)
+    return np.asarray(factors * s[..., None] ** i * (1 - s)[..., None] ** (degree - i))

@@ -1,0 +1,62 @@
+"""Curves from JSON: {"unit": "m", "curves": {NAME: {"points": [[x, y, z], ...], "interpolation": "spline"}}}."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import orjson
+
+from lamella.errors import InputError
+from lamella.project import Refusal, read_points
+from lamella.surface.boundary.file_curves import FileCurve
+from lamella.surface.boundary.pieces import lines
+from lamella.surface.boundary.point_list import clean_points
+from lamella.surface.boundary.splines import closed_spline
+from lamella.surface.boundary.units import METRES
+from lamella.wording import cut, shown
+
+_REMEDY = 'write {"unit": "m", "curves": {"NAME": {"points": [[x, y, z], ...]}}}'
+
+
+def read_json(path: Path, where: str) -> tuple[list[FileCurve], float | None]:
+    """Closed curves by name, and metres per unit (None: not given).
+
+    Raises
+    ------
+    InputError
+        Anything that is not as above, with the curve's name.
+    """
+    try:
+        content = orjson.loads(path.read_bytes())
+    except orjson.JSONDecodeError as error:
+        raise InputError(f"{path} is not valid JSON: {cut(str(error), 120)}", _REMEDY, where) from None
+    given = content.get("curves") if isinstance(content, dict) else None
+    if not isinstance(given, dict):
+        raise InputError(f'{path} has no "curves"', _REMEDY, where)
+    unit = content.get("unit")
+    if unit is not None and unit not in METRES:
+        raise InputError(f"{path}: unit {shown(unit)} is not one of {', '.join(METRES)}", "write one of them", where)
+    curves = [_curve(path, name, curve, where) for name, curve in given.items()]
+    return curves, None if unit is None else METRES[unit]
+
+
+def _curve(path: Path, name: str, given: Any, where: str) -> FileCurve:
+    about = f"{path}: curve {cut(name, 40)!r}"
+    if not isinstance(given, dict) or "points" not in given:
+        raise InputError(f'{about} has no "points"', _REMEDY, where)
+    unknown = set(given) - {"points", "interpolation"}
+    if unknown:
+        raise InputError(f"{about}: unknown key {shown(min(unknown))}", "keys: points, interpolation", where)
+    interpolation = given.get("interpolation", "spline")
+    if interpolation not in ("spline", "polyline"):
+        raise InputError(f"{about}: interpolation {shown(interpolation)}", 'write "spline" or "polyline"', where)
+    try:
+        # lengths in another unit may be larger than those of a project
+        points = clean_points(read_points(given["points"], most=float("inf")), closed=True)
+        pieces = closed_spline(points) if interpolation == "spline" else lines(points, closed=True)
+    except Refusal as error:
+        raise InputError(f"{about}: {error}", error.remedy, where) from None
+    except InputError as error:
+        raise InputError(f"{about}: {error.message}", error.remedy, where) from None
+    return FileCurve("", (name,), interpolation, pieces)

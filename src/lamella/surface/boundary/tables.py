@@ -1,0 +1,125 @@
+"""Loops from the [[surface.boundary]] tables of a project."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lamella.errors import InputError
+from lamella.surface.boundary.arcs import arc_through, circle
+from lamella.surface.boundary.checks import check_loops
+from lamella.surface.boundary.curve import Loop, Sliding, make_loop
+from lamella.surface.boundary.file_curves import choose_loop
+from lamella.surface.boundary.joining import join_in_order
+from lamella.surface.boundary.pieces import Floats, Pieces, lines
+from lamella.surface.boundary.point_list import clean_points
+from lamella.surface.boundary.read_3dm import read_3dm
+from lamella.surface.boundary.read_dxf import read_dxf
+from lamella.surface.boundary.read_json import read_json
+from lamella.surface.boundary.splines import closed_spline, open_spline
+from lamella.surface.boundary.units import metres_per_unit
+
+if TYPE_CHECKING:
+    from lamella.project import BoundaryTable, FormFoundTable, PartTable, SlideTable
+
+_READERS = {".3dm": read_3dm, ".dxf": read_dxf, ".json": read_json}
+_HEADERS = {".3dm": "the model's unit system", ".dxf": "$INSUNITS in its header", ".json": 'its key "unit"'}
+
+
+def boundary_loops(table: FormFoundTable, folder: Path) -> tuple[Loop, ...]:
+    """The loops of a form-found surface, built and checked.
+
+    Parameters
+    ----------
+    table : FormFoundTable
+        [surface] of a project.
+    folder : Path
+        Where relative paths of curve files begin: the project file's folder.
+
+    Returns
+    -------
+    tuple of Loop
+        The outer one first.
+
+    Raises
+    ------
+    InputError
+        Whatever is wrong with them, with the key of the table.
+    """
+    loops = tuple(_loop(one, folder, f"surface.boundary[{k}]") for k, one in enumerate(table.boundary))
+    check_loops(loops)
+    return loops
+
+
+def _loop(table: BoundaryTable, folder: Path, where: str) -> Loop:
+    if table.part is not None:
+        return _composed(table.name, table.part, where)
+    if table.circle is not None:
+        ring = table.circle
+        pieces = circle(np.array(ring.center), ring.radius, np.array(ring.normal))
+    elif table.points is not None:
+        points = clean_points(table.points, closed=True, where=f"{where}.points")
+        splined = table.interpolation == "spline"
+        pieces = closed_spline(points, where=f"{where}.points") if splined else lines(points, closed=True)
+    else:
+        pieces = _from_file(table, folder, f"{where}.file")
+    sliding = () if table.slide is None else (_sliding(table.slide, 0, pieces.count),)
+    return make_loop(table.name, pieces, sliding, where=where)
+
+
+def _from_file(table: BoundaryTable, folder: Path, where: str) -> Pieces:
+    assert table.file is not None
+    path = folder / table.file
+    suffix = path.suffix.lower()
+    if not path.is_file():
+        raise InputError(f"{path}: no such file", "paths are relative to the project file's folder", where)
+    try:
+        with path.open("rb") as file:
+            file.read(1)
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}", "check its permissions", where) from None
+    curves, in_header = _READERS[suffix](path, where)
+    try:
+        unit = metres_per_unit(table.unit, in_header, _HEADERS[suffix], where)
+        pieces = choose_loop(curves, table.layer, table.id, where, unit)
+    except InputError as error:
+        raise InputError(f"{path}: {error.message}", error.remedy, where) from None
+    return pieces.transformed(unit, np.zeros(3))
+
+
+def _composed(name: str, tables: tuple[PartTable, ...], where: str) -> Loop:
+    parts = [_part(table, f"{where}.part[{k}]") for k, table in enumerate(tables)]
+    names = [f"part[{k}]" for k in range(len(parts))]
+    pieces = join_in_order(parts, names, where)
+    sliding, first = [], 0
+    for table, part in zip(tables, parts, strict=True):
+        if table.slide is not None:
+            sliding.append(_sliding(table.slide, first, part.count))
+        first += part.count
+    return make_loop(name, pieces, sliding, where=where)
+
+
+def _part(table: PartTable, where: str) -> Pieces:
+    if table.points is not None:
+        points = clean_points(table.points, closed=False, where=f"{where}.points")
+        splined = table.interpolation == "spline"
+        return open_spline(points, where=f"{where}.points") if splined else lines(points, closed=False)
+    assert table.arc is not None
+    start, middle, end = (np.array(p) for p in (table.arc.start, table.arc.middle, table.arc.end))
+    arc = arc_through(start, middle, end)
+    if arc is None:
+        raise InputError(
+            "start, middle and end of the arc lie on a line, or two of them are one",
+            "move the middle off the line, or write points = [start, end] for a straight part",
+            f"{where}.arc",
+        )
+    return arc
+
+
+def _sliding(table: SlideTable, first: int, count: int) -> Sliding:
+    def vector(values: tuple[float, float, float] | None) -> Floats | None:
+        return None if values is None else np.array(values)
+
+    return Sliding(first, count, vector(table.point), vector(table.normal), vector(table.direction))

@@ -1,0 +1,36 @@
+"""Units of length of files and project keys."""
+
+from __future__ import annotations
+
+from lamella.errors import InputError
+
+METRES: dict[str, float] = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "ft": 0.3048, "in": 0.0254}
+"""Metres per unit, by the names a project file uses."""
+
+
+def metres_per_unit(asked: str | None, in_header: float | None, header: str, where: str) -> float:
+    """Metres per unit of a file.
+
+    Parameters
+    ----------
+    asked : str or None
+        The project's `unit`, which wins.
+    in_header : float or None
+        What the file says; None where it does not.
+    header : str
+        Where in the file the unit would stand.
+    where : str
+        Key for messages.
+
+    Raises
+    ------
+    InputError
+        Neither says.
+    """
+    if asked is not None:
+        return METRES[asked]
+    if in_header is None:
+        raise InputError(
+            f"the file does not say its unit ({header})", 'add unit = "mm", or the one it was drawn in, here', where
+        )
+    return in_header

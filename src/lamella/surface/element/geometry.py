@@ -1,0 +1,112 @@
+"""Position, normal and shape operator inside curved elements, and integrals over them."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import csc_matrix
+
+from lamella.surface.element.connectivity import Connectivity
+from lamella.surface.element.quadrature import triangle_rule
+from lamella.surface.points import Floats
+
+
+def tangents(basis_x: Floats, basis_y: Floats, corners: Floats) -> tuple[Floats, Floats]:
+    """Tangent vectors x_1, x_2 (m, q, 3) of elements with nodes (m, k, 3) at places where the basis is (q, k)."""
+    return np.matmul(basis_x, corners), np.matmul(basis_y, corners)
+
+
+def normal_and_area(first: Floats, second: Floats) -> tuple[Floats, Floats]:
+    """Unit normal (..., 3) and area element (...) of two tangent vectors."""
+    cross = np.cross(first, second)
+    area = np.linalg.norm(cross, axis=-1)
+    return cross / area[..., None], area
+
+
+def project_onto_nodes(
+    space: Connectivity, points: Floats, weights: Floats, values: Floats, tolerance: float = 1e-9
+) -> Floats:
+    """Nodal values (n, c) of an L2 projection onto continuous polynomials.
+
+    The mass matrix is well conditioned, so conjugate gradients with its diagonal need no factorisation.
+
+    Parameters
+    ----------
+    space : Connectivity
+        The polynomials.
+    points : (q, 2)
+        Local coordinates of the integration points.
+    weights : (m, q)
+        Their weights times the area element, m^2.
+    values : (m, q, c)
+        What is projected.
+    """
+    basis = space.basis.basis(points)
+    parts = np.matmul(basis.T, values * weights[..., None])
+    n, flat = space.node_count, space.elements.ravel()
+    right = np.stack([np.bincount(flat, parts[..., c].ravel(), n) for c in range(values.shape[-1])], 1)
+    k = space.elements.shape[1]
+    blocks = weights @ (basis[:, :, None] * basis[:, None, :]).reshape(len(points), -1)
+    rows, columns = np.repeat(space.elements, k, axis=1), np.tile(space.elements, (1, k))
+    matrix = csc_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), (n, n)).tocsr()
+    inverse_diagonal = 1 / matrix.diagonal()[:, None]
+    solution = right * inverse_diagonal
+    residual = right - matrix @ solution
+    direction = conditioned = inverse_diagonal * residual
+    product = (residual * conditioned).sum(0)
+    goal = tolerance**2 * (right**2 * inverse_diagonal).sum(0)
+    for _ in range(500):
+        if (product <= goal).all():
+            break
+        image = matrix @ direction
+        step = product / np.maximum((direction * image).sum(0), 1e-300)
+        solution = solution + step * direction
+        residual = residual - step * image
+        conditioned = inverse_diagonal * residual
+        product, before = (residual * conditioned).sum(0), product
+        direction = conditioned + product / np.maximum(before, 1e-300) * direction
+    return np.asarray(solution)
+
+
+def smooth_normals(connectivity: Connectivity, nodes: Floats) -> Floats:
+    """Unit normals at the nodes, L2-projected: a field as smooth as the surface itself, (n, 3).
+
+    Averaged corner normals would roughen the parametrisation and cost three orders of accuracy.
+    """
+    points, weights = triangle_rule(max(4, 2 * connectivity.basis.order))
+    basis_x, basis_y = (connectivity.basis.basis(points, *d) for d in ((1, 0), (0, 1)))
+    normal, area = normal_and_area(*tangents(basis_x, basis_y, nodes[connectivity.elements]))
+    projected = project_onto_nodes(connectivity, points, area * weights, normal)
+    return np.asarray(projected / np.linalg.norm(projected, axis=1)[:, None])
+
+
+def dirichlet_blocks(
+    basis_x: Floats, basis_y: Floats, first: Floats, second: Floats, weights: Floats
+) -> tuple[Floats, tuple[Floats, Floats, Floats], Floats]:
+    """Integrals of grad phi_i . grad phi_j over each element.
+
+    Parameters
+    ----------
+    basis_x, basis_y : (q, k)
+        Derivatives of the basis at the integration points.
+    first, second : (m, q, 3)
+        Tangent vectors there.
+    weights : (q,)
+
+    Returns
+    -------
+    blocks : (m, k, k)
+    metric : tuple of (m, q)
+        E, F, G: first . first, first . second, second . second.
+    area : (m, q)
+        Area element over the weight: the metric's inverse times the weighted area is (G, -F, E) / area.
+    """
+    e, f, g = (np.einsum("eqc,eqc->eq", u, v) for u, v in ((first, first), (first, second), (second, second)))
+    area = np.sqrt(np.maximum(e * g - f * f, 1e-12 * e * g)) / weights
+    q, k = basis_x.shape
+    tables = [
+        (u[:, :, None] * v[:, None, :]).reshape(q, -1)
+        for u, v in ((basis_x, basis_x), (basis_x, basis_y), (basis_y, basis_y))
+    ]
+    blocks = ((g / area) @ tables[0] + (e / area) @ tables[2]).reshape(-1, k, k)
+    mixed = ((f / area) @ tables[1]).reshape(-1, k, k)
+    return blocks - mixed - mixed.transpose(0, 2, 1), (e, f, g), area

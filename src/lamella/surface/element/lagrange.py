@@ -1,0 +1,106 @@
+"""Lagrange polynomials on the triangle (0, 0), (1, 0), (0, 1).
+
+Local node numbering: the three corners; then the inner nodes of the edges 0-1, 1-2, 2-0, each in the direction from
+its first corner to its second; then the nodes inside.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.surface.points import Floats
+
+EDGES = ((0, 1), (1, 2), (2, 0))
+"""Corners of the local edges."""
+
+
+@dataclass(frozen=True)
+class Lagrange:
+    """The basis of one order.
+
+    Attributes
+    ----------
+    order : int
+    nodes : (k, 2)
+        Local coordinates (x, y) of the nodes; the barycentric ones are (1 - x - y, x, y).
+    edge_nodes : (3, order + 1) int
+        Local nodes along each edge, corners included.
+    """
+
+    order: int
+    nodes: Floats
+    edge_nodes: NDArray[np.int64]
+
+    @cached_property
+    def _exponents(self) -> NDArray[np.int64]:
+        return np.array([(i, j) for j in range(self.order + 1) for i in range(self.order + 1 - j)])
+
+    @cached_property
+    def _coefficients(self) -> Floats:
+        i, j = self._exponents.T
+        return np.linalg.inv(self.nodes[:, 0, None] ** i * self.nodes[:, 1, None] ** j)
+
+    def basis(self, local: Floats, x_order: int = 0, y_order: int = 0) -> Floats:
+        """Derivative d^(i+j) / dx^i dy^j of the basis at local coordinates (n, 2), as (n, k)."""
+        powers = self._exponents - (x_order, y_order)
+        factor = np.ones(len(powers))
+        for axis, derivatives in ((0, x_order), (1, y_order)):
+            for step in range(derivatives):
+                factor *= self._exponents[:, axis] - step
+        factor[(powers < 0).any(1)] = 0
+        powers = np.maximum(powers, 0)
+        x, y = (local[:, axis, None] ** np.arange(self.order + 1) for axis in (0, 1))
+        return np.asarray((x[:, powers[:, 0]] * y[:, powers[:, 1]] * factor) @ self._coefficients)
+
+    def second_jet(self, local: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
+        """Values and derivatives x, y, xx, xy, yy of the basis at local coordinates (n, 2), each (n, k)."""
+        return (
+            self.basis(local),
+            self.basis(local, 1, 0),
+            self.basis(local, 0, 1),
+            self.basis(local, 2, 0),
+            self.basis(local, 1, 1),
+            self.basis(local, 0, 2),
+        )
+
+
+@lru_cache
+def lagrange(order: int) -> Lagrange:
+    """Equidistant Lagrange basis of an order; above about 10 its nodes alone are of use."""
+    p = order
+    corners = np.array([[0, 0], [p, 0], [0, p]])
+    inner = [corners[a] + (corners[b] - corners[a]) * step // p for a, b in EDGES for step in range(1, p)]
+    inside = [(i, j) for j in range(1, p) for i in range(1, p - j)]
+    nodes = np.array([*corners.tolist(), *[point.tolist() for point in inner], *inside], float).reshape(-1, 2) / p
+    edge_nodes = np.array([[a, *range(3 + e * (p - 1), 3 + (e + 1) * (p - 1)), b] for e, (a, b) in enumerate(EDGES)])
+    return Lagrange(p, nodes, edge_nodes)
+
+
+@lru_cache
+def subdivision(parts: int) -> tuple[Floats, NDArray[np.int64]]:
+    """Local coordinates of a regular subdivision into `parts`^2 triangles, and their corners, counter-clockwise."""
+    index: dict[tuple[int, int], int] = {}
+    for j in range(parts + 1):
+        for i in range(parts + 1 - j):
+            index[i, j] = len(index)
+    faces = []
+    for i, j in index:
+        if i + j < parts:
+            faces.append((index[i, j], index[i + 1, j], index[i, j + 1]))
+        if i + j < parts - 1:
+            faces.append((index[i + 1, j], index[i + 1, j + 1], index[i, j + 1]))
+    return np.array(list(index), float) / parts, np.array(faces)
+
+
+@lru_cache
+def local_faces(parts: int) -> NDArray[np.int64]:
+    """Small triangles of a subdivided triangle, by the numbers of the nodes of ``lagrange(parts)``, (parts^2, 3)."""
+    local, faces = subdivision(parts)
+    nodes = np.rint(lagrange(parts).nodes * parts).astype(int)
+    number = {tuple(node): index for index, node in enumerate(nodes.tolist())}
+    order = np.array([number[tuple(place)] for place in np.rint(local * parts).astype(int).tolist()])
+    return np.asarray(order[faces])

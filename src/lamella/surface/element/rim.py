@@ -1,0 +1,81 @@
+"""The boundary of a surface of curved elements as closed curves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.surface.element.connectivity import Connectivity
+from lamella.surface.points import Floats
+
+Integers = NDArray[np.int64]
+
+# a turn between neighbouring edges above this is a corner of the boundary, rad
+CORNER = 0.02
+
+
+@dataclass(frozen=True)
+class ElementRim:
+    """One boundary loop, the surface to its left, parametrised by the fraction of its length.
+
+    Attributes
+    ----------
+    length : float
+        m.
+    corners : (c,)
+        Parameters of corners, sorted.
+    vertices : (b,) int
+        Vertices along the loop.
+    starts : (b,)
+        Their parameters; the first is 0.
+    """
+
+    length: float
+    corners: Floats
+    vertices: Integers
+    starts: Floats
+    _spans: Floats
+    _nodes: Floats
+    _inverse: Floats
+
+    def at(self, t: Floats) -> Floats:
+        """Points (n, 3), m."""
+        t = np.asarray(t, float) % 1
+        edge = np.clip(np.searchsorted(self.starts, t, side="right") - 1, 0, len(self.starts) - 1)
+        share = np.clip((t - self.starts[edge]) / self._spans[edge], 0, 1)
+        powers = np.vander(share, len(self._inverse), increasing=True) @ self._inverse
+        return np.asarray(np.einsum("nk,nkc->nc", powers, self._nodes[edge]))
+
+
+def element_rims(connectivity: Connectivity, nodes: Floats, rim_loop: Integers) -> tuple[ElementRim, ...]:
+    """Boundary loops of elements with nodes (n, 3), by the numbers in `rim_loop` (b,)."""
+    p = connectivity.basis.order
+    monomials = np.vander(np.linspace(0, 1, p + 1), increasing=True)
+    inverse: Floats = np.asarray(np.linalg.inv(monomials), np.float64)
+    gauss, weight = np.polynomial.legendre.leggauss(2 * p)
+    gauss = (gauss + 1) / 2
+    slopes = np.zeros((len(gauss), p + 1))
+    slopes[:, 1:] = np.arange(1, p + 1) * np.vander(gauss, p, increasing=True)
+    rim_nodes = connectivity.rim_nodes
+    rims = []
+    for loop in range(int(rim_loop.max()) + 1):
+        edges = rim_nodes[rim_loop == loop]
+        after = {int(a): k for k, a in enumerate(edges[:, 0])}
+        order = [0]
+        while len(order) < len(edges):
+            order.append(after[int(edges[order[-1], -1])])
+        edges = edges[order]
+        along = nodes[edges]
+        speed = np.linalg.norm(np.matmul(slopes @ inverse, along), axis=2)
+        lengths = (speed * weight / 2).sum(1)
+        spans = lengths / lengths.sum()
+        starts = np.concatenate([[0.0], np.cumsum(spans)[:-1]])
+        end_slope = np.arange(p + 1) @ inverse
+        leaving = np.einsum("k,bkc->bc", inverse[1], along)
+        arriving = np.roll(np.einsum("k,bkc->bc", end_slope, along), 1, 0)
+        cosine = (leaving * arriving).sum(1) / (np.linalg.norm(leaving, axis=1) * np.linalg.norm(arriving, axis=1))
+        corners = starts[cosine < np.cos(CORNER)]
+        rims.append(ElementRim(float(lengths.sum()), corners, edges[:, 0], starts, spans, along, inverse))
+    return tuple(rims)

@@ -1,0 +1,235 @@
+"""A surface of curved elements: the same questions as a closed form answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.surface.element.closest import ClosestPoint
+from lamella.surface.element.connectivity import Connectivity, connect
+from lamella.surface.element.curvature import ElementPoints, element_points
+from lamella.surface.element.gauss_map import harmonic_normals
+from lamella.surface.element.geometry import normal_and_area, project_onto_nodes, tangents
+from lamella.surface.element.lagrange import local_faces
+from lamella.surface.element.places import Places
+from lamella.surface.element.quadrature import triangle_rule
+from lamella.surface.mesh import SurfaceMesh
+from lamella.surface.points import Floats, SurfacePoints
+
+Integers = NDArray[np.int64]
+
+# order of the shape operator's continuous field, by that of the elements: that of the normals' derivatives
+SMOOTHED_ORDER = {2: 1, 3: 2, 4: 3}
+# most parts an element's edge is cut into for files and pictures
+MOST_PARTS = 12
+
+
+@dataclass(frozen=True)
+class ElementSurface:
+    """A surface of Lagrange triangles of order 2 to 4.
+
+    Places are `Places`: elements with local coordinates. Position and normal are those of the elements. The shape
+    operator is -dn of the harmonic Gauss map (`lamella.surface.element.gauss_map`) with the surface's own H, as
+    continuous polynomials: no jump of the principal directions between elements. `measured_mean_curvature` is of the
+    elements' second derivatives and knows nothing of that.
+
+    Attributes
+    ----------
+    kind : str
+        Name in a project file.
+    mean_curvature : float
+        H the surface stands for, 1/m, for the normal of counter-clockwise elements.
+    connectivity : Connectivity
+    nodes : (n, 3)
+        m.
+    figures : dict
+        What `describe` tells.
+    notes : tuple of str
+        What `warnings` tells.
+    rim_loop : (b,) int
+        Boundary loop of each boundary edge of the connectivity.
+    """
+
+    kind: str
+    mean_curvature: float
+    connectivity: Connectivity
+    nodes: Floats
+    rim_loop: Integers
+    figures: dict[str, Any] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    @cached_property
+    def _corners(self) -> Floats:
+        return self.nodes[self.connectivity.elements]
+
+    @cached_property
+    def _smoothed(self) -> tuple[Connectivity, Floats]:
+        """Connectivity and nodal values (n, 8): the shape operator (xx, xy, xz, yy, yz, zz), H^2 - K, measured H."""
+        connectivity = self.connectivity
+        space = connect(connectivity.faces, int(connectivity.faces.max()) + 1, SMOOTHED_ORDER[connectivity.basis.order])
+        points, weights = triangle_rule(2 * connectivity.basis.order)
+        there = element_points(connectivity, self._corners, points, False)
+        normals = harmonic_normals(connectivity, self.nodes)[connectivity.elements]
+        n_x, n_y = (np.matmul(slope, normals).reshape(-1, 3) for slope in self._slopes(points))
+        # S = -dn along both axes of the frame
+        along = there.to_local
+        n_u = along[:, 0, 0, None] * n_x + along[:, 1, 0, None] * n_y
+        n_v = along[:, 0, 1, None] * n_x + along[:, 1, 1, None] * n_y
+        s_uu, s_vv = -(n_u * there.e_u).sum(1), -(n_v * there.e_v).sum(1)
+        s_uv = -((n_u * there.e_v).sum(1) + (n_v * there.e_u).sum(1)) / 2
+        h, half = self.mean_curvature, ((s_uu - s_vv) / 2)[:, None]
+        uu, vv = (e[:, _ROWS] * e[:, _COLUMNS] for e in (there.e_u, there.e_v))
+        uv = there.e_u[:, _ROWS] * there.e_v[:, _COLUMNS] + there.e_v[:, _ROWS] * there.e_u[:, _COLUMNS]
+        tensor = (h + half) * uu + (h - half) * vv + s_uv[:, None] * uv
+        square = half[:, 0] ** 2 + s_uv**2
+        values = np.column_stack([tensor, square, there.mean_curvature]).reshape(len(self._corners), -1, 8)
+        _, area = normal_and_area(*tangents(*self._slopes(points), self._corners))
+        return space, project_onto_nodes(space, points, area * weights, values)
+
+    def _slopes(self, local: Floats) -> tuple[Floats, Floats]:
+        basis = self.connectivity.basis
+        return basis.basis(local, 1, 0), basis.basis(local, 0, 1)
+
+    def at(self, where: Places) -> SurfacePoints:
+        """Everything about n places, in one evaluation."""
+        there = element_points(self.connectivity, self._corners[where.element], where.local, True)
+        space, values = self._smoothed
+        local = values[space.elements[where.element]]
+        smooth = np.einsum("nk,nkc->nc", space.basis.basis(where.local), local)
+        uu, vv, uv = (_form(smooth, a, b) for a, b in ((there.e_u,) * 2, (there.e_v,) * 2, (there.e_u, there.e_v)))
+        gradient = np.stack(
+            [np.einsum("nk,nk->n", space.basis.basis(where.local, *d), local[..., 6]) for d in ((1, 0), (0, 1))], 1
+        )
+        along = np.einsum("nij,ni->nj", there.to_local, gradient)
+        deviator = (uu - vv) / 2 - 1j * uv
+        square = np.maximum(np.abs(deviator) ** 2, np.finfo(float).tiny)
+        return SurfacePoints(
+            there.position,
+            there.e_u,
+            there.e_v,
+            there.normal,
+            np.full(len(where), float(self.mean_curvature)),
+            deviator,
+            (along[:, 0] + 1j * along[:, 1]) / (4 * square),
+        )
+
+    def measured(self, where: Places) -> ElementPoints:
+        """Position, frame and unsmoothed shape operator at n places."""
+        return element_points(self.connectivity, self._corners[where.element], where.local, True)
+
+    def measured_mean_curvature(self, where: Places) -> Floats:
+        """H at n places from positions alone, 1/m, (n,)."""
+        return self.measured(where).mean_curvature
+
+    def check_places(self) -> Places:
+        """Twelve places inside every element."""
+        points, _ = triangle_rule(6)
+        m = len(self._corners)
+        return Places(np.repeat(np.arange(m), len(points)), np.tile(points, (m, 1)))
+
+    @cached_property
+    def _search(self) -> ClosestPoint:
+        return ClosestPoint(self.connectivity, self.nodes)
+
+    def closest(self, points: Floats) -> tuple[Places, Floats]:
+        """Closest places to points (n, 3), and their positions (n, 3), m."""
+        return self._search(points)
+
+    def area(self) -> float:
+        """m^2."""
+        points, weights = triangle_rule(2 * self.connectivity.basis.order)
+        _, area = normal_and_area(*tangents(*self._slopes(points), self._corners))
+        return float((area * weights).sum())
+
+    def volume(self) -> float:
+        """Volume between the surface and lids over its boundary loops, m^3; positive where the normal points out of it.
+
+        The lid of a loop is the cone from the loop's centroid: flat where the loop is.
+        """
+        basis = self.connectivity.basis
+        points, weights = triangle_rule(3 * basis.order - 2 + basis.order % 2)
+        middle = self.nodes.mean(0)
+        position = np.matmul(basis.basis(points), self._corners - middle)
+        cross = np.cross(*tangents(*self._slopes(points), self._corners))
+        total = float(((position * cross).sum(2) * weights).sum() / 3)
+        rule, weight = np.polynomial.legendre.leggauss(2 * basis.order)
+        rule, weight = (rule + 1) / 2, weight / 2
+        line = np.vander(np.linspace(0, 1, basis.order + 1), increasing=True)
+        value = np.vander(rule, basis.order + 1, increasing=True) @ np.linalg.inv(line)
+        slope_powers = np.arange(1, basis.order + 1) * np.vander(rule, basis.order, increasing=True)
+        slope = np.column_stack([np.zeros(len(rule)), slope_powers]) @ np.linalg.inv(line)
+        along = self.nodes[self.connectivity.rim_nodes] - middle
+        for loop in np.unique(self.rim_loop):
+            edges = along[self.rim_loop == loop]
+            curve, step = np.matmul(value, edges), np.matmul(slope, edges)
+            length = np.linalg.norm(step, axis=2) * weight
+            centroid = (curve * length[..., None]).sum((0, 1)) / length.sum()
+            # the lid runs against the surface's sense: its rim is traversed backwards
+            total -= float(((np.cross(curve, step) @ centroid) * weight).sum() / 6)
+        return total
+
+    def mesh(self, tolerance: float = 1e-3) -> SurfaceMesh:
+        """The surface sampled for files and pictures.
+
+        Parameters
+        ----------
+        tolerance : float
+            Sag of the mesh's edges over the diagonal of the bounding box.
+        """
+        size = float(np.linalg.norm(np.ptp(self.nodes, axis=0)))
+        middle = self.measured(Places(np.arange(len(self._corners)), np.full((len(self._corners), 2), 1 / 3)))
+        bend = np.abs(middle.mean_curvature) + np.abs(middle.deviator)
+        edges = np.linalg.norm(self._corners[:, :3] - np.roll(self._corners[:, :3], -1, 1), axis=2).max(1)
+        # an edge of length l over a curvature k sags by k l^2 / 8
+        parts = np.sqrt(np.percentile(bend * edges**2, 99) / (8 * tolerance * size))
+        return self.subdivided(int(np.clip(np.ceil(parts), 1, MOST_PARTS)))
+
+    def subdivided(self, parts: int) -> SurfaceMesh:
+        """Every element's edges cut into `parts`; shared vertices are there once."""
+        grid = connect(self.connectivity.faces, int(self.connectivity.faces.max()) + 1, parts)
+        local, faces = grid.basis.nodes, local_faces(parts)
+        m = len(self._corners)
+        first = np.empty(grid.node_count, np.int64)
+        first[grid.elements] = np.arange(m * len(local)).reshape(m, -1)
+        space, values = self._smoothed
+        place = Places(first // len(local), local[first % len(local)])
+        at = self.at(place)
+        measured = np.einsum("nk,nk->n", space.basis.basis(place.local), values[space.elements[place.element]][..., 7])
+        all_faces = grid.elements[:, faces].reshape(-1, 3)
+        k1, k2 = at.principal_curvatures
+        return SurfaceMesh(
+            at.position,
+            at.normal,
+            np.column_stack([all_faces, all_faces[:, 2]]),
+            measured,
+            k1 * k2,
+            k1,
+            k2,
+        )
+
+    def singular_orders(self) -> tuple[int, ...]:
+        """Orders of the umbilics: not known before they are searched."""
+        return ()
+
+    def describe(self) -> dict[str, Any]:
+        """Further figures for the summary."""
+        return dict(self.figures)
+
+    def warnings(self) -> tuple[str, ...]:
+        """What a user should know about this surface before building it."""
+        return self.notes
+
+
+# entries of a symmetric 3 x 3 matrix that are kept
+_ROWS, _COLUMNS = np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2])
+_HALF = np.where(_ROWS == _COLUMNS, 0.5, 1.0)
+
+
+def _form(tensor: Floats, a: Floats, b: Floats) -> Floats:
+    """a . T b for symmetric matrices given by six entries."""
+    both = a[:, _ROWS] * b[:, _COLUMNS] + a[:, _COLUMNS] * b[:, _ROWS]
+    return np.asarray((tensor[:, :6] * both * _HALF).sum(1))

@@ -1,0 +1,128 @@
+"""Bounds that every surface of constant mean curvature in given loops has to keep."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from lamella.errors import InputError
+from lamella.surface.found.chart import Curve, vector_area
+
+# two equal coaxial rings: largest distance over their radius, the maximum of 2 acosh(x) / x
+RINGS = 1.3254868387
+# half opening of the double cone no connected minimal surface leaves through both of: sinh of coth(x) = x
+CONE = 1.5088795615
+SAMPLES = 2000
+
+
+def refuse_impossible(loops: Sequence[Curve], mean_curvature: float) -> None:
+    """Raise an `InputError` where a bound says that no surface exists.
+
+    Parameters
+    ----------
+    loops : sequence of Curve
+        All held.
+    mean_curvature : float
+        1/m.
+    """
+    refuse_flux(loops, mean_curvature)
+    if mean_curvature == 0 and len(loops) == 2:
+        refuse_apart(loops)
+
+
+def refuse_flux(loops: Sequence[Curve], mean_curvature: float) -> None:
+    """The bound |H| <= L / (2 |a|) of one loop of length L and vector area a.
+
+    The tension along the rim carries the pressure: the integral of the conormal is 2 H a.
+    """
+    if len(loops) > 1 or not mean_curvature:
+        return
+    points = loops[0].at(np.arange(SAMPLES) / SAMPLES)
+    enclosed = float(np.linalg.norm(vector_area(points)))
+    length = loops[0].length
+    limit = length / (2 * max(enclosed, 1e-300))
+    if abs(mean_curvature) > limit * (1 + 1e-9):
+        raise InputError(
+            f"mean_curvature = {mean_curvature:.6g} 1/m: no surface in this boundary bends that much. Its length is "
+            f"{length:.5g} m and its vector area {enclosed:.5g} m2, so that |H| <= length / (2 area) = {limit:.6g} 1/m",
+            f"choose a mean_curvature up to {limit:.4g} 1/m, or a smaller boundary",
+            "surface.mean_curvature",
+        )
+
+
+def refuse_apart(loops: Sequence[Curve]) -> None:
+    """Two loops too far apart for one film: coaxial circles exactly, others by the cone of Hildebrandt.
+
+    Sources: catenaries through two points; U. Dierkes, S. Hildebrandt, F. Sauvigny, Minimal
+    Surfaces (2010), section 4.1: loops in the two nappes of a cone of half opening arctan 1.5089 bound no connected
+    minimal surface.
+    """
+    first, second = (loop.at(np.arange(SAMPLES) / SAMPLES) for loop in loops)
+    middles = [points.mean(0) for points in (first, second)]
+    apart = middles[1] - middles[0]
+    distance = float(np.linalg.norm(apart))
+    size = max(np.linalg.norm(np.ptp(points, axis=0)) for points in (first, second))
+    if distance < 0.05 * size:
+        return
+    axis = apart / distance
+    reach = [_reach(points, middles[0], axis) for points in (first, second)]
+    (low0, high0, least0, most0), (low1, high1, least1, most1) = reach
+    flat = max(high0 - low0, high1 - low1) < 1e-6 * size
+    if flat and most0 - least0 < 1e-6 * size and most1 - least1 < 1e-6 * size:
+        limit = _catenary_limit(most0, most1)
+        if distance > limit:
+            same = abs(most0 - most1) < 1e-6 * size
+            told = (
+                f"{distance / most0:.6g} radii; a film between two equal rings exists up to a distance of "
+                f"{RINGS:.7f} radii ({limit:.6g} m)"
+                if same
+                else f"a film between rings of radius {most0:.5g} and {most1:.5g} m exists up to {limit:.6g} m"
+            )
+            raise InputError(
+                f"the two rings are {distance:.6g} m apart, which is {told}"
+                if same
+                else f"the two rings are {distance:.6g} m apart; {told}",
+                f"move them closer than {limit:.5g} m, or make them larger",
+                "surface.boundary",
+            )
+        return
+    # apex between the loops, on the line through their middles
+    share = np.linspace(0, 1, 201)[1:-1] * distance
+    for apex in share:
+        ratios = []
+        for points in (first, second):
+            off = points - middles[0] - apex * axis
+            height = off @ axis
+            across = np.linalg.norm(off - height[:, None] * axis, axis=1)
+            sign = -1 if points is first else 1
+            ratios.append((across / np.maximum(sign * height, 1e-12)).max())
+        if max(ratios) < CONE:
+            raise InputError(
+                f"the two loops are too far apart ({distance:.5g} m between their middles) for one film: seen from a "
+                f"point between them both lie in a double cone of half opening "
+                f"{np.degrees(np.arctan(max(ratios))):.3g} deg (limit {np.degrees(np.arctan(CONE)):.4g} deg)",
+                "move the loops closer together, or make them larger",
+                "surface.boundary",
+            )
+
+
+def _reach(points: np.ndarray, origin: np.ndarray, axis: np.ndarray) -> tuple[float, float, float, float]:
+    """Least and most height along an axis and distance from it."""
+    off = points - origin
+    height = off @ axis
+    across = np.linalg.norm(off - height[:, None] * axis, axis=1)
+    return float(height.min()), float(height.max()), float(across.min()), float(across.max())
+
+
+def _catenary_limit(first: float, second: float) -> float:
+    """Largest distance of coaxial rings between which a catenoid spans, m."""
+    small, large = sorted((first, second))
+
+    def shorter(neck: float) -> float:
+        return float(-neck * (np.arccosh(large / neck) + np.arccosh(max(small / neck, 1.0))))
+
+    return -float(
+        minimize_scalar(shorter, bounds=(1e-9 * small, small), method="bounded", options={"xatol": 1e-13 * small}).fun
+    )

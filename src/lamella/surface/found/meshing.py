@@ -1,0 +1,235 @@
+"""New elements on a film: of other sizes, or the same with a smoother parametrisation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.surface.element.closest import ClosestPoint
+from lamella.surface.element.connectivity import connect
+from lamella.surface.element.geometry import smooth_normals
+from lamella.surface.element.lagrange import local_faces
+from lamella.surface.element.placing import rim_parameters
+from lamella.surface.element.remesh import Rim, TriangleMesh, remesh
+from lamella.surface.element.size_field import SizeField
+from lamella.surface.element.tangent_planes import TangentPlanes
+from lamella.surface.found.chart import Chart
+from lamella.surface.found.film import Film, Loop, Slide
+from lamella.surface.found.harmonic import harmonic_surface
+from lamella.surface.found.newton import NoFilmError
+from lamella.surface.points import Floats
+
+# coarsest elements, as parts of a loop, as turns of its tangent or of the normal, and as parts of a narrow place
+EDGES_OF_A_LOOP, TURN_OF_AN_EDGE, EDGES_ACROSS = 12, 0.7, 2
+MOST_EDGES_OF_A_LOOP, SAMPLES_OF_A_LOOP = 100, 240
+ARC_OVER_CHORD = 3
+
+
+# flat triangles along the edge of a curved one that new elements start from
+FACETS = 2
+
+
+@dataclass(frozen=True)
+class SlidRim:
+    """A boundary loop where a film has slid to, parametrised by the parameter of the loop it came from.
+
+    Attributes
+    ----------
+    name, length, corners, slides
+        As of the loop.
+    """
+
+    name: str
+    length: float
+    corners: Floats
+    slides: tuple[Slide, ...]
+    _starts: Floats
+    _spans: Floats
+    _nodes: Floats
+    _inverse: Floats
+
+    @classmethod
+    def of(cls, film: Film, index: int) -> SlidRim:
+        """The boundary of a film along one of its loops."""
+        loop = film.loops[index]
+        rim_nodes = film.connectivity.rim_nodes
+        mine = film.mesh.loop[rim_nodes[:, 0]] == index
+        t = rim_parameters(film.connectivity, film.mesh.parameter)[mine][:, [0, -1]]
+        span = (t[:, 1] - t[:, 0] + 0.5) % 1 - 0.5
+        nodes = film.nodes[rim_nodes[mine]]
+        # edges run with or against the parameter, as the surface lies to their left
+        start = np.where(span > 0, t[:, 0], t[:, 1])
+        nodes = np.where((span > 0)[:, None, None], nodes, nodes[:, ::-1])
+        order = np.argsort(start)
+        p = film.connectivity.basis.order
+        powers = np.vander(np.linspace(0, 1, p + 1), increasing=True)
+        inverse: Floats = np.asarray(np.linalg.inv(powers), np.float64)
+        length = float(np.linalg.norm(np.diff(nodes, axis=1), axis=2).sum())
+        return cls(
+            loop.name,
+            length,
+            loop.corners,
+            tuple(loop.slides),
+            start[order],
+            np.abs(span)[order],
+            nodes[order],
+            inverse,
+        )
+
+    def at(self, t: Floats) -> Floats:
+        """Points (n, 3), m."""
+        t = np.asarray(t, float) % 1
+        edge = np.searchsorted(self._starts, t, side="right") - 1
+        share = ((t - self._starts[edge]) % 1) / self._spans[edge]
+        powers = np.vander(np.clip(share, 0, 1), self._inverse.shape[0], increasing=True) @ self._inverse
+        return np.asarray(np.einsum("nk,nkc->nc", powers, self._nodes[edge]))
+
+
+def coarse_sizes(loops: tuple[Loop, ...], extent: float) -> SizeField:
+    """Sizes to begin with: finer where a loop bends and where the surface between loops is narrow, growing inwards.
+
+    Parameters
+    ----------
+    loops : tuple of Loop
+    extent : float
+        Diagonal of the surface's bounding box, m.
+    """
+    places, sizes, along = [], [], []
+    t = np.arange(SAMPLES_OF_A_LOOP) / SAMPLES_OF_A_LOOP
+    for loop in loops:
+        curve = loop.at(t)
+        step = np.roll(curve, -1, 0) - curve
+        tangent = step / np.maximum(np.linalg.norm(step, axis=1), 1e-300)[:, None]
+        turn = np.arccos(np.clip((tangent * np.roll(tangent, 1, 0)).sum(1), -1, 1))
+        # the turn over a few samples, so that a corner counts as one
+        bend = np.convolve(np.r_[turn[-2:], turn, turn[:2]], np.ones(5), "valid") / (5 * loop.length / len(t))
+        places.append(curve)
+        sizes.append(np.minimum(loop.length / EDGES_OF_A_LOOP, TURN_OF_AN_EDGE / np.maximum(bend, 1e-12)))
+        along.append(t * loop.length)
+    points = np.concatenate(places)
+    apart = np.linalg.norm(points[:, None] - points, axis=2)
+    of_loop = np.repeat(np.arange(len(loops)), len(t))
+    arc = np.abs(np.concatenate(along)[:, None] - np.concatenate(along))
+    length = np.array([loop.length for loop in loops])[of_loop]
+    arc = np.where(of_loop[:, None] == of_loop, np.minimum(arc, length - arc), np.inf)
+    # a chord much shorter than the arc it cuts off crosses the surface
+    width = np.where(arc > ARC_OVER_CHORD * apart, apart, np.inf).min(1)
+    wanted = np.minimum(np.concatenate(sizes), width / EDGES_ACROSS)
+    return SizeField(points, np.maximum(wanted, length / MOST_EDGES_OF_A_LOOP), extent / 6)
+
+
+def bend_sizes(film: Film) -> tuple[Floats, Floats]:
+    """Middles of the elements (m, 3) and sizes over which the film's normals turn by a fixed angle, m, (m,)."""
+    normals = smooth_normals(film.connectivity, film.nodes)[: len(film.mesh.points)]
+    faces = film.connectivity.faces
+    corners, turned = film.nodes[faces], normals[faces]
+    edge = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2)
+    turn = np.arccos(np.clip((turned * np.roll(turned, 1, 1)).sum(2), -1, 1))
+    return corners.mean(1), TURN_OF_AN_EDGE / np.maximum((turn / edge).max(1), 1e-12)
+
+
+def start_sizes(film: Film, loops: tuple[Loop, ...], share: float = 1.0) -> SizeField:
+    """Sizes that the loops and the bend of a film ask for, times a share."""
+    middle, bend = bend_sizes(film)
+    least = film.size / 150
+    by_loops = coarse_sizes(loops, film.size)
+    sizes = np.minimum(np.maximum(bend, least), by_loops(middle))
+    rim = np.concatenate([loop.at(np.arange(SAMPLES_OF_A_LOOP) / SAMPLES_OF_A_LOOP) for loop in loops])
+    return SizeField(np.concatenate([middle, rim]), share * np.concatenate([sizes, by_loops(rim)]), film.size / 6)
+
+
+def start_film(chart: Chart, loops: tuple[Loop, ...], order: int, rounds: int = 0, share: float = 1.0) -> Film:
+    """Elements on the harmonic surface over a chart.
+
+    Parameters
+    ----------
+    chart : Chart
+    loops : tuple of Loop
+    order : int
+    rounds : int
+        See `harmonic_surface`.
+    share : float
+        Of the sizes that the loops and the surface's bend ask for.
+    """
+    points = harmonic_surface(chart, loops, rounds)
+    return on_surface(
+        Film.on_mesh(TriangleMesh(points, chart.faces, chart.loop, chart.parameter), loops, 1), order, share
+    )
+
+
+def on_surface(flat: Film, order: int, share: float = 1.0) -> Film:
+    """Coarse elements of an order on a surface of flat ones, as small as its loops and its bend ask for."""
+    return Film.on_mesh(_remeshed(flat, start_sizes(flat, flat.loops, share), flat.loops), flat.loops, order)
+
+
+def facets(film: Film, parts: int) -> TriangleMesh:
+    """A film's elements cut into flat triangles, each edge into `parts`."""
+    grid = connect(film.connectivity.faces, len(film.mesh.points), parts)
+    points = np.empty((grid.node_count, 3))
+    points[grid.elements] = np.matmul(
+        film.connectivity.basis.basis(grid.basis.nodes), film.nodes[film.connectivity.elements]
+    )
+    loop = np.full(grid.node_count, -1)
+    parameter = np.full(grid.node_count, np.nan)
+    rim_nodes = grid.rim_nodes
+    loop[rim_nodes] = film.mesh.loop[rim_nodes[:, :1]]
+    parameter[rim_nodes] = rim_parameters(grid, film.mesh.parameter)
+    return TriangleMesh(points, grid.elements[:, local_faces(parts)].reshape(-1, 3), loop, parameter)
+
+
+def _remeshed(film: Film, size: Callable[[Floats], Floats], loops: Sequence[Rim]) -> TriangleMesh:
+    # the curved elements' own shape, which their corners alone do not tell
+    parts = 1 if film.connectivity.basis.order == 1 else FACETS
+    try:
+        return remesh(facets(film, parts), size=size, project=TangentPlanes(film.connectivity, film.nodes), rims=loops)
+    except ValueError as error:
+        raise NoFilmError(f"its elements cannot be made anew: {error}", film) from None
+
+
+def held_rims(film: Film) -> tuple[Loop, ...]:
+    """The loops of a film, where they slide as the film has them now."""
+    return tuple(SlidRim.of(film, k) if loop.slides else loop for k, loop in enumerate(film.loops))
+
+
+def with_sizes(film: Film, size: Callable[[Floats], Floats], order: int | None = None) -> Film:
+    """The same surface with elements of wanted sizes."""
+    loops = held_rims(film)
+    mesh = _remeshed(film, size, loops)
+    new = Film.on_mesh(mesh, loops, order or film.connectivity.basis.order)
+    inside = np.setdiff1d(np.arange(new.connectivity.node_count), new.connectivity.rim_nodes)
+    places, position = ClosestPoint(film.connectivity, film.nodes)(new.nodes[inside])
+    normals = smooth_normals(film.connectivity, film.nodes)
+    basis = film.connectivity.basis.basis(places.local)
+    along = np.einsum("nk,nkc->nc", basis, normals[film.connectivity.elements[places.element]])
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    nodes = new.nodes.copy()
+    nodes[inside] += ((position - nodes[inside]) * along).sum(1)[:, None] * along
+    return new.at(nodes)
+
+
+def straightened(film: Film) -> Film:
+    """The same surface and elements, with nodes along smooth normals over the flat triangles of its vertices.
+
+    Newton's shifts leave the parametrisation as rough as the directions they were taken along; on the found surface
+    those are smooth.
+    """
+    vertices = len(film.mesh.points)
+    loops = held_rims(film)
+    mesh = replace(film.mesh, points=film.nodes[:vertices])
+    flat = Film.on_mesh(mesh, loops, film.connectivity.basis.order)
+    normals = smooth_normals(film.connectivity, film.nodes)
+    shift = ((film.nodes - flat.nodes) * normals).sum(1)
+    shift[flat.connectivity.rim_nodes] = 0
+    return flat.at(flat.nodes + shift[:, None] * normals)
+
+
+def least_angle(film: Film) -> NDArray[np.float64]:
+    """Smallest angle of the triangles of each element's corners, deg, (m,)."""
+    corners = film.nodes[film.connectivity.faces]
+    sides = np.roll(corners, -1, 1) - corners
+    sides /= np.linalg.norm(sides, axis=2)[..., None]
+    cosines = -(sides * np.roll(sides, 1, 1)).sum(2)
+    return np.asarray(np.degrees(np.arccos(np.clip(cosines.max(1), -1, 1))))

@@ -1,0 +1,208 @@
+"""Newton's method for films of a given mean curvature, or of a given volume."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lamella.sparse import Factor, SingularError
+from lamella.surface.found.film import Film
+from lamella.surface.found.variation import FirstVariation, Variation
+from lamella.surface.points import Floats
+
+# a step this small, over the film's size, is the last: the next would be its square
+LAST_STEP = 1e-7
+# directions follow the film once a normal has turned this far from its node's, as a cosine
+TURNED = 0.7
+MOST_HALVINGS = 12
+
+
+class NoFilmError(ArithmeticError):
+    """Newton's method ended without a film.
+
+    Attributes
+    ----------
+    last : Film or None
+        The last film on its way, with sound elements.
+    """
+
+    def __init__(self, message: str, last: Film | None = None) -> None:
+        super().__init__(message)
+        self.last = last
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A film in equilibrium.
+
+    Attributes
+    ----------
+    film : Film
+    mean_curvature : float
+        H, 1/m.
+    steps : int
+        Newton steps.
+    negative : int
+        Negative eigenvalues of the second variation: 0 for a stable film.
+    moves : tuple of float
+        Largest shift of a node in each step, m.
+    """
+
+    film: Film
+    mean_curvature: float
+    steps: int
+    negative: int
+    moves: tuple[float, ...]
+
+
+Detail = Callable[[str], None]
+
+
+def _silent(message: str) -> None:
+    """Tell nobody."""
+
+
+def find_equilibrium(
+    film: Film,
+    mean_curvature: float = 0.0,
+    *,
+    volume: float | None = None,
+    stable: bool = True,
+    most_steps: int = 30,
+    detail: Detail = _silent,
+) -> Equilibrium:
+    """The film of a mean curvature near a given one.
+
+    Parameters
+    ----------
+    film : Film
+        Where to start.
+    mean_curvature : float
+        H, 1/m; with `volume` where the search for it starts.
+    volume : float, optional
+        Volume to sweep from the start along its normals, m^3; H follows.
+    stable : bool
+        Look for a minimum of area + 2 H volume (shift the second variation while it has negative eigenvalues).
+    most_steps : int
+    detail : callable
+        Is told each step.
+
+    Raises
+    ------
+    NoFilmError
+        No equilibrium was reached.
+    """
+    unknowns = film.unknowns
+    free = unknowns >= 0
+    size = film.size
+    moves: list[float] = []
+    swept = 0.0
+    directions = film.directions()
+    variation = Variation(film.connectivity, directions)
+    first = variation.first(film.nodes)
+    for step in range(most_steps):
+        # the normals at the integration points against the directions of their element
+        if step and _turned(film, directions, first) < TURNED:
+            directions = film.directions()
+            variation = Variation(film.connectivity, directions)
+            first = variation.first(film.nodes)
+        gradient = (first.area_gradient + 2 * mean_curvature * first.volume_gradient)[free]
+        blocks = variation.second(film.nodes, first, mean_curvature)
+        if volume is None:
+            shift_of, negative = _newton_step(film, variation, first, blocks, gradient, stable)
+            change = 0.0
+        else:
+            border = np.append(first.volume_gradient[free], 0.0)
+            pattern = film.bordered_pattern
+            try:
+                factor = pattern.factor(pattern.assemble(blocks, border[None]))
+            except SingularError as error:
+                raise NoFilmError(str(error), film) from None
+            solution = factor.solve(-np.append(gradient, swept - volume))
+            shift_of, change, negative = solution[:-1], solution[-1] / 2, factor.negative - 1
+        if not np.isfinite(shift_of).all():
+            raise NoFilmError("the second variation is singular", film)
+        shift = np.zeros(len(free))
+        shift[free] = shift_of
+        slope = float(gradient @ shift_of)
+        film, first, share = _search(film, variation, first, shift, slope, mean_curvature + change, volume is None)
+        mean_curvature += share * change
+        if volume is not None:
+            swept += _swept(film, variation, shift, share)
+        move = float(np.abs(shift).max()) * share
+        moves.append(move)
+        detail(
+            f"    step {step + 1}: largest shift {move:.2e} m, residual {np.abs(gradient).max() / size:.2e}"
+            + (f", {share:.2g} of the step" if share < 1 else "")
+            + (f", {negative} negative eigenvalues" if negative else "")
+        )
+        if share == 1 and move <= LAST_STEP * size and abs(change) * size <= 1e-6:
+            return Equilibrium(film, mean_curvature, step + 1, negative, tuple(moves))
+    raise NoFilmError(f"no convergence in {most_steps} steps (last shift {moves[-1]:.2g} m)", film)
+
+
+def _newton_step(
+    film: Film, variation: Variation, first: FirstVariation, blocks: Floats, gradient: Floats, stable: bool
+) -> tuple[Floats, int]:
+    """Newton's step; for a stable film with the least shift that makes the second variation positive."""
+    pattern = film.pattern
+    values = pattern.assemble(blocks)
+    factor: Factor | None
+    try:
+        factor = pattern.factor(values)
+        negative = factor.negative
+    except SingularError:
+        factor, negative = None, 1
+    if factor is not None and (not negative or not stable):
+        return -factor.solve(gradient), negative
+    mass = pattern.assemble(variation.mass(first))
+    shift = 1 / film.size**2
+    for _ in range(30):
+        try:
+            factor = pattern.factor(values + shift * mass)
+            if not factor.negative:
+                return -factor.solve(gradient), negative
+        except SingularError:
+            pass
+        shift *= 4
+    raise NoFilmError("the second variation is singular", film)
+
+
+def _turned(film: Film, directions: Floats, first: FirstVariation) -> float:
+    """Least cosine between a normal and the directions of its element."""
+    middle = directions[film.connectivity.faces].mean(1)
+    return float(np.einsum("ceq,ec->eq", first.normals, middle).min())
+
+
+def _search(
+    film: Film,
+    variation: Variation,
+    first: FirstVariation,
+    shift: Floats,
+    slope: float,
+    mean_curvature: float,
+    downhill: bool,
+) -> tuple[Film, FirstVariation, float]:
+    """The longest of the halved steps in which no element folds and the slope along the step does not grow."""
+    share = 1.0
+    for _ in range(MOST_HALVINGS):
+        nodes = film.nodes + share * shift[:, None] * variation.directions
+        there = variation.first(nodes)
+        folded = ((there.normals * first.normals).sum(0) < 0.3).any() or (there.elements < 0.1 * first.elements).any()
+        new_slope = float((there.area_gradient + 2 * mean_curvature * there.volume_gradient) @ shift)
+        calm = not downhill or new_slope <= max(0.9 * abs(slope), 1e-10 * there.area)
+        if not folded and calm:
+            return film.at(nodes), there, share
+        share /= 2
+    raise NoFilmError("elements fold: the film breaks", film)
+
+
+def _swept(film: Film, variation: Variation, shift: Floats, share: float) -> float:
+    """Volume swept by the last step: Simpson's rule is exact, the swept volume being cubic in the shift."""
+    total = 0.0
+    for back, weight in ((1.0, 1 / 6), (0.5, 4 / 6), (0.0, 1 / 6)):
+        nodes = film.nodes - (back * share) * shift[:, None] * variation.directions
+        total += weight * float(variation.first(nodes).volume_gradient @ shift) * share
+    return total

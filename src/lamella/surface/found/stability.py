@@ -1,0 +1,86 @@
+"""Is a film stable: the lowest eigenvalue of its Jacobi operator.
+
+The second variation of area + 2 H volume along a normal shift phi is the integral of |grad phi|^2 - |A|^2 phi^2 with
+|A|^2 = k1^2 + k2^2 = 4 H^2 - 2 K: the Jacobi operator is -Laplace - |A|^2, with phi = 0 on held boundaries.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
+
+from lamella.sparse import Factor, SingularError
+from lamella.surface.found.film import Film
+from lamella.surface.found.variation import Variation
+from lamella.surface.points import Floats
+
+# of the second eigenvalue: below it the lowest one is nought for all purposes, the film is at the fold
+FOLD = 0.01
+# shifts tried below the spectrum, each four times the one before
+SHIFTS = 40
+
+
+@dataclass(frozen=True)
+class Stability:
+    """How a film answers to disturbances.
+
+    Attributes
+    ----------
+    verdict : str
+        "stable", "unstable" or "fold".
+    lowest : float
+        Lowest eigenvalue of the Jacobi operator, 1/m^2.
+    negative : int
+        Negative eigenvalues.
+    mode : (n,)
+        Normal shift of the nodes in the lowest mode, of largest value 1.
+    """
+
+    verdict: str
+    lowest: float
+    negative: int
+    mode: Floats
+
+
+def stability_of(film: Film, mean_curvature: float) -> Stability:
+    """Stability of a film in equilibrium at a given mean curvature (1/m)."""
+    directions = film.directions()
+    pattern = film.pattern
+    variation = Variation(film.connectivity, directions)
+    first = variation.first(film.nodes)
+    stiffness = pattern.assemble(variation.second(film.nodes, first, mean_curvature))
+    entries = pattern.assemble(variation.mass(first))
+    mass = pattern.matrix(entries)
+    # from below the spectrum the lowest eigenvalue is the nearest one, however far below nought it lies
+    factor: Factor | None = None
+    negative: int | None = None
+    shift = 0.0
+    for below in (0.0, 1e-6, *4.0 ** np.arange(SHIFTS)):
+        shift = -below / film.size**2
+        try:
+            factor = pattern.factor(stiffness - shift * entries)
+        except SingularError:
+            continue
+        negative = factor.negative if negative is None else negative
+        if not factor.negative:
+            break
+    assert factor is not None
+    assert negative is not None
+    matrix = pattern.matrix(stiffness)
+    wanted = min(2, pattern.size - 1)
+    inverse = LinearOperator(matrix.shape, matvec=factor.solve, dtype=float)
+    start = np.ones(pattern.size)
+    try:
+        values, vectors = eigsh(matrix, wanted, mass, sigma=shift, OPinv=inverse, v0=start, tol=1e-9)
+    except ArpackError:
+        values, vectors = eigsh(matrix, wanted, mass, sigma=shift, OPinv=inverse, tol=1e-6, ncv=4 * wanted + 40)
+    order = np.argsort(values)
+    lowest, second = float(values[order[0]]), float(values[order[-1]])
+    mode = np.zeros(film.connectivity.node_count)
+    mode[film.unknowns >= 0] = vectors[:, order[0]]
+    verdict = "stable" if lowest > 0 else "unstable"
+    if abs(lowest) < FOLD * abs(second):
+        verdict = "fold"
+    return Stability(verdict, lowest, negative, mode / mode[np.abs(mode).argmax()])

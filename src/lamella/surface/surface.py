@@ -1,0 +1,60 @@
+"""The questions every surface answers, closed form, found or imported: what later stages know of it."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol, TypeVar
+
+from lamella.surface.mesh import SurfaceMesh
+from lamella.surface.points import Floats, SurfacePoints
+
+Where = TypeVar("Where")
+"""Places on a surface in bulk; only the surface that gave them knows what is inside."""
+
+
+class Surface(Protocol[Where]):
+    """A surface of constant mean curvature. Signs and names are those of `lamella`'s package docstring.
+
+    `Where` is how the surface names n places at once: complex parameters (n,) on a closed form, elements with local
+    coordinates on a surface that was found.
+    """
+
+    @property
+    def kind(self) -> str:
+        """Name in a project file."""
+
+    @property
+    def mean_curvature(self) -> float:
+        """H, 1/m, for the surface's own normal."""
+
+    def at(self, where: Where) -> SurfacePoints:
+        """Everything about n places, in one evaluation."""
+
+    def mesh(self, tolerance: float = 1e-3) -> SurfaceMesh:
+        """The surface sampled for files and pictures.
+
+        Parameters
+        ----------
+        tolerance : float
+            Sag of the longest mesh edges over the diagonal of the bounding box.
+        """
+
+    def area(self) -> float:
+        """m^2."""
+
+    def check_places(self) -> Where:
+        """Places spread over the whole surface, at which a run measures it."""
+
+    def measured_mean_curvature(self, where: Where) -> Floats:
+        """H at n places from positions alone, 1/m, (n,): not from the equation that made the surface."""
+
+    def singular_orders(self) -> tuple[int, ...]:
+        """Orders m >= 1 of the umbilics, as far as they are known before the network is; each has 2 (m + 2) rays."""
+
+    def describe(self) -> dict[str, Any]:
+        """Further figures for the summary; "stability" is one where it is asked ("stable", "unstable", "fold")."""
+
+    def warnings(self) -> tuple[str, ...]:
+        """What a user should know about this surface before building it."""
+
+
+__all__ = ["Surface", "Where"]

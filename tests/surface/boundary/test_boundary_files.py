@@ -1,0 +1,324 @@
+"""Curves from written .3dm, .dxf and .json files: exact, in metres, and the right one of several."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import numpy as np
+import orjson
+import pytest
+import rhino3dm
+from ezdxf.path import make_path
+from scipy.spatial import cKDTree
+
+from lamella import InputError, parse_project
+from lamella.surface.boundary import Loop, boundary_loops
+
+T = np.random.default_rng(4).uniform(0, 1, 300)
+
+
+def loop_of(folder: Path, **table: Any) -> Loop:
+    project = parse_project({"surface": {"kind": "form-found", "boundary": [table]}})
+    (loop,) = boundary_loops(project.surface, folder)  # type: ignore[arg-type]
+    return loop
+
+
+def refused(folder: Path, **table: Any) -> InputError:
+    with pytest.raises(InputError) as error:
+        loop_of(folder, **table)
+    assert error.value.remedy
+    assert error.value.where == "surface.boundary[0].file"
+    assert str(folder) in error.value.message
+    assert max(map(len, str(error.value).replace(str(folder), "").splitlines())) < 500
+    return error.value
+
+
+def drawing(folder: Path, insunits: int = 4) -> Any:
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = insunits
+    document.saveas(folder / "c.dxf")
+    return document
+
+
+# --- 3dm --------------------------------------------------------------------------------------------------------
+
+
+def model(folder: Path, unit: Any, *curves: tuple[str, str, Any]) -> None:
+    file = rhino3dm.File3dm()
+    file.Settings.ModelUnitSystem = unit
+    for layer in sorted({layer for layer, _, _ in curves}):
+        file.Layers.AddLayer(layer, (0, 0, 0, 255))
+    for layer, name, curve in curves:
+        about = rhino3dm.ObjectAttributes()
+        about.Name = name
+        about.LayerIndex = sorted({layer for layer, _, _ in curves}).index(layer)
+        file.Objects.AddCurve(curve, about)
+    assert file.Write(str(folder / "c.3dm"), 8)
+
+
+def rhino_circle(radius: float, x: float = 0.0) -> Any:
+    return rhino3dm.Circle(rhino3dm.Point3d(x, 2, 3), radius).ToNurbsCurve()
+
+
+def points_of(*points: tuple[float, float, float]) -> Any:
+    return [rhino3dm.Point3d(*p) for p in points]
+
+
+@pytest.mark.parametrize(
+    ("unit", "metres"),
+    [("Millimeters", 1e-3), ("Meters", 1.0), ("Centimeters", 0.01), ("Feet", 0.3048), ("Inches", 0.0254)],
+)
+def test_a_rational_circle_of_a_3dm_is_exact(tmp_path: Path, unit: str, metres: float) -> None:
+    model(tmp_path, getattr(rhino3dm.UnitSystem, unit), ("a", "ring", rhino_circle(50.0)))
+    loop = loop_of(tmp_path, file="c.3dm")
+    assert loop.length == pytest.approx(2 * math.pi * 50 * metres, rel=1e-13)
+    distance = np.linalg.norm(loop.at(T) - np.array([0, 2, 3]) * metres, axis=1)
+    np.testing.assert_allclose(distance, 50 * metres, rtol=1e-13)
+    assert len(loop.corners) == 0
+
+
+def test_units_asked_for_win_and_none_is_refused(tmp_path: Path) -> None:
+    none = getattr(rhino3dm.UnitSystem, "None")
+    model(tmp_path, none, ("a", "ring", rhino_circle(50.0)))
+    assert "does not say its unit (the model's unit system)" in refused(tmp_path, file="c.3dm").message
+    assert loop_of(tmp_path, file="c.3dm", unit="cm").length == pytest.approx(math.pi)
+    model(tmp_path, rhino3dm.UnitSystem.Millimeters, ("a", "ring", rhino_circle(50.0)))
+    assert loop_of(tmp_path, file="c.3dm", unit="cm").length == pytest.approx(math.pi)
+
+
+def test_rhino_curves_of_all_kinds_are_evaluated_as_rhino_does(tmp_path: Path) -> None:
+    periodic = rhino3dm.NurbsCurve.Create(
+        True, 3, points_of((0, 0, 0), (4, 0, 1), (5, 3, 0), (2, 5, 2), (-1, 3, 0), (-2, 1, 1))
+    )
+    square = rhino3dm.PolylineCurve(
+        rhino3dm.Point3dList(points_of((0, 0, 0), (3, 0, 0), (3, 2, 1), (0, 2, 0), (0, 0, 0)))
+    )
+    mixed = rhino3dm.PolyCurve()
+    mixed.Append(rhino3dm.Line(rhino3dm.Point3d(0, 0, 0), rhino3dm.Point3d(4, 0, 0)))
+    mixed.Append(rhino3dm.Arc(rhino3dm.Point3d(4, 0, 0), rhino3dm.Point3d(5, 1, 0), rhino3dm.Point3d(4, 2, 0)))
+    mixed.Append(rhino3dm.Line(rhino3dm.Point3d(4, 2, 0), rhino3dm.Point3d(0, 2, 0)))
+    mixed.Append(rhino3dm.Line(rhino3dm.Point3d(0, 2, 0), rhino3dm.Point3d(0, 0, 0)))
+    for curve, corners in ((periodic, 0), (square, 4), (mixed, 2)):
+        model(tmp_path, rhino3dm.UnitSystem.Meters, ("a", "x", curve))
+        loop = loop_of(tmp_path, file="c.3dm")
+        domain = curve.Domain
+        u = domain.T0 + (domain.T1 - domain.T0) * np.arange(400) / 400
+        exact = np.array([(p.X, p.Y, p.Z) for p in (curve.PointAt(x) for x in u)])
+        # fine enough that the nearest sample's distance is second order
+        dense = loop.at(np.arange(200_000) / 200_000)
+        nearest = cKDTree(dense).query(exact)[0]
+        assert nearest.max() < loop.length / 200_000
+        assert len(loop.corners) == corners
+    assert loop.length == pytest.approx(4 + math.pi + 4 + 2, rel=1e-13)
+
+
+def test_layer_and_id_choose_among_rhino_curves(tmp_path: Path) -> None:
+    curves = [
+        ("Rim", "outer", rhino_circle(9.0)),
+        ("Holes", "h1", rhino_circle(1.0)),
+        ("Holes", "h2", rhino_circle(2.0)),
+    ]
+    model(tmp_path, rhino3dm.UnitSystem.Meters, *curves)
+    for table, radius in (({"layer": "rim"}, 9), ({"id": "H1"}, 1), ({"layer": "Holes", "id": "h2"}, 2)):
+        assert loop_of(tmp_path, file="c.3dm", **table).length == pytest.approx(2 * math.pi * radius)
+    ident = next(o.Attributes.Id for o in rhino3dm.File3dm.Read(str(tmp_path / "c.3dm")).Objects)
+    assert loop_of(tmp_path, file="c.3dm", id=str(ident)).length == pytest.approx(18 * math.pi)
+    several = refused(tmp_path, file="c.3dm", layer="Holes")
+    assert (
+        "2 closed curves with layer 'Holes': layer 'Holes' id 'h1' (NurbsCurve, 6.283 m, closed); " in several.message
+    )
+    assert "layer = ... or id = ..." in several.remedy
+    none = refused(tmp_path, file="c.3dm", layer="roof", id="x")
+    assert "no curve with layer 'roof' and id 'x'; layer 'Rim' id 'outer' (NurbsCurve, 56.55 m, closed)" in none.message
+
+
+def test_files_that_are_none(tmp_path: Path) -> None:
+    assert "no such file" in refused(tmp_path, file="missing.3dm").message
+    for name, words in (("a.3dm", "not a .3dm file"), ("a.dxf", "cannot be read as DXF"), ("a.json", "not valid JSON")):
+        (tmp_path / name).write_bytes(b"what\0is this")
+        assert words in refused(tmp_path, file=name).message
+        (tmp_path / name).write_bytes(b"")
+        assert words in refused(tmp_path, file=name).message
+    model(tmp_path, rhino3dm.UnitSystem.Meters)
+    assert "it holds no curves" in refused(tmp_path, file="c.3dm").message
+
+
+# --- DXF --------------------------------------------------------------------------------------------------------
+
+
+def test_a_bulge_is_an_exact_arc_in_metres(tmp_path: Path) -> None:
+    document = drawing(tmp_path)
+    # a slot: two lines and two half circles, the second by a bulge of a quarter twice
+    quarter = math.tan(math.pi / 8)
+    vertices = [(0, 0, 0), (4000, 0, 1), (4000, 2000, 0), (0, 2000, quarter), (-1000, 1000, quarter)]
+    document.modelspace().add_lwpolyline(vertices, format="xyb", close=True, dxfattribs={"elevation": 500})
+    document.saveas(tmp_path / "c.dxf")
+    loop = loop_of(tmp_path, file="c.dxf")
+    assert loop.length == pytest.approx(8 + 2 * math.pi, rel=1e-13)
+    x = loop.at(T)
+    assert np.abs(x[:, 2] - 0.5).max() < 1e-15
+    right, left = x[x[:, 0] > 4], x[x[:, 0] < 0]
+    np.testing.assert_allclose(np.hypot(right[:, 0] - 4, right[:, 1] - 1), 1, rtol=1e-13)
+    np.testing.assert_allclose(np.hypot(left[:, 0], left[:, 1] - 1), 1, rtol=1e-13)
+    assert len(right) > 30
+    assert len(left) > 30
+    # lines and arcs are tangent
+    assert len(loop.corners) == 0
+
+
+@pytest.mark.parametrize(("code", "metres"), [(1, 0.0254), (2, 0.3048), (4, 1e-3), (5, 0.01), (6, 1.0), (14, 0.1)])
+def test_units_of_dxf(tmp_path: Path, code: int, metres: float) -> None:
+    document = drawing(tmp_path, code)
+    document.modelspace().add_circle((1, 2, 3), 70)
+    document.saveas(tmp_path / "c.dxf")
+    assert loop_of(tmp_path, file="c.dxf").length == pytest.approx(140 * math.pi * metres, rel=1e-13)
+
+
+def test_a_drawing_without_unit(tmp_path: Path) -> None:
+    document = drawing(tmp_path, 0)
+    document.modelspace().add_circle((1, 2, 3), 70)
+    document.saveas(tmp_path / "c.dxf")
+    error = refused(tmp_path, file="c.dxf")
+    assert "does not say its unit ($INSUNITS in its header)" in error.message
+    assert 'unit = "mm"' in error.remedy
+    assert loop_of(tmp_path, file="c.dxf", unit="mm").length == pytest.approx(0.14 * math.pi)
+
+
+EXTRUSION = (1.0, 2.0, 2.0)
+
+
+@pytest.mark.parametrize("kind", ["circle", "ellipse", "lwpolyline", "polyline", "polyline3d", "spline", "rational"])
+def test_entities_are_where_the_drawing_library_puts_them(tmp_path: Path, kind: str) -> None:
+    """Against ezdxf's own flattening, in tilted planes."""
+    document = drawing(tmp_path, 6)
+    space = document.modelspace()
+    flat = [(0, 0, 0.2), (3, 0, 0), (3, 2, -0.3), (0, 2, 0)]
+    about = {"extrusion": EXTRUSION}
+    if kind == "circle":
+        entity = space.add_circle((1, 2, 3), 2, dxfattribs=about)
+    elif kind == "ellipse":
+        entity = space.add_ellipse((1, 2, 3), (2, -1, 0), 0.4, dxfattribs=about)
+    elif kind == "lwpolyline":
+        entity = space.add_lwpolyline(flat, format="xyb", close=True, dxfattribs=about | {"elevation": 2})
+    elif kind == "polyline":
+        entity = space.add_polyline2d(flat, format="xyb", close=True, dxfattribs=about | {"elevation": (0, 0, 2)})
+    elif kind == "polyline3d":
+        entity = space.add_polyline3d([(0, 0, 0), (3, 0, 1), (3, 2, 0), (0, 2, 2)], close=True)
+    else:
+        controls = [(0, 0, 0), (3, 0, 1), (3, 2, 0), (0, 2, 2), (-1, 1, 0)]
+        weights = [1, 2, 1, 0.5, 1] if kind == "rational" else None
+        entity = space.add_spline(dxfattribs={"degree": 3})
+        entity.set_closed(controls, degree=3)
+        if weights:
+            entity.weights = [*weights, *weights[:3]]
+    document.saveas(tmp_path / "c.dxf")
+    loop = loop_of(tmp_path, file="c.dxf")
+    if kind in ("spline", "rational"):
+        exact = np.array([tuple(p) for p in entity.construction_tool().approximate(200)])
+    elif kind == "polyline3d":
+        exact = np.array([tuple(p) for p in entity.points()])
+    elif kind == "circle":
+        exact = np.array([tuple(p) for p in entity.flattening(1e-4)])
+    elif kind == "ellipse":
+        exact = np.array([tuple(p) for p in entity.vertices(np.linspace(0, 6, 50))])
+    else:
+        exact = np.array([tuple(p) for p in make_path(entity).flattening(1e-4)])
+    dense = loop.at(np.arange(100_000) / 100_000)
+    nearest = cKDTree(dense).query(exact)[0]
+    # the library makes cubics of bulges, good to 3e-4 of the radius
+    assert nearest.max() < (2e-3 if "polyline" in kind else 1.01 * loop.length / 200_000)
+    span = np.ptp(exact, axis=0)
+    np.testing.assert_allclose(np.ptp(dense, axis=0), span, atol=0.02 * span.max())
+
+
+def test_open_lines_and_arcs_are_joined_in_any_order_and_direction(tmp_path: Path) -> None:
+    document = drawing(tmp_path)
+    space = document.modelspace()
+    layer = {"layer": "rim"}
+    space.add_line((4000, 2000), (0, 2000), dxfattribs=layer)
+    space.add_arc((4000, 1000), 1000, -90, 90, dxfattribs=layer)
+    space.add_line((4000, 0), (0, 1e-4), dxfattribs=layer)
+    spline = space.add_spline(dxfattribs=layer | {"degree": 3})
+    spline.control_points = [(0, 0, 0), (-1000, 500, 0), (-1000, 1500, 0), (0, 2000, 0)]
+    spline.knots = [0, 0, 0, 0, 1, 1, 1, 1]
+    space.add_line((9000, 0), (9500, 0), dxfattribs={"layer": "other"})
+    document.saveas(tmp_path / "c.dxf")
+    for table in ({}, {"layer": "RIM"}):
+        loop = loop_of(tmp_path, file="c.dxf", **table)
+        assert len(loop.corners) == 2
+        ends = loop.at(loop.corners)
+        np.testing.assert_allclose(np.sort(ends[:, 1]), [0, 2], atol=1e-6)
+        assert (loop.at(T)[:, 0] < 5 + 1e-12).all()
+        # the loop is closed: the length of the spline by its own Bezier formula
+        s = np.linspace(0, 1, 20001)[:, None]
+        p = np.array([[0, 0], [-1, 0.5], [-1, 1.5], [0, 2.0]])
+        x = (1 - s) ** 3 * p[0] + 3 * s * (1 - s) ** 2 * p[1] + 3 * s**2 * (1 - s) * p[2] + s**3 * p[3]
+        bow = np.linalg.norm(np.diff(x, axis=0), axis=1).sum()
+        assert loop.length == pytest.approx(8 + math.pi + bow, rel=1e-6)
+
+
+def test_open_curves_that_do_not_join(tmp_path: Path) -> None:
+    document = drawing(tmp_path)
+    space = document.modelspace()
+    space.add_line((0, 0), (4000, 0), dxfattribs={"layer": "rim"})
+    space.add_line((4000, 0), (4000, 3000), dxfattribs={"layer": "rim"})
+    line = space.add_line((4000, 3000), (1, 0), dxfattribs={"layer": "rim"})
+    document.saveas(tmp_path / "c.dxf")
+    error = refused(tmp_path, file="c.dxf", layer="rim")
+    assert "no closed curve with layer 'rim', and the open ones do not join to one: " in error.message
+    assert f"layer 'rim' id '{line.dxf.handle}' (LINE, 4.999 m, open)" in error.message
+    space.add_circle((0, 0), 500, dxfattribs={"layer": "rim"})
+    space.add_line((4000, 3000), (0, 0), dxfattribs={"layer": "b"})
+    document.saveas(tmp_path / "c.dxf")
+    # the closed one is the only candidate
+    assert loop_of(tmp_path, file="c.dxf", layer="rim").length == pytest.approx(math.pi)
+
+
+def test_chains_and_closed_curves_are_listed_together(tmp_path: Path) -> None:
+    document = drawing(tmp_path, 6)
+    space = document.modelspace()
+    for a, b in (((0, 0), (4, 0)), ((4, 0), (4, 3)), ((4, 3), (0, 0))):
+        space.add_line(a, b, dxfattribs={"layer": "rim"})
+    space.add_circle((2, 1), 0.2, dxfattribs={"layer": "hole"})
+    document.saveas(tmp_path / "c.dxf")
+    told = refused(tmp_path, file="c.dxf").message
+    assert "2 closed curves: layer 'hole' id" in told
+    assert "(CIRCLE, 1.257 m, closed); layer 'rim' id" in told
+    assert "(chain of 3, 12 m, closed)" in told
+
+
+# --- JSON -------------------------------------------------------------------------------------------------------
+
+
+def test_json_curves(tmp_path: Path) -> None:
+    t = 2 * np.pi * np.arange(64) / 64
+    ring = np.stack([2000 * np.cos(t), 2000 * np.sin(t), 0 * t], axis=1).tolist()
+    square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 0]]
+    curves = {"ring": {"points": ring}, "square": {"points": square, "interpolation": "polyline"}}
+    (tmp_path / "c.json").write_bytes(orjson.dumps({"unit": "mm", "curves": curves}))
+    assert loop_of(tmp_path, file="c.json", id="ring").length == pytest.approx(4 * math.pi, rel=1e-9)
+    assert loop_of(tmp_path, file="c.json", id="square", unit="m").length == pytest.approx(4)
+    several = refused(tmp_path, file="c.json").message
+    assert "id 'ring' (spline, 12.57 m, closed); id 'square' (polyline, 0.004 m, closed)" in several
+    (tmp_path / "c.json").write_bytes(orjson.dumps({"curves": {"square": curves["square"]}}))
+    assert 'does not say its unit (its key "unit")' in refused(tmp_path, file="c.json").message
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ([], 'has no "curves"'),
+        ({"unit": "yd", "curves": {}}, "unit 'yd' is not one of m, mm"),
+        ({"unit": "m", "curves": {"a": 3}}, "curve 'a' has no \"points\""),
+        ({"unit": "m", "curves": {"a": {"points": [[0, 0, 0], [1, 2]]}}}, "curve 'a': points[1] has 2 numbers"),
+        ({"unit": "m", "curves": {"a": {"points": [[0, 0, 0], [1, 2, 3]]}}}, "curve 'a': 2 different points"),
+        ({"unit": "m", "curves": {"a": {"points": [], "colour": 3}}}, "curve 'a': unknown key 'colour'"),
+        ({"unit": "m", "curves": {"a": {"points": [], "interpolation": "x"}}}, "interpolation 'x'"),
+    ],
+)
+def test_json_that_is_something_else(tmp_path: Path, content: Any, words: str) -> None:
+    (tmp_path / "c.json").write_bytes(orjson.dumps(content))
+    assert words in refused(tmp_path, file="c.json").message

@@ -1,0 +1,89 @@
+"""Random boundaries: a film that keeps its tolerance wherever it is looked at, or a refusal that says why."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from lamella.errors import InputError
+from lamella.surface.boundary import check_loops
+from lamella.surface.element.places import Places
+from lamella.surface.found.adapting import away_from_corners
+from lamella.surface.found.find import find_film
+from surface.found.films import random_places
+from surface.found.random_loops import draw_case
+
+TOLERANCE, MOST_NODES = 2e-2, 20_000
+LONGEST = 180  # s, of one case on one busy core
+
+
+def judged(seed: int) -> str:
+    """Draw, find, and measure again at places of its own choice; returns what became of it."""
+    case = draw_case(seed)
+    start = time.perf_counter()
+    refusal = None
+    try:
+        check_loops(case.loops)
+        found = find_film(case.loops, case.mean_curvature, tolerance=TOLERANCE, most_nodes=MOST_NODES)
+    except InputError as error:
+        refusal = error
+    else:
+        told = f"deviation {found.deviation:.1e}, {found.equilibrium.film.connectivity.node_count} nodes"
+        film, surface = found.equilibrium.film, found.surface("found")
+        assert np.isfinite(surface.nodes).all(), seed
+        assert found.deviation <= TOLERANCE, (seed, found.deviation)
+        assert found.stability.negative == 0, seed
+        assert film.connectivity.node_count <= 1.3 * MOST_NODES, seed
+        # curvature at places that form finding itself did not look at
+        measured = surface.measured(random_places(film, 20_000, seed))
+        off = np.abs(measured.mean_curvature - case.mean_curvature)[away_from_corners(film, measured.position)]
+        assert np.sqrt(np.mean(off**2)) <= TOLERANCE * found.scale, (seed, "silently wrong")
+        assert off.max() <= 6 * TOLERANCE * found.scale, (seed, "silently wrong")
+        # no element is turned over against its neighbours
+        mesh = film.connectivity
+        middles = np.array([[0.5, 0], [0.5, 0.5], [0, 0.5]])
+        element, edge = np.nonzero(mesh.neighbours >= 0)
+        one = surface.measured(Places(element, middles[edge])).normal
+        other = surface.measured(
+            Places(mesh.neighbours[element, edge], middles[mesh.neighbour_edges[element, edge]])
+        ).normal
+        assert (one * other).sum(1).min() > 0.7, (seed, "folded")
+        # the boundary is the loops
+        for index, loop in enumerate(case.loops):
+            rim = np.unique(mesh.rim_nodes[surface.rim_loop == index])
+            fine = loop.at(np.arange(20_000) / 20_000)
+            step = loop.length / 20_000
+            off_rim = [
+                np.linalg.norm(fine - point, axis=1).min() for point in surface.nodes[rim[:: max(len(rim) // 20, 1)]]
+            ]
+            assert max(off_rim) <= step, (seed, loop.name)
+    if refusal is not None:
+        told = f"refused: {refusal.message}"
+        assert refusal.remedy, seed
+        assert "nan" not in str(refusal), (seed, told)
+    seconds = time.perf_counter() - start
+    assert seconds < LONGEST, (seed, seconds)
+    return f"{seed}: {seconds:.1f} s, {case.told}: {told}"
+
+
+def test_draw_is_varied_and_the_same_every_time() -> None:
+    cases = [draw_case(seed) for seed in range(40)]
+    assert {case.told.split(",")[0] for case in cases} == {"star", "waving", "free", "winding", "polygon"}
+    assert {len(case.loops) for case in cases} == {1, 2, 3, 4}
+    assert 0.2 < np.mean([case.mean_curvature == 0 for case in cases]) < 0.7
+    again = draw_case(7)
+    t = np.linspace(0, 1, 50)
+    assert all(np.array_equal(a.at(t), b.at(t)) for a, b in zip(cases[7].loops, again.loops, strict=True))
+
+
+@pytest.mark.parametrize("seed", [6, 18, 26, 44, 48, 82])
+def test_film_or_reason(seed) -> None:
+    judged(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(200))
+def test_film_or_reason_of_two_hundred(seed) -> None:
+    print(judged(seed))
