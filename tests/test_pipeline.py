@@ -19,7 +19,7 @@ from lamella import InputError, compute, parse_project, read_project
 from lamella.cli import main
 from lamella.files.network_json import network_schema
 from lamella.output import report_data
-from lamella.pipeline import plan
+from lamella.pipeline import STAGES
 from lamella.project import FabricationTable, FormFoundTable, LamellaTable, MeshTable, Project, Table
 from lamella.project_file import moved
 from lamella.surface.surface import Surface
@@ -43,6 +43,7 @@ ELEMENT_KEYS = (
     "jacobi_eigenvalue negative_eigenvalues order surface_nodes elements newton_steps continuation curvature_scale "
     "mean_curvature_deviation volume tolerance"
 )
+ELEMENT_NETWORK_KEYS = "umbilics isothermic_residual joints"
 
 
 def numbers(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
@@ -71,15 +72,14 @@ def test_summaries_of_examples_have_every_key_with_finite_values(example: tuple[
     assert summary["schema"] == "lamella/summary/1"
     assert summary["version"] == lamella.__version__
     assert summary["name"] == tomllib.loads(path.read_text(encoding="utf-8"))["name"]
-    stages = ["surface"] if path.stem in FOUND else list(KEYS)
-    for stage in stages:
-        assert set(KEYS[stage].split()) <= set(summary[stage]), stage
+    for stage, keys in KEYS.items():
+        assert set(keys.split()) <= set(summary[stage]), stage
     assert (set(summary["surface"]) >= set(ELEMENT_KEYS.split())) == (path.stem in FOUND)
-    without = {f".{stage}" for stage in KEYS if stage not in stages}
+    assert (set(summary["network"]) >= set(ELEMENT_NETWORK_KEYS.split())) == (path.stem in FOUND)
     assert summary["structure"] is None
-    assert set(stages) <= set(summary["seconds"])
+    assert set(KEYS) <= set(summary["seconds"])
     for place, value in numbers(summary):
-        if place in {".structure", ".lamellas.planarity_score.developable", *without}:
+        if place in {".structure", ".lamellas.planarity_score.developable"}:
             assert value is None
         elif place == ".surface.stability":
             assert value == ("stable" if path.stem in FOUND else None)
@@ -87,8 +87,6 @@ def test_summaries_of_examples_have_every_key_with_finite_values(example: tuple[
             assert value is not None, place
             assert not isinstance(value, float) or math.isfinite(value), place
     network = summary["network"]
-    if network is None:
-        return
     assert network["closed"] is True
     assert 0 < network["cell_edge_min"] <= network["cell_edge_median"] <= network["cell_edge_max"]
     for node in network["singular_nodes"]:
@@ -103,12 +101,9 @@ def test_summaries_of_examples_have_every_key_with_finite_values(example: tuple[
 
 
 def test_summaries_agree_with_the_files_beside_them(example: tuple[Path, Path]) -> None:
-    _, out = example
+    path, out = example
     summary = json.loads((out / "summary.json").read_bytes())
-    if summary["network"] is None:
-        assert not (out / "network.json").exists()
-        assert (out / "surface.3dm").is_file()
-        return
+    assert (out / "surface.3dm").is_file() == (path.stem in FOUND)
     network = json.loads((out / "network.json").read_bytes())
     assert summary["network"]["nodes"] == len(network["nodes"])
     assert summary["network"]["lamellas"] == len(network["lamellas"])
@@ -304,42 +299,104 @@ def test_without_until_closed_forms_go_all_the_way() -> None:
     assert results.summary["warnings"] == compute(parse_project(PROJECT), until="fabrication").summary["warnings"]
 
 
-def test_without_until_found_surfaces_end_with_the_surface_and_say_so(found: tuple[Project, list[Path]]) -> None:
+def test_the_surface_stage_of_found_surfaces(found: tuple[Project, list[Path]]) -> None:
     project, _ = found
     told: list[str] = []
-    results = compute(project, progress=told.append)
+    results = compute(project, until="surface", progress=told.append)
     assert results.network is None
     assert results.summary["network"] is None
     assert results.summary["surface"]["stability"] == "stable"
     assert results.summary["surface"]["kind"] == project.surface.kind
-    (warning,) = (message for message in results.summary["warnings"] if "not part of version" in message)
-    assert warning.startswith("the network of ")
-    assert f"  {warning}" in told
     assert "    Newton step 1" in told
     assert ("Surface", "Stability", "stable", "") in report_data(results).figures
-    # who asks for the surface misses nothing
-    assert not any("not part of" in message for message in compute(project, until="surface").summary["warnings"])
+    # nothing is missing of what was asked for
+    assert results.summary["warnings"] == []
 
 
-def test_a_network_of_found_surfaces_is_refused_before_any_work(
-    found: tuple[Project, list[Path]],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+def film(*loops: dict[str, Any], **tables: Any) -> Project:
+    """A film between circles of 2 m, coarse."""
+    surface = {"kind": "form-found", "tolerance": 0.05, "boundary": list(loops)}
+    return parse_project({"surface": surface, "network": {"cells": 10}} | tables)
+
+
+def ring(height: float) -> dict[str, Any]:
+    return {"name": f"at {height:g}", "circle": {"center": [0.0, 0.0, height], "radius": 2.0}}
+
+
+def test_without_until_found_surfaces_go_all_the_way() -> None:
+    told: list[str] = []
+    results = compute(film(ring(0.0), ring(1.6)), progress=told.append)
+    assert [line.split(":")[0] for line in told if not line.startswith(" ")] == list(KEYS)
+    assert results.network
+    assert results.parts
+    assert len(results.network.ids) == 20
+    figures = results.summary["network"]
+    assert (figures["requested"], figures["cells"], figures["closed"]) == ("cells = 10", 10, True)
+    assert [period["around"] for period in figures["periods"]] == ["at 1.6"]
+    assert figures["umbilics"] == figures["singular_nodes"] == []
+    assert 0 < figures["isothermic_residual"] < 0.01
+    (joint,) = figures["joints"]
+    assert set(joint) == {"between", "off_cells", "closed"}
+    assert joint["between"] == "between the loop 'at 0' and the loop 'at 1.6'"
+    assert joint["closed"]
+    assert joint["off_cells"] < 1e-3
+
+
+FLAT = (film(ring(0.0)), "flat: ")
+CAP = (
+    parse_project(
+        {"surface": {"kind": "form-found", "mean_curvature": -0.25, "boundary": [ring(0.0)]}, "network": {"cells": 10}}
+    ),
+    "a piece of a sphere of radius ",
+)
+
+
+@pytest.mark.parametrize(("project", "what"), [FLAT, CAP], ids=["plane", "sphere"])
+def test_without_until_spheres_and_planes_end_with_the_surface_and_say_why(
+    project: Project, what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    project, asked = found
     monkeypatch.chdir(tmp_path)
+    results = compute(project)
+    assert results.network is None
+    assert [results.summary[stage] for stage in STAGES[1:]] == [None] * 4
+    (warning,) = results.summary["warnings"]
+    assert warning.startswith(f"the run ends with the surface: it is {what}")
+    assert warning.endswith("and has no net of lamellas")
+    assert compute(project, until="surface").summary["warnings"] == []
+    # who asks for a net is told that there is none
+    (tmp_path / "p.toml").write_text(project.to_toml(), encoding="utf-8")
     for until in ("network", "lamellas", "fabrication"):
-        for ask in (compute, plan):
-            with pytest.raises(InputError, match="not part of version") as refused:
-                ask(project, until=until)
-            assert refused.value.where == "--until"
-        assert main(["run", "film.toml", "--until", until]) == 2
-        told = capsys.readouterr().err
-        assert told.startswith(f"lamella: --until: stage {until!r}: the network of ")
-        assert "remedy: leave --until out, or write --until surface" in told
-    assert asked == []
-    assert list(tmp_path.iterdir()) == []
+        with pytest.raises(InputError, match="every point is umbilic") as refused:
+            compute(project, until=until)
+        assert what in str(refused.value)
+        assert refused.value.where == "surface"
+        assert refused.value.remedy
+    assert main(["run", "p.toml", "--until", "network", "--quiet"]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith("lamella: p.toml:")
+    assert what in told
+    assert "\n  remedy: " in told
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["p.toml"]
+    assert main(["run", "p.toml", "--quiet"]) == 0
+    assert f"warning: {warning}" in capsys.readouterr().err
+    assert not (tmp_path / "out" / "p" / "network.json").exists()
+
+
+def test_found_surfaces_do_not_adjust_their_boundary_yet(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    project = film(ring(0.0), ring(1.6), network={"cells": 10, "closing": "adjust"})
+    with pytest.raises(InputError, match="adjust.*not part of version") as refused:
+        compute(project)
+    assert refused.value.where == "network.closing"
+    assert refused.value.remedy == 'write closing = "open" or "round"'
+    (tmp_path / "p.toml").write_text(project.to_toml(), encoding="utf-8")
+    assert main(["run", "p.toml", "--quiet"]) == 2
+    assert "network.closing" in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["p.toml"]
+    # the surface alone has nothing to close
+    assert compute(project, until="surface").network is None
 
 
 def test_found_surfaces_on_the_command_line(
@@ -350,13 +407,13 @@ def test_found_surfaces_on_the_command_line(
 ) -> None:
     _, asked = found
     monkeypatch.chdir(tmp_path)
-    assert main(["run", "films/film.toml"]) == 0
+    assert main(["run", "films/film.toml", "--until", "surface"]) == 0
     plain = capsys.readouterr().err
-    assert "warning: the network of " in plain
+    assert "warning" not in plain
     assert "Newton" not in plain
     files = {p.name for p in (tmp_path / "out" / "film").iterdir()}
     assert files == {"summary.json", "project.toml", "surface.obj", "surface.ply", "report.html"}
-    assert main(["run", "films/film.toml", "-v"]) == 0
+    assert main(["run", "films/film.toml", "-v", "--until", "surface"]) == 0
     assert "\n    Newton step 1\n" in capsys.readouterr().err
     assert main(["check", "films/film.toml"]) == 0
     told = capsys.readouterr()

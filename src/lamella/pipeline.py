@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lamella import __version__, cautions, summary
 from lamella.errors import InputError
@@ -23,6 +23,10 @@ from lamella.surface.closed_form import ClosedForm
 from lamella.surface.closed_forms import CLOSED_FORMS
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
+from lamella.surface.umbilic import umbilic_reason
+
+if TYPE_CHECKING:
+    from lamella.network.element_network import ElementNetwork
 
 STAGES = ("surface", "network", "lamellas", "fabrication", "structure")
 LAST_STAGE = "fabrication"
@@ -84,33 +88,6 @@ class _Clock:
         self._progress(f"  {result} ({self.seconds[stage]:.2f} s)")
 
 
-# Surfaces whose network is not part of this version, as a message names them: a run of theirs ends with the surface.
-# Whoever brings the network takes them out here; nothing else knows of this.
-_WITHOUT_NETWORK = {"form-found": "form-found surfaces", "mesh": "surfaces from meshes"}
-
-
-def _reach(project: Project, until: str | None) -> tuple[int, tuple[str, ...]]:
-    """Index of a run's last stage, and what to tell where it ends earlier than others do.
-
-    Raises
-    ------
-    InputError
-        There is no such stage, or not for this kind of surface.
-    """
-    depth = _depth(LAST_STAGE if until is None else until)
-    surfaces = _WITHOUT_NETWORK.get(project.surface.kind)
-    if surfaces is None or depth == 0:
-        return depth, ()
-    lacking = f"the network of {surfaces} is not part of version {__version__} yet"
-    if until is not None:
-        raise InputError(
-            f"stage {until!r}: {lacking}",
-            "leave --until out, or write --until surface",
-            "--until",
-        )
-    return 0, (f"{lacking}: the run ends with the surface",)
-
-
 def make_surface(project: Project, folder: Path = Path(), progress: Progress = _silent) -> Surface[Any]:
     """The surface a project describes.
 
@@ -158,7 +135,7 @@ def plan(
     ------
     InputError
     """
-    depth, _ = _reach(project, until)
+    depth = _depth(LAST_STAGE if until is None else until)
     surface = make_surface(project, folder, progress)
     if depth >= STAGES.index("fabrication"):
         _check_fabrication(fill_in(project, surface), surface.mean_curvature)
@@ -217,40 +194,50 @@ def compute(
     ------
     InputError
     """
-    depth, lacking = _reach(project, until)
+    depth = _depth(LAST_STAGE if until is None else until)
     clock = _Clock(progress)
     warnings: list[str] = []
 
     clock.start(f"surface: {project.surface.kind}")
-    for message in lacking:
-        progress(f"  {message}")
     surface, density = plan(project, until=until, folder=folder, progress=progress)
     project = fill_in(project, surface)
     progress("    sampling the surface for files and pictures")
     mesh = surface.mesh()
     figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh)}
     clock.stop("surface", f"area {figures['surface']['area']:.4g} m2, H = {surface.mean_curvature:.6g} 1/m")
-    warnings += [*lacking, *surface.warnings(), *cautions.size_cautions(mesh, project.lamella.height)]
+    warnings += [*surface.warnings(), *cautions.size_cautions(mesh, project.lamella.height)]
 
+    if depth and until is None and not density:
+        reason = umbilic_reason(surface.at(surface.check_places()))
+        if reason:
+            depth = 0
+            warnings.append(f"the run ends with the surface: it is {reason}, and has no net of lamellas")
     network = lamellas = parts = nesting = None
     if depth >= STAGES.index("network"):
-        assert isinstance(surface, ClosedForm)
-        assert density
-        clock.start(f"network: {density.requested}, about {density.estimated_nodes:,} nodes")
-        network = trace_closed_form(surface, density, minimum_length=project.network.minimum_length)
-        figures["network"] = f = summary.network_summary(network, density.requested)
+        table = project.network
+        if isinstance(surface, ClosedForm):
+            assert density
+            clock.start(f"network: {density.requested}, about {density.estimated_nodes:,} nodes")
+            network = trace_closed_form(surface, density, minimum_length=table.minimum_length)
+            figures["network"] = f = summary.network_summary(network, density.requested)
+        else:
+            clock.start("network: umbilics, isothermic coordinates, lamellas")
+            woven = _weave(surface, project, progress)
+            network = woven.network
+            figures["network"] = f = summary.network_summary(network, woven.lattice.requested) | woven.describe()
+            warnings += woven.warnings()
         clock.stop(
             "network",
-            f"{density.cells} cells: {f['lamellas']} lamellas, {f['nodes']:,} nodes, cell edge "
+            f"{network.cells} cells: {f['lamellas']} lamellas, {f['nodes']:,} nodes, cell edge "
             f"{f['cell_edge_min']:.3g} to {f['cell_edge_max']:.3g} m (median {f['cell_edge_median']:.3g} m)",
         )
-        warnings += cautions.network_cautions(network, project.lamella.height, project.network.closing)
+        warnings += cautions.network_cautions(network, project.lamella.height, table.closing if density else "open")
     if network and depth >= STAGES.index("lamellas"):
-        table = project.lamella
-        clock.start(f"lamellas: {table.height * 1000:g} x {table.thickness * 1000:g} mm, {table.material}")
-        section = Section(table.height, table.thickness, table.layers, table.offset, table.marks, table.layer_lengths)
+        strip = project.lamella
+        clock.start(f"lamellas: {strip.height * 1000:g} x {strip.thickness * 1000:g} mm, {strip.material}")
+        section = Section(strip.height, strip.thickness, strip.layers, strip.offset, strip.marks, strip.layer_lengths)
         lamellas = make_lamellas(network, section, project.material())
-        figures["lamellas"] = f = summary.lamella_summary(network, lamellas, table.material, project.material())
+        figures["lamellas"] = f = summary.lamella_summary(network, lamellas, strip.material, project.material())
         clock.stop("lamellas", f"{f['total_length']:.4g} m of lamella, utilisation up to {f['utilisation_max']:.2f}")
         warnings += cautions.lamella_cautions(mesh, network, lamellas, project.fabrication.slot_width or 0.0)
     if network and lamellas and depth >= STAGES.index("fabrication"):
@@ -266,6 +253,31 @@ def compute(
     content |= {stage: figures.get(stage) for stage in STAGES}
     content |= {"warnings": warnings, "seconds": clock.seconds}
     return Results(project, surface, mesh, network, lamellas, parts, nesting, content, folder)
+
+
+def _weave(surface: Surface[Any], project: Project, progress: Progress) -> ElementNetwork:
+    """The network of a surface of elements."""
+    from lamella.network.element_network import element_network
+    from lamella.surface.element.surface import ElementSurface
+
+    assert isinstance(surface, ElementSurface)
+    table = project.network
+    if table.closing == "adjust":
+        raise InputError(
+            f'closing = "adjust" is not part of version {__version__} yet',
+            'write closing = "open" or "round"',
+            "network.closing",
+        )
+    boundary = getattr(project.surface, "boundary", ())
+    return element_network(
+        surface,
+        cells=table.cells,
+        spacing=table.spacing,
+        closing=table.closing,
+        minimum_length=table.minimum_length,
+        loop_names=tuple(loop.name for loop in boundary),
+        progress=progress,
+    )
 
 
 def _depth(until: str) -> int:
@@ -322,7 +334,6 @@ def run(
 
     _depth(LAST_STAGE if until is None else until)
     project = read_project(project_file)
-    _reach(project, until)
     target = out if out is not None else Path("out") / project_file.stem
     check_target(target)
     try:

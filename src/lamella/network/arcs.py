@@ -80,8 +80,9 @@ class ArcLengths:
     ----------
     segments : Pieces
     tail : float
-        Share of the speed's series that its last two terms may have; infinite where the speed itself is not smooth
-        enough for more terms to tell more.
+        Share of the speed's series that its last two terms may have.
+    settle : int
+        Points a segment at which any series is taken: where the speed is not smooth enough for more to tell more.
 
     Attributes
     ----------
@@ -94,7 +95,7 @@ class ArcLengths:
         The cells stretch so much that no series reaches full accuracy.
     """
 
-    def __init__(self, segments: Pieces, tail: float = TAIL) -> None:
+    def __init__(self, segments: Pieces, tail: float = TAIL, settle: int = 10**9) -> None:
         count = len(segments.owner)
         self.length = np.empty(count)
         self._series: list[tuple[Floats, Floats]] = []
@@ -108,7 +109,7 @@ class ArcLengths:
                     "network.cells",
                 )
             speed, length = _speed_series(segments, left, points)
-            done = np.abs(speed[-2:]).max(0) <= tail * speed[0]
+            done = (np.abs(speed[-2:]).max(0) <= tail * speed[0]) | (points >= settle)
             self._group[left[done]] = len(self._series)
             self._member[left[done]] = np.arange(done.sum())
             self.length[left[done]] = length[done]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,12 @@ from lamella.network.cell_map import CellMap
 from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
 from lamella.network.isothermic import Isothermic, Transition, integrate, with_shifts
 from lamella.network.net_mesh import NetMesh, make_net_mesh
-from lamella.network.network import Network, Period
+from lamella.network.network import SINGULAR, Network, Period
 from lamella.network.trace_elements import trace_elements
-from lamella.network.umbilics import Umbilics, find_umbilics
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
+from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.points import Complexes, Floats
 from lamella.surface.umbilic import refuse_umbilic
 
@@ -56,6 +56,14 @@ class Lattice:
     estimated_nodes: int
 
 
+class Joint(NamedTuple):
+    """Where a net has to meet itself: between what, how far from whole cells, and whether it was closed."""
+
+    between: str
+    off_cells: float
+    closed: bool
+
+
 @dataclass(frozen=True)
 class ElementNetwork:
     """A network with what it rests on.
@@ -67,18 +75,59 @@ class ElementNetwork:
     lattice : Lattice
     residual : float
         Distance of the surface from constant mean curvature, see `Isothermic.residual`.
-    off : (t,)
-        How far each transition is from whole numbers of cells, before rounding.
-    where : tuple of str
-        What each transition lies between.
+    joints : tuple of Joint
     """
 
     network: Network
     umbilics: Umbilics
     lattice: Lattice
     residual: float
-    off: Floats
-    where: tuple[str, ...]
+    joints: tuple[Joint, ...]
+
+    def describe(self) -> dict[str, Any]:
+        """Further figures of the network for summary.json."""
+        nodes = self.network.node_points[self.network.node_kinds == SINGULAR]
+        reach = 1e-6 * float(np.linalg.norm(np.ptp(self.network.node_points, axis=0)))
+        umbilics = [
+            {
+                "point": point.tolist(),
+                "order": int(order),
+                "rays": int(2 * (order + 2)),
+                "node": bool((np.linalg.norm(nodes - point, axis=1) < reach).any()) if len(nodes) else False,
+            }
+            for point, order in zip(self.umbilics.position, self.umbilics.orders, strict=True)
+        ]
+        return {
+            "umbilics": umbilics,
+            "isothermic_residual": self.residual,
+            "joints": [joint._asdict() for joint in self.joints],
+        }
+
+    def warnings(self) -> Iterator[str]:
+        """Where the net does not meet itself, and umbilics that are no nodes."""
+        open_, rounded = (
+            [joint.off_cells for joint in self.joints if joint.off_cells > CLOSES and joint.closed == closed]
+            for closed in (False, True)
+        )
+        if open_:
+            yield (
+                f"the net does not meet itself along {len(open_)} seam{'s' if len(open_) > 1 else ''}: it misses whole "
+                f"cells by up to {max(open_):.3g} (summary: network.joints); another number of cells, "
+                "closing = 'round' or a changed boundary may close it"
+            )
+        if rounded:
+            yield (
+                f"the net was closed by rounding {len(rounded)} joint{'s' if len(rounded) > 1 else ''} by up to "
+                f"{max(rounded):.3g} cells: node angles and normal curvatures pay for it"
+            )
+        missed = [umbilic for umbilic in self.describe()["umbilics"] if not umbilic["node"]]
+        if missed:
+            places = "; ".join(", ".join(f"{x:.3g}" for x in umbilic["point"]) for umbilic in missed)
+            yield (
+                f"{len(missed)} of {len(self.umbilics.orders)} umbilics are no nodes of the net (at {places} m): "
+                "lamellas pass around them; another number of cells (even, where two lie on one principal line) makes "
+                "them nodes"
+            )
 
 
 def element_network(
@@ -110,11 +159,11 @@ def element_network(
     InputError
     """
     refuse_umbilic(surface)
-    umbilics = find_umbilics(surface)
+    umbilics = surface.umbilics
     told = ", ".join(f"order {m}" for m in umbilics.orders.tolist())
     progress(f"  {len(umbilics.orders)} umbilics" + (f" ({told})" if told else ""))
     mesh = make_net_mesh(surface, umbilics)
-    iso = integrate(mesh, mesh.umbilics[umbilics.orders % 2 == 1])
+    iso = integrate(mesh, mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)])
     progress(
         f"  isothermic coordinates on {mesh.connectivity.node_count:,} nodes: off by {iso.residual:.1e} of their slope"
     )
@@ -129,16 +178,19 @@ def element_network(
     network = trace_elements(
         CellMap.of(iso, lattice.origin, lattice.step),
         iso.cut,
-        mesh.umbilics,
-        umbilics.orders,
+        mesh.umbilics[mesh.umbilics >= 0],
+        umbilics.orders[mesh.umbilics >= 0],
         mean_curvature=surface.mean_curvature,
         rim_loop=rim_loop,
         count=lattice.cells,
         periods=_periods(iso, raw, rim_loop, names),
         minimum_length=minimum_length,
     )
-    where = tuple(_named(piece, mesh, names) for piece in iso.transitions)
-    return ElementNetwork(network, umbilics, lattice, iso.residual, off, where)
+    joints = tuple(
+        Joint(_named(piece, mesh, names), float(miss), not np.isnan(whole))
+        for piece, miss, whole in zip(iso.transitions, off, wanted, strict=True)
+    )
+    return ElementNetwork(network, umbilics, lattice, iso.residual, joints)
 
 
 def _closed(iso: Isothermic, raw: CellMap, wanted: Complexes, lattice: Lattice) -> Isothermic:
@@ -161,10 +213,11 @@ def choose_lattice(iso: Isothermic, umbilics: Umbilics, cells: int | None, spaci
     mesh = iso.mesh
     corner = iso.value[:, :3]
     origin = complex(corner.mean())
-    if len(umbilics.orders):
+    inside = np.flatnonzero(mesh.umbilics >= 0)
+    if len(inside):
         # odd zeros are where the sheets meet: the first of them is a node
-        odd = np.flatnonzero(umbilics.orders % 2 == 1)
-        vertex = mesh.umbilics[odd[0] if len(odd) else 0]
+        odd = inside[umbilics.orders[inside] % 2 == 1]
+        vertex = mesh.umbilics[odd[0] if len(odd) else inside[0]]
         origin = complex(corner[mesh.connectivity.faces == vertex].mean())
     whole = _whole_length(iso)
     points, weights = triangle_rule(8)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
-from lamella.network.umbilics import Umbilics
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.lagrange import local_faces
 from lamella.surface.element.placing import place_nodes
@@ -20,12 +20,15 @@ from lamella.surface.element.rim import element_rims
 from lamella.surface.element.size_field import SizeField
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.tangent_planes import TangentPlanes
+from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
 
 # size of the elements at an umbilic over the surface's, and its growth with the distance
 LEAST, GROWTH = 1e-3, 0.25
+# an umbilic this near to the boundary, over the surface's size, is on it: no loop runs around it
+ON_RIM, RIM_SAMPLES = 2e-3, 2000
 # entries of a symmetric matrix that are kept
 ROWS, COLUMNS = np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2])
 # flat triangles along an element's edge that the new elements start from
@@ -46,7 +49,7 @@ class NetMesh:
     loop : (v,) int
         Boundary loop of each vertex, -1 inside.
     umbilics : (z,) int
-        Vertex of each umbilic.
+        Vertex of each umbilic; -1: it lies on the boundary.
     """
 
     connectivity: Connectivity
@@ -87,8 +90,13 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     mesh = remesh(facets, size=wanted, project=TangentPlanes(connectivity, surface.nodes), rims=rims)
     vertices = mesh.points.copy()
     inner = np.flatnonzero(mesh.loop < 0)
-    at = inner[[int(np.linalg.norm(vertices[inner] - zero, axis=1).argmin()) for zero in umbilics.position]]
-    vertices[at] = umbilics.position
+    along = np.concatenate([rim.at(np.arange(RIM_SAMPLES) / RIM_SAMPLES) for rim in rims])
+    to_rim, _ = cKDTree(along).query(umbilics.position.reshape(-1, 3))
+    at = np.full(len(umbilics.orders), -1)
+    for number in np.flatnonzero(to_rim > ON_RIM * size).tolist():
+        zero = umbilics.position[number]
+        at[number] = inner[np.linalg.norm(vertices[inner] - zero, axis=1).argmin()]
+        vertices[at[number]] = zero
     new = connect(mesh.faces, len(vertices), 4)
     nodes = place_nodes(new, vertices, mesh.loop, mesh.parameter, rims)
     places, nodes = surface.closest(nodes)

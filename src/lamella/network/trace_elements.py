@@ -34,6 +34,8 @@ Integers = NDArray[np.int64]
 A, B = 0, 1
 # of a ray's first cell: a place taken for the singular node's own direction
 BESIDE = 1e-3
+# the speed along a lamella has a kink at every element's edge: so many points of a segment's series do, and at most
+ROUGH, SETTLE = 1e-6, 48
 
 
 @dataclass(frozen=True)
@@ -286,7 +288,7 @@ def trace_elements(
     begins = np.r_[True, stops.chain[1:] != stops.chain[:-1]][pair]
     power = np.where(begins, power_of[chain], 1.0)
     segments = _Segments(cells, tracks, chain, stops.tau[pair], reach, power)
-    arcs = ArcLengths(segments, np.inf)
+    arcs = ArcLengths(segments, ROUGH, SETTLE)
 
     per_cell = FINE if len(stops.kinds) <= FINE_LIMIT else COARSE
     whole = np.minimum(np.bincount(chain, reach, chains), 1.0)[chain]

@@ -78,7 +78,7 @@ def slope(errors) -> float:
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize("name", PATCHES)
 def test_shape_operator_has_its_order(name: str, order: int) -> None:
-    """H, K and principal directions of the elements and of the Gauss map, and grad ln mu, RMS over twelve points each."""
+    """H, K and principal directions of the elements and of the Gauss map, and grad ln mu, RMS over all elements."""
     patch = PATCHES[name]
     errors = []
     for count in (4, 8, 16):

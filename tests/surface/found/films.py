@@ -6,12 +6,12 @@ import numpy as np
 
 from lamella.surface.element.places import Places
 from lamella.surface.element.remesh import TriangleMesh
+from lamella.surface.element.size_field import SizeField
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.chart import make_chart
 from lamella.surface.found.film import Film, harmonic_over_itself
 from lamella.surface.found.meshing import start_film, straightened, with_sizes
 from lamella.surface.found.newton import Equilibrium, find_equilibrium
-from lamella.surface.element.size_field import SizeField
 from surface.found.exact_patches import ArcLength, circle, disc, ring
 
 

@@ -17,8 +17,10 @@ from lamella.surface.element.geometry import normal_and_area, project_onto_nodes
 from lamella.surface.element.lagrange import local_faces
 from lamella.surface.element.places import Places
 from lamella.surface.element.quadrature import triangle_rule
+from lamella.surface.element.umbilics import Umbilics, find_umbilics
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.points import Floats, SurfacePoints
+from lamella.surface.umbilic import umbilic_reason
 
 Integers = NDArray[np.int64]
 
@@ -211,9 +213,16 @@ class ElementSurface:
             k2,
         )
 
+    @cached_property
+    def umbilics(self) -> Umbilics:
+        """Zeros of the trace-free shape operator; none are searched on spheres and planes, where all points are."""
+        return find_umbilics(self)
+
     def singular_orders(self) -> tuple[int, ...]:
-        """Orders of the umbilics: not known before they are searched."""
-        return ()
+        """Orders of the umbilics."""
+        if umbilic_reason(self.at(self.check_places())):
+            return ()
+        return tuple(self.umbilics.orders.tolist())
 
     def describe(self) -> dict[str, Any]:
         """Further figures for the summary."""

@@ -17,7 +17,6 @@ from lamella.surface.element.remesh import TriangleMesh
 from lamella.surface.found.chart import Chart
 from lamella.surface.found.film import Film, Loop, harmonic_over_itself
 from lamella.surface.found.meshing import (
-    held_rims,
     least_angle,
     on_surface,
     start_sizes,
@@ -25,6 +24,7 @@ from lamella.surface.found.meshing import (
     with_sizes,
 )
 from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError, find_equilibrium
+from lamella.surface.found.slid_rim import settled_rims
 from lamella.surface.points import Floats
 
 MOST_STEPS = 80
@@ -149,7 +149,8 @@ def _extreme(points: Sequence[tuple[float, float, Film]]) -> float:
 
 def renewed(film: Film, share: float = 1.0) -> Film:
     """The film with elements made anew, as small as its loops and its bend ask for."""
-    return straightened(with_sizes(film, start_sizes(film, held_rims(film), share)))
+    film = settled_rims(film)
+    return straightened(with_sizes(film, start_sizes(film, film.loops, share)))
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +17,10 @@ from lamella.surface.element.remesh import Rim, TriangleMesh, remesh
 from lamella.surface.element.size_field import SizeField
 from lamella.surface.element.tangent_planes import TangentPlanes
 from lamella.surface.found.chart import Chart
-from lamella.surface.found.film import Film, Loop, Slide
+from lamella.surface.found.film import Film, Loop
 from lamella.surface.found.harmonic import harmonic_surface
 from lamella.surface.found.newton import NoFilmError
+from lamella.surface.found.slid_rim import settled_rims
 from lamella.surface.points import Floats
 
 # coarsest elements, as parts of a loop, as turns of its tangent or of the normal, and as parts of a narrow place
@@ -30,62 +31,6 @@ ARC_OVER_CHORD = 3
 
 # flat triangles along the edge of a curved one that new elements start from
 FACETS = 2
-
-
-@dataclass(frozen=True)
-class SlidRim:
-    """A boundary loop where a film has slid to, parametrised by the parameter of the loop it came from.
-
-    Attributes
-    ----------
-    name, length, corners, slides
-        As of the loop.
-    """
-
-    name: str
-    length: float
-    corners: Floats
-    slides: tuple[Slide, ...]
-    _starts: Floats
-    _spans: Floats
-    _nodes: Floats
-    _inverse: Floats
-
-    @classmethod
-    def of(cls, film: Film, index: int) -> SlidRim:
-        """The boundary of a film along one of its loops."""
-        loop = film.loops[index]
-        rim_nodes = film.connectivity.rim_nodes
-        mine = film.mesh.loop[rim_nodes[:, 0]] == index
-        t = rim_parameters(film.connectivity, film.mesh.parameter)[mine][:, [0, -1]]
-        span = (t[:, 1] - t[:, 0] + 0.5) % 1 - 0.5
-        nodes = film.nodes[rim_nodes[mine]]
-        # edges run with or against the parameter, as the surface lies to their left
-        start = np.where(span > 0, t[:, 0], t[:, 1])
-        nodes = np.where((span > 0)[:, None, None], nodes, nodes[:, ::-1])
-        order = np.argsort(start)
-        p = film.connectivity.basis.order
-        powers = np.vander(np.linspace(0, 1, p + 1), increasing=True)
-        inverse: Floats = np.asarray(np.linalg.inv(powers), np.float64)
-        length = float(np.linalg.norm(np.diff(nodes, axis=1), axis=2).sum())
-        return cls(
-            loop.name,
-            length,
-            loop.corners,
-            tuple(loop.slides),
-            start[order],
-            np.abs(span)[order],
-            nodes[order],
-            inverse,
-        )
-
-    def at(self, t: Floats) -> Floats:
-        """Points (n, 3), m."""
-        t = np.asarray(t, float) % 1
-        edge = np.searchsorted(self._starts, t, side="right") - 1
-        share = ((t - self._starts[edge]) % 1) / self._spans[edge]
-        powers = np.vander(np.clip(share, 0, 1), self._inverse.shape[0], increasing=True) @ self._inverse
-        return np.asarray(np.einsum("nk,nkc->nc", powers, self._nodes[edge]))
 
 
 def coarse_sizes(loops: tuple[Loop, ...], extent: float) -> SizeField:
@@ -189,16 +134,11 @@ def _remeshed(film: Film, size: Callable[[Floats], Floats], loops: Sequence[Rim]
         raise NoFilmError(f"its elements cannot be made anew: {error}", film) from None
 
 
-def held_rims(film: Film) -> tuple[Loop, ...]:
-    """The loops of a film, where they slide as the film has them now."""
-    return tuple(SlidRim.of(film, k) if loop.slides else loop for k, loop in enumerate(film.loops))
-
-
 def with_sizes(film: Film, size: Callable[[Floats], Floats], order: int | None = None) -> Film:
     """The same surface with elements of wanted sizes."""
-    loops = held_rims(film)
-    mesh = _remeshed(film, size, loops)
-    new = Film.on_mesh(mesh, loops, order or film.connectivity.basis.order)
+    film = settled_rims(film)
+    mesh = _remeshed(film, size, film.loops)
+    new = Film.on_mesh(mesh, film.loops, order or film.connectivity.basis.order)
     inside = np.setdiff1d(np.arange(new.connectivity.node_count), new.connectivity.rim_nodes)
     places, position = ClosestPoint(film.connectivity, film.nodes)(new.nodes[inside])
     normals = smooth_normals(film.connectivity, film.nodes)
@@ -216,10 +156,9 @@ def straightened(film: Film) -> Film:
     Newton's shifts leave the parametrisation as rough as the directions they were taken along; on the found surface
     those are smooth.
     """
-    vertices = len(film.mesh.points)
-    loops = held_rims(film)
-    mesh = replace(film.mesh, points=film.nodes[:vertices])
-    flat = Film.on_mesh(mesh, loops, film.connectivity.basis.order)
+    film = settled_rims(film)
+    mesh = replace(film.mesh, points=film.nodes[: len(film.mesh.points)])
+    flat = Film.on_mesh(mesh, film.loops, film.connectivity.basis.order)
     normals = smooth_normals(film.connectivity, film.nodes)
     shift = ((film.nodes - flat.nodes) * normals).sum(1)
     shift[flat.connectivity.rim_nodes] = 0

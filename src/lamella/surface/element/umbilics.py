@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +13,10 @@ from scipy.spatial import cKDTree
 
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
-from lamella.surface.element.surface import ElementSurface
 from lamella.surface.points import Complexes, Floats
+
+if TYPE_CHECKING:
+    from lamella.surface.element.surface import ElementSurface
 
 Integers = NDArray[np.int64]
 
