@@ -387,7 +387,7 @@ def test_found_surfaces_do_not_adjust_their_boundary_yet(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     project = film(ring(0.0), ring(1.6), network={"cells": 10, "closing": "adjust"})
-    with pytest.raises(InputError, match="adjust.*not part of version") as refused:
+    with pytest.raises(InputError, match=r"adjust.*not part of version") as refused:
         compute(project)
     assert refused.value.where == "network.closing"
     assert refused.value.remedy == 'write closing = "open" or "round"'

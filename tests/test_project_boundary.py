@@ -155,7 +155,7 @@ def test_the_defaults() -> None:
 
 ALL = (
     HEAD
-    + "volume = 3.5\nbranch = 'unstable'\n"
+    + "mean_curvature = 0.1\nbranch = 'unstable'\n"
     + RING
     + "slide = {point = [0, 0, 0], normal = [0, 0, 1]}\n"
     + "[[surface.boundary]]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\ninterpolation = 'polyline'\n"

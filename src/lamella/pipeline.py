@@ -136,6 +136,12 @@ def plan(
     InputError
     """
     depth = _depth(LAST_STAGE if until is None else until)
+    if depth and project.network.closing == "adjust" and project.surface.kind not in CLOSED_FORMS:
+        raise InputError(
+            f'closing = "adjust" is not part of version {__version__} yet',
+            'write closing = "open" or "round"',
+            "network.closing",
+        )
     surface = make_surface(project, folder, progress)
     if depth >= STAGES.index("fabrication"):
         _check_fabrication(fill_in(project, surface), surface.mean_curvature)
@@ -262,12 +268,7 @@ def _weave(surface: Surface[Any], project: Project, progress: Progress) -> Eleme
 
     assert isinstance(surface, ElementSurface)
     table = project.network
-    if table.closing == "adjust":
-        raise InputError(
-            f'closing = "adjust" is not part of version {__version__} yet',
-            'write closing = "open" or "round"',
-            "network.closing",
-        )
+    assert table.closing != "adjust"
     boundary = getattr(project.surface, "boundary", ())
     return element_network(
         surface,

@@ -268,6 +268,12 @@ class FormFoundTable(Table):
                 "keep one of them",
                 "volume",
             )
+        if self.volume is not None and self.branch == "unstable":
+            raise Refusal(
+                'branch = "unstable" is given with a volume: of a given volume the surface is followed, stable or not',
+                "leave branch out, or give mean_curvature instead of volume",
+                "branch",
+            )
         return self
 
 

@@ -77,7 +77,9 @@ class _SuperLuFactor:
             )
         except RuntimeError as error:
             raise SingularError(str(error)) from None
-        # rows are not exchanged beyond the symmetric ordering, so U's diagonal is that of D in L D L^T
+        if not np.array_equal(self._factor.perm_r, self._factor.perm_c):
+            raise SingularError("rows were exchanged on the way: a pivot vanishes")
+        # rows are in the columns' order, so U's diagonal is that of D in L D L^T
         self.negative = int((self._factor.U.diagonal() < 0).sum())
 
     def solve(self, right: Floats) -> Floats:

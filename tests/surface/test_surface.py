@@ -148,7 +148,7 @@ def test_spheres_and_planes_are_surfaces_without_a_net() -> None:
     with pytest.raises(InputError) as refused:
         refuse_umbilic(cap)
     assert reason in str(refused.value)
-    assert "the cap is" in str(refused.value)
+    assert "the surface is" in str(refused.value)
     flat = Enneper(2, 1e-7)
     assert str(umbilic_reason(flat.at(flat.check_places()))).startswith("flat: ")
     for bent in (Cylinder(1.0, (0, 1)), Unduloid(0.5, 1.0, (-1, 1))):

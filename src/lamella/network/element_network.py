@@ -72,6 +72,8 @@ class ElementNetwork:
     ----------
     network : Network
     umbilics : Umbilics
+    on_rim : (z,) bool
+        Umbilics on the boundary: no lamella ends in them.
     lattice : Lattice
     residual : float
         Distance of the surface from constant mean curvature, see `Isothermic.residual`.
@@ -80,6 +82,7 @@ class ElementNetwork:
 
     network: Network
     umbilics: Umbilics
+    on_rim: NDArray[np.bool_]
     lattice: Lattice
     residual: float
     joints: tuple[Joint, ...]
@@ -93,11 +96,15 @@ class ElementNetwork:
                 "point": point.tolist(),
                 "order": int(order),
                 "rays": int(2 * (order + 2)),
+                "boundary": bool(rim),
                 "node": bool((np.linalg.norm(nodes - point, axis=1) < reach).any()) if len(nodes) else False,
             }
-            for point, order in zip(self.umbilics.position, self.umbilics.orders, strict=True)
+            for point, order, rim in zip(self.umbilics.position, self.umbilics.orders, self.on_rim, strict=True)
         ]
         return {
+            "singular_nodes": [
+                {key: umbilic[key] for key in ("point", "order", "rays")} for umbilic in umbilics if umbilic["node"]
+            ],
             "umbilics": umbilics,
             "isothermic_residual": self.residual,
             "joints": [joint._asdict() for joint in self.joints],
@@ -120,7 +127,7 @@ class ElementNetwork:
                 f"the net was closed by rounding {len(rounded)} joint{'s' if len(rounded) > 1 else ''} by up to "
                 f"{max(rounded):.3g} cells: node angles and normal curvatures pay for it"
             )
-        missed = [umbilic for umbilic in self.describe()["umbilics"] if not umbilic["node"]]
+        missed = [umbilic for umbilic in self.describe()["umbilics"] if not umbilic["node"] and not umbilic["boundary"]]
         if missed:
             places = "; ".join(", ".join(f"{x:.3g}" for x in umbilic["point"]) for umbilic in missed)
             yield (
@@ -190,7 +197,7 @@ def element_network(
         Joint(_named(piece, mesh, names), float(miss), not np.isnan(whole))
         for piece, miss, whole in zip(iso.transitions, off, wanted, strict=True)
     )
-    return ElementNetwork(network, umbilics, lattice, iso.residual, joints)
+    return ElementNetwork(network, umbilics, mesh.umbilics < 0, lattice, iso.residual, joints)
 
 
 def _closed(iso: Isothermic, raw: CellMap, wanted: Complexes, lattice: Lattice) -> Isothermic:

@@ -61,6 +61,8 @@ class Isothermic:
     Attributes
     ----------
     mesh : NetMesh
+    odd : (z,) int
+        Vertices that are umbilics of odd order.
     sign : (m,) int
         Of each element's root.
     cut : (m, 3) bool
@@ -76,6 +78,7 @@ class Isothermic:
     """
 
     mesh: NetMesh
+    odd: Integers
     sign: Integers
     cut: NDArray[np.bool_]
     value: Complexes
@@ -98,8 +101,8 @@ def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
     sector = sectors(mesh.connectivity, cut)
     system = _Poisson.of(mesh, sign)
     value = system.solve(sector, np.ones(sector.max() + 1), np.zeros(sector.max() + 1, complex), {0: 0j})
-    transitions, across = _transitions(mesh, cut, value)
-    return Isothermic(mesh, sign, cut, value, transitions, across, system.residual(value))
+    transitions, across = _transitions(mesh, cut, value, odd)
+    return Isothermic(mesh, odd, sign, cut, value, transitions, across, system.residual(value))
 
 
 def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
@@ -155,7 +158,7 @@ def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
     place = {int(v): k for k, v in enumerate(used)}
     held = {place[v]: w for v, w in fixed.items()} or {0: 0j}
     value = system.solve(number[sector], sign, offset, held, sector)
-    measured, across = _transitions(mesh, iso.cut, value)
+    measured, across = _transitions(mesh, iso.cut, value, iso.odd)
     pieces = tuple(
         piece if np.isnan(shift) else replace(piece, shift=complex(shift), spread=0.0)
         for piece, shift in zip(measured, shifts.tolist(), strict=True)
@@ -349,7 +352,9 @@ def sectors(connectivity: Connectivity, cut: NDArray[np.bool_]) -> Integers:
     return np.asarray(group.reshape(m, k), np.int64)
 
 
-def _transitions(mesh: NetMesh, cut: NDArray[np.bool_], value: Complexes) -> tuple[tuple[Transition, ...], Integers]:
+def _transitions(
+    mesh: NetMesh, cut: NDArray[np.bool_], value: Complexes, odd: Integers
+) -> tuple[tuple[Transition, ...], Integers]:
     """The pieces of the cut with what w does across them."""
     connectivity = mesh.connectivity
     element, edge = np.nonzero(cut)
@@ -359,12 +364,14 @@ def _transitions(mesh: NetMesh, cut: NDArray[np.bool_], value: Complexes) -> tup
     vertices = int(connectivity.faces.max()) + 1
     rim = mesh.loop[ends] >= 0
     degree = np.bincount(ends[~rim].ravel(), minlength=vertices)
-    # edges that meet in an inner vertex of two edges belong to one piece
+    # edges that meet in an inner vertex of two edges belong to one piece, but for odd umbilics: w turns around them
+    passed = (degree == 2) & (mesh.loop < 0)
+    passed[odd] = False
     owner: dict[int, int] = {}
     links = []
     for number, (a, b) in enumerate(ends.tolist()):
         for vertex in (a, b):
-            if degree[vertex] == 2 and mesh.loop[vertex] < 0:
+            if passed[vertex]:
                 if vertex in owner:
                     links.append((owner[vertex], number))
                 else:

@@ -34,6 +34,10 @@ Integers = NDArray[np.int64]
 A, B = 0, 1
 # of a ray's first cell: a place taken for the singular node's own direction
 BESIDE = 1e-3
+# of a ray's first cell: nearer to the node directions are led out from further away
+OUT = 0.2
+# samples to either side over which a lamella turns by its geodesic curvature: the kinks at elements average out
+WIDE = 3
 # the speed along a lamella has a kink at every element's edge: so many points of a segment's series do, and at most
 ROUGH, SETTLE = 1e-6, 48
 
@@ -104,6 +108,11 @@ class _Segments:
         self.owner, self._chain, self._tau, self._reach, self._power = chain, chain, tau, reach, power
         self._stride = float(tracks.tau.max() + tracks.span.max() + 2)
         self._keys = tracks.owner * self._stride + tracks.tau
+
+    @property
+    def singular(self) -> NDArray[np.bool_]:
+        """Which segments begin at a singular node."""
+        return np.asarray(self._power != 1)
 
     def tau(self, segment: Integers, sigma: Floats) -> Floats:
         """Running coordinate of the chain."""
@@ -297,8 +306,10 @@ def trace_elements(
     given = number + last
     segment = np.repeat(np.arange(len(number)), given)
     fraction = ragged_ranges(given) / number[segment]
-    places, points, velocity = segments.velocity(segment, arcs.parameter(segment, fraction))
+    parameter = arcs.parameter(segment, fraction)
+    places, points, velocity = segments.velocity(segment, parameter)
     tangents = velocity / np.linalg.norm(velocity, axis=1)[:, None]
+    _lead_out(segments, segment, parameter, tangents)
     normals = _normals(cells, places)
     tangents -= (tangents * normals).sum(1)[:, None] * normals
     tangents /= np.linalg.norm(tangents, axis=1)[:, None]
@@ -366,6 +377,19 @@ def trace_elements(
         face_offsets=face_offsets,
         face_nodes=face_nodes,
     )
+
+
+def _lead_out(segments: _Segments, segment: Integers, sigma: Floats, tangents: Floats) -> None:
+    """Directions next to singular nodes, where chi has next to no slope, from those a little further out."""
+    near = np.flatnonzero(segments.singular[segment] & (sigma < OUT))
+    if not len(near):
+        return
+    ahead = []
+    for at in (OUT, 2 * OUT):
+        velocity = segments.velocity(segment[near], np.full(len(near), at))[2]
+        ahead.append(velocity / np.linalg.norm(velocity, axis=1)[:, None])
+    there = ahead[0] + ((sigma[near] - OUT) / OUT)[:, None] * (ahead[1] - ahead[0])
+    tangents[near] = there / np.linalg.norm(there, axis=1)[:, None]
 
 
 def _singular_ends(
@@ -443,8 +467,8 @@ def _darboux(
 
     index = np.arange(len(points))
     owner = np.searchsorted(offsets, index, side="right") - 1
-    before = np.maximum(index - 1, offsets[owner])
-    after = np.minimum(index + 1, offsets[owner + 1] - 1)
+    before = np.maximum(index - WIDE, offsets[owner])
+    after = np.minimum(index + WIDE, offsets[owner + 1] - 1)
     turning = (tangents[after] - tangents[before]) / (arclengths[after] - arclengths[before])[:, None]
     return Darboux(form(tangents, tangents), (turning * sideways).sum(1), form(tangents, sideways))
 

@@ -34,8 +34,9 @@ def umbilic_reason(points: SurfacePoints) -> str | None:
     if largest < LEAST_BEND / size:
         return f"flat: (k1 - k2) / 2 is at most {half.max():.2g} 1/m on a piece of {size:.3g} m"
     if half.max() < max(LEAST_DEVIATION * largest, LEAST_BEND / size):
+        radius = 1 / np.abs(points.mean_curvature).mean()
         return (
-            f"a piece of a sphere of radius {1 / largest:.4g} m: (k1 - k2) / 2 is at most {half.max() / largest:.1e} "
+            f"a piece of a sphere of radius {radius:.4g} m: (k1 - k2) / 2 is at most {half.max() / largest:.1e} "
             f"of the curvature (limit {LEAST_DEVIATION:g})"
         )
     return None
@@ -50,8 +51,8 @@ def refuse_umbilic(surface: Surface[Any]) -> None:
     what = umbilic_reason(surface.at(surface.check_places()))
     if what:
         raise InputError(
-            f"the {surface.kind} is {what}. There every point is umbilic: all directions bend alike, so no net of "
+            f"the surface is {what}. There every point is umbilic: all directions bend alike, so no net of "
             "lamellas is singled out",
-            "choose a wider neck, or a piece that is bent more in one direction than in the other",
+            "choose a surface that is bent more in one direction than in the other",
             "surface",
         )

@@ -97,11 +97,13 @@ def remesh(
         which some of the triangles are turned over is mostly mended, one with many is not.
     """
     draft, plans = _start(mesh, size, project, rims)
+    most = np.inf
     remesh_rim.insert_knots(draft, plans)
     for number in range(rounds):
         early, late = number < rounds // 2, number >= rounds - 3
         draft.size = np.array(size(draft.points))
-        most = RUNAWAY * _expected(draft)
+        if number == 0:
+            most = RUNAWAY * _expected(draft)
         for _ in range(REFINE):
             if len(draft.faces) > most:
                 raise ValueError(f"more than {most:,.0f} triangles, and no end: the start is folded over itself")

@@ -13,7 +13,8 @@ from lamella.surface.element.size_field import SizeField
 from lamella.surface.found.film import Film
 from lamella.surface.points import Floats
 
-# around a corner of the boundary the curvature of a film itself may be unbounded: parts of the size left out there
+# around a corner of the boundary the curvature of a film itself may be unbounded: parts of the size (or of
+# the loop) left out there
 CORNER_PART = 0.03
 # of the tolerance that a new mesh aims at, and the rings of neighbours that share their largest error
 AIM, RINGS = 0.6, 2
@@ -65,9 +66,14 @@ def away_from_corners(film: Film, points: Floats) -> NDArray[np.bool_]:
     """Which points (n, 3) are not next to a corner of the boundary."""
     result = np.ones(len(points), bool)
     for loop in film.loops:
-        if len(loop.corners):
-            for corner in loop.at(np.asarray(loop.corners)):
-                result &= np.linalg.norm(points - corner, axis=1) > CORNER_PART * film.size
+        corners = np.sort(np.asarray(loop.corners))
+        if not len(corners):
+            continue
+        # no more than a part of the way to the next corner: a loop of many corners is checked between them
+        gap = np.diff(np.append(corners, corners[0] + 1)) * loop.length
+        reach = np.minimum(CORNER_PART * min(film.size, loop.length), np.minimum(gap, np.roll(gap, 1)) / 4)
+        for corner, radius in zip(loop.at(corners), reach, strict=True):
+            result &= np.linalg.norm(points - corner, axis=1) > radius
     return result
 
 

@@ -29,7 +29,7 @@ from lamella.surface.points import Floats
 
 MOST_STEPS = 80
 # Newton steps after which a path that fails once more ends
-MOST_NEWTON = 150
+MOST_NEWTON = 100
 # of the first step; a path that needs smaller ones ends
 LEAST_STEP = 2e-3
 # elements are made anew below this angle, deg

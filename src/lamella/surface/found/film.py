@@ -10,12 +10,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.sparse import SymmetricPattern, packed
+from lamella.sparse import SingularError, SymmetricPattern, packed
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.geometry import dirichlet_blocks, smooth_normals, tangents
 from lamella.surface.element.placing import place_nodes, rim_parameters
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.remesh import TriangleMesh
+from lamella.surface.found.no_film import NoFilmError
 from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
@@ -168,7 +169,10 @@ class Film:
             else:
                 across = np.asarray(slide.normal)
                 along = normals[nodes] - (normals[nodes] @ across)[:, None] * across
-            turned[nodes] = along / np.linalg.norm(along, axis=1)[:, None] - normals[nodes]
+            length = np.linalg.norm(along, axis=1)
+            if length.min(initial=1.0) < 1e-9:
+                raise NoFilmError("the film lies flat on what it slides along", self)
+            turned[nodes] = along / length[:, None] - normals[nodes]
         # the turn of the rim fades inwards, or the nodes next to it would be overtaken
         directions = normals + _harmonic(self, turned)
         return np.asarray(directions / np.linalg.norm(directions, axis=1)[:, None])
@@ -199,5 +203,8 @@ def _harmonic(film: Film, held: Floats, mean_curvature: float = 0.0) -> Floats:
     right = [-np.bincount(flat, pull[..., c].ravel(), len(free))[free].astype(np.float64) for c in range(3)]
     values = held.copy()
     pattern = film.inner_pattern
-    values[free] = pattern.factor(pattern.assemble(packed(blocks))).solve(np.stack(right, 1))
+    try:
+        values[free] = pattern.factor(pattern.assemble(packed(blocks))).solve(np.stack(right, 1))
+    except SingularError as error:
+        raise NoFilmError(str(error), film) from None
     return values

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -180,6 +181,12 @@ def find_film(
         There is no such film, or none could be found.
     """
     held = not any(loop.slides for loop in loops)
+    if volume is not None and not held:
+        raise InputError(
+            f"volume = {volume:g} m3 is given, and parts of the boundary slide: their lids would slide with them",
+            "give mean_curvature instead of volume",
+            "surface.volume",
+        )
     if held and volume is None:
         refuse_impossible(loops, mean_curvature)
     start = _Start(make_chart(loops), loops, order, held, progress)
@@ -199,7 +206,15 @@ def find_film(
             return find_equilibrium(film, first.mean_curvature, volume=missing, stable=False, detail=progress)
         return find_equilibrium(film, mean_curvature, stable=branch == "stable", detail=progress)
 
-    return adapted(first, settled, tolerance, most_nodes, steps, followed, progress)
+    found = adapted(first, settled, tolerance, most_nodes, steps, followed, progress)
+    verdict = found.stability
+    if volume is None and verdict.verdict != "fold" and (verdict.negative > 0) != (branch == "unstable"):
+        raise InputError(
+            f"the surface found is {verdict.verdict} ({verdict.negative} negative eigenvalues), not {branch} as asked",
+            f'write branch = "{verdict.verdict}" to take it',
+            "surface.branch",
+        )
+    return found
 
 
 def adapted(
@@ -347,6 +362,10 @@ class _Start:
         """Newton from the harmonic surface."""
         try:
             film = harmonic_over_itself(start_film(self.chart, self.loops, self.order))
+        except NoFilmError as error:
+            self.progress(f"    no harmonic start: {error}")
+            return None
+        try:
             self.progress(
                 f"  start: harmonic over a {self.chart.kind}, {film.connectivity.node_count:,} nodes of order "
                 f"{self.order}"
@@ -354,6 +373,14 @@ class _Start:
             return find_equilibrium(film, mean_curvature, most_steps=DIRECT_STEPS, detail=self.progress)
         except NoFilmError as error:
             self.progress(f"    from the harmonic start: {error}")
+        if not mean_curvature:
+            return None
+        try:
+            # blown up to about the wanted curvature first
+            film = harmonic_over_itself(film, mean_curvature)
+            return find_equilibrium(film, mean_curvature, most_steps=DIRECT_STEPS, detail=self.progress)
+        except NoFilmError as error:
+            self.progress(f"    from a start with pressure: {error}")
             return None
 
     def _by_hand(self) -> tuple[Equilibrium, int]:
@@ -410,7 +437,11 @@ def _inflated(start: Equilibrium, volume: float, progress: Progress) -> tuple[Eq
                 ) from None
             continue
         done, steps = done + part, steps + new.steps
-        film = renewed(new.film) if least_angle(new.film).min() < SLENDER else new.film
+        film = new.film
+        if least_angle(film).min() < SLENDER:
+            # what cannot be made anew may still go on as it is
+            with suppress(NoFilmError):
+                film = renewed(film)
         here = replace(new, film=film)
         progress(f"    volume {begin + done:.5g} m3: H = {new.mean_curvature:.6g} 1/m ({new.steps} steps)")
     return here, steps

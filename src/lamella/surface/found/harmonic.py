@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from lamella.sparse import SymmetricPattern, packed
+from lamella.sparse import SingularError, SymmetricPattern, packed
 from lamella.surface.found.chart import Chart, Curve
+from lamella.surface.found.no_film import NoFilmError
 from lamella.surface.points import Floats
 
 
@@ -35,7 +36,10 @@ def harmonic_surface(chart: Chart, loops: Sequence[Curve], rounds: int = 0) -> F
         pull = np.einsum("fij,fjc->fic", blocks, np.where(free[:, None], 0, points)[chart.faces])
         flat = chart.faces.ravel()
         right = [-np.bincount(flat, pull[..., c].ravel(), len(points))[free].astype(np.float64) for c in range(3)]
-        points[free] = pattern.factor(pattern.assemble(packed(blocks))).solve(np.stack(right, 1))
+        try:
+            points[free] = pattern.factor(pattern.assemble(packed(blocks))).solve(np.stack(right, 1))
+        except SingularError as error:
+            raise NoFilmError(str(error)) from None
         places = points
     return points
 

@@ -27,6 +27,8 @@ from lamella.surface.points import Floats
 EDGES_OF_A_LOOP, TURN_OF_AN_EDGE, EDGES_ACROSS = 12, 0.7, 2
 MOST_EDGES_OF_A_LOOP, SAMPLES_OF_A_LOOP = 100, 240
 ARC_OVER_CHORD = 3
+# elements of a first film at most
+MOST_COARSE = 1500
 
 
 # flat triangles along the edge of a curved one that new elements start from
@@ -55,13 +57,17 @@ def coarse_sizes(loops: tuple[Loop, ...], extent: float) -> SizeField:
         sizes.append(np.minimum(loop.length / EDGES_OF_A_LOOP, TURN_OF_AN_EDGE / np.maximum(bend, 1e-12)))
         along.append(t * loop.length)
     points = np.concatenate(places)
-    apart = np.linalg.norm(points[:, None] - points, axis=2)
     of_loop = np.repeat(np.arange(len(loops)), len(t))
-    arc = np.abs(np.concatenate(along)[:, None] - np.concatenate(along))
+    place = np.concatenate(along)
     length = np.array([loop.length for loop in loops])[of_loop]
-    arc = np.where(of_loop[:, None] == of_loop, np.minimum(arc, length - arc), np.inf)
-    # a chord much shorter than the arc it cuts off crosses the surface
-    width = np.where(arc > ARC_OVER_CHORD * apart, apart, np.inf).min(1)
+    width = np.empty(len(points))
+    for first in range(0, len(points), len(t)):
+        rows = slice(first, first + len(t))
+        apart = np.linalg.norm(points[rows, None] - points, axis=2)
+        arc = np.abs(place[rows, None] - place)
+        arc = np.where(of_loop[rows, None] == of_loop, np.minimum(arc, length - arc), np.inf)
+        # a chord much shorter than the arc it cuts off crosses the surface
+        width[rows] = np.where(arc > ARC_OVER_CHORD * apart, apart, np.inf).min(1)
     wanted = np.minimum(np.concatenate(sizes), width / EDGES_ACROSS)
     return SizeField(points, np.maximum(wanted, length / MOST_EDGES_OF_A_LOOP), extent / 6)
 
@@ -83,7 +89,12 @@ def start_sizes(film: Film, loops: tuple[Loop, ...], share: float = 1.0) -> Size
     by_loops = coarse_sizes(loops, film.size)
     sizes = np.minimum(np.maximum(bend, least), by_loops(middle))
     rim = np.concatenate([loop.at(np.arange(SAMPLES_OF_A_LOOP) / SAMPLES_OF_A_LOOP) for loop in loops])
-    return SizeField(np.concatenate([middle, rim]), share * np.concatenate([sizes, by_loops(rim)]), film.size / 6)
+    corners = film.nodes[film.connectivity.faces]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    field = SizeField(np.concatenate([middle, rim]), share * np.concatenate([sizes, by_loops(rim)]), film.size / 6)
+    # a film about to break bends without bound: its elements do not follow it there
+    count = float((area / (np.sqrt(3) / 4 * field(middle) ** 2)).sum())
+    return field if count <= MOST_COARSE else field.scaled(float(np.sqrt(count / MOST_COARSE)))
 
 
 def start_film(chart: Chart, loops: tuple[Loop, ...], order: int, rounds: int = 0, share: float = 1.0) -> Film:

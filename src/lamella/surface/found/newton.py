@@ -9,6 +9,7 @@ import numpy as np
 
 from lamella.sparse import Factor, SingularError
 from lamella.surface.found.film import Film
+from lamella.surface.found.no_film import NoFilmError
 from lamella.surface.found.variation import FirstVariation, Variation
 from lamella.surface.points import Floats
 
@@ -17,20 +18,6 @@ LAST_STEP = 1e-7
 # directions follow the film once a normal has turned this far from its node's, as a cosine
 TURNED = 0.7
 MOST_HALVINGS = 12
-
-
-class NoFilmError(ArithmeticError):
-    """Newton's method ended without a film.
-
-    Attributes
-    ----------
-    last : Film or None
-        The last film on its way, with sound elements.
-    """
-
-    def __init__(self, message: str, last: Film | None = None) -> None:
-        super().__init__(message)
-        self.last = last
 
 
 @dataclass(frozen=True)
@@ -206,3 +193,6 @@ def _swept(film: Film, variation: Variation, shift: Floats, share: float) -> flo
         nodes = film.nodes - (back * share) * shift[:, None] * variation.directions
         total += weight * float(variation.first(nodes).volume_gradient @ shift) * share
     return total
+
+
+__all__ = ["Equilibrium", "NoFilmError", "find_equilibrium"]

@@ -10,10 +10,13 @@ from numpy.typing import NDArray
 
 from lamella.surface.element.placing import rim_parameters
 from lamella.surface.found.film import Film, Loop, Slide
+from lamella.surface.found.no_film import NoFilmError
 from lamella.surface.points import Floats
 
 # points of an edge at which its arc length is taken, and Gauss points between two of them
 PIECES, GAUSS = 8, 6
+# of its first length: a sliding loop shorter than that is about to vanish
+SHRUNK = 0.02
 
 
 @dataclass(frozen=True)
@@ -111,6 +114,8 @@ def _slid(film: Film, index: int, parameter: Floats) -> SlidRim:
         parameter[ends[later, 0]] = start[later]
     order = np.argsort(start)
     held = loop.loop if isinstance(loop, SlidRim) else loop
+    if length.sum() < SHRUNK * held.length:
+        raise NoFilmError(f"the sliding rim {loop.name!r} shrinks away", film)
     return SlidRim(held, float(length.sum()), start[order], span[order], nodes[order], shares[order], basis)
 
 

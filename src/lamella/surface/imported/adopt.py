@@ -83,8 +83,14 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = _silen
     mean_curvature = given
     if mean_curvature is None:
         mean_curvature = fit.mean_curvature if abs(fit.mean_curvature) > MINIMAL * fit.scale else 0.0
-    film = on_surface(_as_film(mesh, loops), table.order)
-    film = harmonic_over_itself(film, mean_curvature)
+    try:
+        film = harmonic_over_itself(on_surface(_as_film(mesh, loops), table.order), mean_curvature)
+    except NoFilmError as error:
+        raise InputError(
+            f"no elements could be laid on the mesh: {error}",
+            "mend the mesh where it overlaps, folds or is very thin",
+            "surface.file",
+        ) from None
     first = _nearest(film, mean_curvature, given is None, progress)
 
     def settled(film: Film) -> Equilibrium:
