@@ -58,7 +58,10 @@ class TestRings:
     @pytest.mark.slow
     @pytest.mark.parametrize(
         "distance",
-        [pytest.param(d, marks=pytest.mark.xfail(reason="the path of volumes breaks", strict=False)) for d in (0.4, 0.8)]
+        [
+            pytest.param(d, marks=pytest.mark.xfail(reason="the path of volumes breaks", strict=False))
+            for d in (0.4, 0.8)
+        ]
         + [1.1],
     )
     def test_unstable_film_of_nearer_rings(self, distance) -> None:
