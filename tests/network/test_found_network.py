@@ -235,12 +235,7 @@ def ruler(network: Network) -> dict[str, float]:
     return measure(json.loads(network_bytes(network, name="ruler", version="0")))
 
 
-DOUBLE = pytest.mark.xfail(
-    strict=True, reason="lamellas through a zero of order 2 miss it by 1e-3 m, and half of its rays are lost"
-)
-
-
-@pytest.mark.parametrize("name", [pytest.param(name, marks=[DOUBLE] if name == "eight rays" else []) for name in FORMS])
+@pytest.mark.parametrize("name", FORMS)
 def test_nodes_are_those_of_the_closed_form_net(name: str) -> None:
     """Issue 4: node by node to 1e-5 of the size at 5,000 surface nodes."""
     form, surface, net = woven(name)
@@ -267,7 +262,7 @@ def test_nodes_are_those_of_the_closed_form_net(name: str) -> None:
     assert ruler(network)["family_sign_errors"] == 0
 
 
-@pytest.mark.parametrize(("name", "order"), [("hexagonal node", 1), pytest.param("eight rays", 2, marks=DOUBLE)])
+@pytest.mark.parametrize(("name", "order"), [("hexagonal node", 1), ("eight rays", 2)])
 def test_singular_nodes(name: str, order: int) -> None:
     """Enneper of order n: one zero of order n - 2 at the origin with 2 n rays, in turn A and B."""
     form, _, net = woven(name)
@@ -449,7 +444,7 @@ def test_form_found_catenoid_agrees_with_the_closed_form_net() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("order", [3, pytest.param(4, marks=DOUBLE)])
+@pytest.mark.parametrize("order", [3, 4])
 def test_form_found_enneper_agrees_with_the_closed_form_net(order: int) -> None:
     form = Enneper(order, 0.8, 2.0)
     t = 2 * np.pi * np.arange(240) / 240

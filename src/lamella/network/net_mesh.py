@@ -1,7 +1,8 @@
-"""Elements to integrate on: those of the surface, graded towards its umbilics, which become vertices.
+"""Elements to integrate on: those of the surface, with a rosette around each umbilic.
 
-Near an umbilic of order m the isothermic coordinates go like the distance to the power 1 + m / 2; polynomials follow
-that only where the elements shrink with the distance.
+Near an umbilic of order m the isothermic coordinates go like the distance to the power 1 + m / 2. There the surface's
+own elements give way to a `lamella.network.rosette`, and are cut finer around it where they are large beside its size;
+everywhere else they stay as they are.
 """
 
 from __future__ import annotations
@@ -9,30 +10,40 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import pythoncdt
 from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from lamella.network.rosette import RINGS, Rosette, rosette
+from lamella.surface.element.bisect import Parts, bisect, whole
 from lamella.surface.element.connectivity import Connectivity, connect
-from lamella.surface.element.lagrange import local_faces
-from lamella.surface.element.placing import place_nodes
-from lamella.surface.element.remesh import TriangleMesh, remesh
+from lamella.surface.element.lagrange import lagrange
+from lamella.surface.element.places import Places
+from lamella.surface.element.placing import edge_blends
 from lamella.surface.element.rim import element_rims
-from lamella.surface.element.size_field import SizeField
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.element.tangent_planes import TangentPlanes
 from lamella.surface.element.umbilics import Umbilics
-from lamella.surface.points import Floats
+from lamella.surface.points import Complexes, Floats, SurfacePoints
 
 Integers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
-# size of the elements at an umbilic over the surface's, and its growth with the distance
-LEAST, GROWTH = 1e-3, 0.25
+# of the elements
+ORDER = 4
 # an umbilic this near to the boundary, over the surface's size, is on it: no loop runs around it
-ON_RIM, RIM_SAMPLES = 2e-3, 2000
+ON_RIM, RIM_SAMPLES = 2e-3, 4000
+# radius of a rosette over the distance to the boundary and to the next umbilic
+TO_RIM, TO_NEXT = 0.5, 0.28
+# longest edge of the elements around over the distance from the umbilic
+GROWTH = 0.45
+# between a rosette and the elements around, over its radius
+GAP = 0.15
+# radii of the circle on which the order's coefficient is measured, over the rosette's
+MEASURED = 0.5
 # entries of a symmetric matrix that are kept
 ROWS, COLUMNS = np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2])
-# flat triangles along an element's edge that the new elements start from
-FACETS = 2
 
 
 @dataclass(frozen=True)
@@ -46,6 +57,8 @@ class NetMesh:
         m, on the surface.
     shape : (n, 6)
         Shape operator of the surface at the nodes, 1/m: entries xx, xy, xz, yy, yz, zz.
+    normals : (n, 3)
+        Unit normals there.
     loop : (v,) int
         Boundary loop of each vertex, -1 inside.
     umbilics : (z,) int
@@ -55,55 +68,204 @@ class NetMesh:
     connectivity: Connectivity
     nodes: Floats
     shape: Floats
+    normals: Floats
     loop: Integers
     umbilics: Integers
 
 
-def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
-    """Elements graded towards the umbilics of a surface."""
-    connectivity = surface.connectivity
-    faces = connectivity.faces
-    corners = surface.nodes[faces]
-    edge = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).mean(1)
-    size = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
-    field = SizeField(corners.mean(1), edge)
+@dataclass(frozen=True)
+class _TangentPlane:
+    """The plane at an umbilic as the complex plane."""
 
-    def wanted(points: Floats) -> Floats:
-        result = field(points)
-        for zero in umbilics.position:
-            result = np.minimum(result, LEAST * size + GROWTH * np.linalg.norm(points - zero, axis=1))
+    at: SurfacePoints
+
+    def down(self, points: Floats) -> Complexes:
+        """Complex coordinates (...,) of points (..., 3), m."""
+        off = points - self.at.position[0]
+        return np.asarray(off @ self.at.e_u[0] + 1j * (off @ self.at.e_v[0]))
+
+    def up(self, z: Complexes, surface: ElementSurface) -> tuple[Places, Floats]:
+        """Places and points (n, 3) of the surface above z (n,)."""
+        foot = self.at.position[0] + z.real[:, None] * self.at.e_u[0] + z.imag[:, None] * self.at.e_v[0]
+        height = np.zeros(len(z))
+        normal = self.at.normal[0]
+        for _ in range(4):
+            places, near = surface.closest(foot + height[:, None] * normal)
+            there = surface.measured(places).normal
+            change = ((near - foot) * there).sum(1) / (there @ normal) - height
+            height += change
+            if np.abs(change).max(initial=0.0) < 1e-12 * np.abs(z).max(initial=1.0):
+                break
+        return surface.closest(foot + height[:, None] * normal)
+
+
+def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
+    """Elements with rosettes around the umbilics of a surface."""
+    connectivity = surface.connectivity
+    size = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
+    rims = element_rims(connectivity, surface.nodes, surface.rim_loop)
+    along = np.concatenate([rim.at(np.arange(RIM_SAMPLES) / RIM_SAMPLES) for rim in rims])
+    zeros = umbilics.position.reshape(-1, 3)
+    to_rim, _ = cKDTree(along).query(zeros)
+    inside = to_rim > ON_RIM * size
+    radii = np.where(inside, _radii(surface, umbilics, to_rim), ON_RIM * size)
+
+    def too_large(corners: Floats, longest: Floats) -> Flags:
+        result = np.zeros(len(longest), bool)
+        for zero, radius in zip(zeros, radii, strict=True):
+            distance = np.linalg.norm(corners - zero, axis=2).min(1)
+            result |= (longest > GROWTH * np.maximum(distance, radius)) & (distance < 8 * radius + longest)
         return result
 
-    rims = element_rims(connectivity, surface.nodes, surface.rim_loop)
-    grid = connect(faces, int(faces.max()) + 1, FACETS)
-    points = np.empty((grid.node_count, 3))
-    points[grid.elements] = np.matmul(connectivity.basis.basis(grid.basis.nodes), corners_of(surface))
-    loop, parameter = np.full(grid.node_count, -1), np.full(grid.node_count, np.nan)
-    start = np.full(int(faces.max()) + 1, np.nan)
-    for index, rim in enumerate(rims):
-        start[rim.vertices] = rim.starts
-        loop[grid.rim_nodes[surface.rim_loop == index]] = index
-    rim_nodes = grid.rim_nodes
-    begin, end = start[rim_nodes[:, 0]], start[rim_nodes[:, -1]]
-    parameter[rim_nodes] = (begin[:, None] + ((end - begin) % 1)[:, None] * np.arange(FACETS + 1) / FACETS) % 1
-    facets = TriangleMesh(points, grid.elements[:, local_faces(FACETS)].reshape(-1, 3), loop, parameter)
-    mesh = remesh(facets, size=wanted, project=TangentPlanes(connectivity, surface.nodes), rims=rims)
-    vertices = mesh.points.copy()
-    inner = np.flatnonzero(mesh.loop < 0)
-    along = np.concatenate([rim.at(np.arange(RIM_SAMPLES) / RIM_SAMPLES) for rim in rims])
-    to_rim, _ = cKDTree(along).query(umbilics.position.reshape(-1, 3))
-    at = np.full(len(umbilics.orders), -1)
-    for number in np.flatnonzero(to_rim > ON_RIM * size).tolist():
-        zero = umbilics.position[number]
-        at[number] = inner[np.linalg.norm(vertices[inner] - zero, axis=1).argmin()]
-        vertices[at[number]] = zero
-    new = connect(mesh.faces, len(vertices), 4)
-    nodes = place_nodes(new, vertices, mesh.loop, mesh.parameter, rims)
-    places, nodes = surface.closest(nodes)
-    operator = surface.at(places).shape_operator
-    return NetMesh(new, nodes, operator[:, ROWS, COLUMNS], mesh.loop, at)
+    parts = bisect(whole(connectivity, surface.nodes, surface.rim_loop), connectivity, surface.nodes, too_large)
+    planes = [_TangentPlane(surface.at(umbilics.places[number : number + 1])) for number in range(len(zeros))]
+    kept = np.ones(len(parts.faces), bool)
+    faces = [parts.faces]
+    points = [parts.points]
+    at = np.full(len(zeros), -1)
+    count = len(parts.points)
+    patches: list[tuple[_TangentPlane, Rosette, int, int]] = []
+    nodes_of_parts = _positions(parts, surface)
+    for number in np.flatnonzero(inside).tolist():
+        plane, radius = planes[number], float(radii[number])
+        hole = _hole(parts, nodes_of_parts, zeros[number], (1 + GAP) * radius)
+        kept &= ~hole
+        rose = rosette(
+            int(umbilics.orders[number]),
+            _argument(surface, plane, int(umbilics.orders[number]), MEASURED * radius),
+            radius,
+            ORDER,
+        )
+        ring = _ring(parts.faces[hole])
+        gap = _between(plane.down(parts.points[ring]), rose.vertices[rose.rim])
+        names = np.concatenate([ring, count + rose.rim])
+        at[number] = count
+        faces += [count + rose.faces, names[gap]]
+        patches.append((plane, rose, len(rose.faces), len(gap)))
+        points.append(np.full((len(rose.vertices), 3), np.nan))
+        count += len(rose.vertices)
+    faces[0] = parts.faces[kept]
+    used, all_faces = np.unique(np.concatenate(faces), return_inverse=True)
+    new = connect(all_faces.reshape(-1, 3), len(used), ORDER)
+    at[inside] = np.searchsorted(used, at[inside])
+    loop = np.concatenate([parts.loop, np.full(count - len(parts.loop), -1)])[used]
+
+    positions = np.full((new.node_count, 3), np.nan)
+    element = np.zeros(new.node_count, np.int64)
+    local = np.zeros((new.node_count, 2))
+    mine = np.flatnonzero(kept)
+    where = parts.places(mine, new.basis.nodes)
+    target = new.elements[: len(mine)].ravel()
+    positions[target] = nodes_of_parts[mine].reshape(-1, 3)
+    element[target], local[target] = where.element, where.local
+    start = len(mine)
+    for plane, rose, petals, gaps in patches:
+        names, z = _patch_nodes(new, start, petals, gaps, rose, plane, positions)
+        start += petals + gaps
+        places, there = plane.up(z, surface)
+        positions[names], element[names], local[names] = there, places.element, places.local
+    every = Places(element, local)
+    operator = surface.at(every).shape_operator[:, ROWS, COLUMNS]
+    return NetMesh(new, positions, operator, surface.smooth_normal(every), loop, at)
 
 
-def corners_of(surface: ElementSurface) -> Floats:
-    """Nodes of each element, (m, k, 3)."""
-    return surface.nodes[surface.connectivity.elements]
+def _positions(parts: Parts, surface: ElementSurface) -> Floats:
+    """Nodes of order `ORDER` of every part, (m, k, 3)."""
+    basis = lagrange(ORDER)
+    where = parts.places(np.arange(len(parts.parent)), basis.nodes)
+    table = surface.connectivity.basis.basis(where.local).reshape(len(parts.parent), len(basis.nodes), -1)
+    return np.asarray(np.matmul(table, surface.nodes[surface.connectivity.elements[parts.parent]]))
+
+
+def _radii(surface: ElementSurface, umbilics: Umbilics, to_rim: Floats) -> Floats:
+    """Radius of the rosette at each umbilic, m."""
+    corners = surface.nodes[surface.connectivity.faces[umbilics.places.element]]
+    edge = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).mean(1)
+    radii = np.minimum(RINGS * edge, TO_RIM * to_rim)
+    if len(radii) > 1:
+        apart, _ = cKDTree(umbilics.position).query(umbilics.position, k=2)
+        radii = np.minimum(radii, TO_NEXT * apart[:, 1])
+    return np.asarray(radii)
+
+
+def _argument(surface: ElementSurface, plane: _TangentPlane, order: int, radius: float) -> float:
+    """Argument of c in D = c z^m + ... around an umbilic, by the mean over a circle."""
+    turn = np.exp(2j * np.pi * np.arange(24) / 24)
+    places, _ = plane.up(radius * turn, surface)
+    there = surface.at(places)
+    frame = there.e_u @ plane.at.e_u[0] + 1j * (there.e_u @ plane.at.e_v[0])
+    # D dz^2 does not depend on the frame
+    value = there.deviator / (frame / np.abs(frame)) ** 2
+    return float(np.angle((value * turn ** (-order)).mean()))
+
+
+def _hole(parts: Parts, nodes: Floats, centre: Floats, radius: float) -> Flags:
+    """Parts that reach nearer to a place of the surface than a radius, as one piece without holes."""
+    near = np.linalg.norm(nodes - centre, axis=2).min(1)
+    hole = near < radius
+    m = len(parts.faces)
+    # only what hangs together with the nearest one: another sheet may pass close by
+    corner = np.flatnonzero(np.repeat(hole, 3))
+    graph = coo_matrix((np.ones(len(corner)), (corner // 3, parts.faces.ravel()[corner])), (m, len(parts.points)))
+    _, group = connected_components(graph @ graph.T, directed=False)
+    hole &= group == group[near.argmin()]
+    return np.asarray(hole)
+
+
+def _ring(faces: Integers) -> Integers:
+    """Vertices around a piece of triangles, counter-clockwise."""
+    ends = np.stack([faces, np.roll(faces, -1, 1)], 2).reshape(-1, 2)
+    there = set(map(tuple, ends.tolist()))
+    after = {a: b for a, b in there if (b, a) not in there}
+    first = min(after)
+    ring = [first]
+    while (following := after[ring[-1]]) != first:
+        ring.append(following)
+        if len(ring) > len(after):
+            break
+    if len(ring) != len(after):
+        raise ValueError("the elements around an umbilic are no disc")
+    return np.array(ring)
+
+
+def _between(outer: Complexes, inner: Complexes) -> Integers:
+    """Triangles between two polygons, one inside the other, by the numbers of their corners, outer ones first."""
+    corners = np.concatenate([outer, inner])
+    count = np.arange(len(outer)), len(outer) + np.arange(len(inner))
+    edges = np.concatenate([np.column_stack([ring, np.roll(ring, -1)]) for ring in count])
+    mesh = pythoncdt.Triangulation(
+        pythoncdt.VertexInsertionOrder.AUTO, pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0
+    )
+    mesh.insert_vertices([pythoncdt.V2d(float(z.real), float(z.imag)) for z in corners])
+    mesh.insert_edges([pythoncdt.Edge(int(a), int(b)) for a, b in edges.tolist()])
+    mesh.erase_outer_triangles_and_holes()
+    return np.asarray(mesh.triangles_array()["vertices"].astype(np.int64))
+
+
+def _patch_nodes(
+    new: Connectivity,
+    start: int,
+    petals: int,
+    gaps: int,
+    rose: Rosette,
+    plane: _TangentPlane,
+    positions: Floats,
+) -> tuple[Integers, Complexes]:
+    """Nodes of a rosette and of the gap around it, by number, with their places in the tangent plane."""
+    z = np.full(new.node_count, np.nan, complex)
+    z[new.elements[start : start + petals]] = rose.nodes
+    gap = new.elements[start + petals : start + petals + gaps]
+    known = ~np.isnan(positions[gap].sum(2))
+    z[gap[known]] = plane.down(positions[gap[known]])
+    basis = new.basis
+    barycentric = np.column_stack([1 - basis.nodes.sum(1), basis.nodes])
+    flat = z[gap[:, :3]] @ barycentric.T
+    moved = flat.copy()
+    for edge, blend in zip(basis.edge_nodes[:, 1:-1], edge_blends(ORDER), strict=True):
+        shift = z[gap[:, edge]] - flat[:, edge]
+        moved += np.where(np.isnan(shift), 0, shift) @ blend.T
+    free = np.isnan(z[gap])
+    z[gap[free]] = moved[free]
+    names = np.unique(np.concatenate([new.elements[start : start + petals].ravel(), gap.ravel()]))
+    names = names[np.isnan(positions[names]).any(1)]
+    return names, z[names]

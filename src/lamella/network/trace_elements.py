@@ -34,8 +34,8 @@ Integers = NDArray[np.int64]
 A, B = 0, 1
 # of a ray's first cell: a place taken for the singular node's own direction
 BESIDE = 1e-3
-# of a ray's first cell: nearer to the node directions are led out from further away
-OUT = 0.2
+# of a ray's first cell: nearer to the node it is led out from it to points at these multiples
+OUT, LEADING = 0.2, np.array([1.0, 1.5, 2.0, 2.5])
 # samples to either side over which a lamella turns by its geodesic curvature: the kinks at elements average out
 WIDE = 3
 # the speed along a lamella has a kink at every element's edge: so many points of a segment's series do, and at most
@@ -309,7 +309,7 @@ def trace_elements(
     parameter = arcs.parameter(segment, fraction)
     places, points, velocity = segments.velocity(segment, parameter)
     tangents = velocity / np.linalg.norm(velocity, axis=1)[:, None]
-    _lead_out(segments, segment, parameter, tangents)
+    _lead_out(segments, segment, parameter, points, tangents)
     normals = _normals(cells, places)
     tangents -= (tangents * normals).sum(1)[:, None] * normals
     tangents /= np.linalg.norm(tangents, axis=1)[:, None]
@@ -379,16 +379,23 @@ def trace_elements(
     )
 
 
-def _lead_out(segments: _Segments, segment: Integers, sigma: Floats, tangents: Floats) -> None:
-    """Directions next to singular nodes, where chi has next to no slope, from those a little further out."""
+def _lead_out(segments: _Segments, segment: Integers, sigma: Floats, points: Floats, tangents: Floats) -> None:
+    """Points and directions next to singular nodes, from the node and points a little further out.
+
+    chi has next to no slope there, and a zero of higher order is not quite one in numbers: a lamella would pass the
+    node by. As a function of sigma a ray is analytic.
+    """
     near = np.flatnonzero(segments.singular[segment] & (sigma < OUT))
     if not len(near):
         return
-    ahead = []
-    for at in (OUT, 2 * OUT):
-        velocity = segments.velocity(segment[near], np.full(len(near), at))[2]
-        ahead.append(velocity / np.linalg.norm(velocity, axis=1)[:, None])
-    there = ahead[0] + ((sigma[near] - OUT) / OUT)[:, None] * (ahead[1] - ahead[0])
+    own, row = np.unique(segment[near], return_inverse=True)
+    at = np.r_[0.0, OUT * LEADING]
+    where = segments.velocity(np.repeat(own, len(at)), np.tile(at, len(own)))[1].reshape(len(own), len(at), 3)
+    series = np.matmul(np.linalg.inv(np.vander(at, increasing=True)), where)[row.ravel()]
+    power = np.arange(len(at))
+    points[near] = np.einsum("np,npc->nc", sigma[near, None] ** power, series)
+    slope = power[1:] * sigma[near, None] ** power[:-1]
+    there = np.einsum("np,npc->nc", slope, series[:, 1:])
     tangents[near] = there / np.linalg.norm(there, axis=1)[:, None]
 
 
@@ -440,8 +447,9 @@ def _tips(cells: CellMap, tracks: _Tracks) -> Floats:
 
 
 def _normals(cells: CellMap, places: Places) -> Floats:
-    _, first, second = cells.tangents(places)
-    normal = np.cross(first, second)
+    connectivity = cells.mesh.connectivity
+    nodal = cells.mesh.normals[connectivity.elements[places.element]]
+    normal = np.einsum("nk,nkc->nc", connectivity.basis.basis(places.local), nodal)
     return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])
 
 

@@ -30,7 +30,7 @@ class Rim(Protocol):
 
 
 @lru_cache
-def _blends(order: int) -> Floats:
+def edge_blends(order: int) -> Floats:
     """Share of the shift of each inner node of each local edge in the shift of every node, (3, k, order - 1)."""
     basis = lagrange(order)
     barycentric = np.column_stack([1 - basis.nodes.sum(1), basis.nodes])
@@ -78,7 +78,7 @@ def place_nodes(
         mine = of_loop == index
         exact[mine] = rim.at(at[mine].ravel()).reshape(-1, rim_nodes.shape[1], 3)
     shift = exact - nodes[rim_nodes]
-    blends = _blends(basis.order)
+    blends = edge_blends(basis.order)
     for local in range(3):
         mine = connectivity.rim_edges == local
         touched = connectivity.elements[connectivity.rim_elements[mine]]

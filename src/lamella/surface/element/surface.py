@@ -69,13 +69,18 @@ class ElementSurface:
         return self.nodes[self.connectivity.elements]
 
     @cached_property
+    def _gauss(self) -> Floats:
+        """Normals of the harmonic Gauss map at the nodes, (n, 3)."""
+        return harmonic_normals(self.connectivity, self.nodes)
+
+    @cached_property
     def _smoothed(self) -> tuple[Connectivity, Floats]:
         """Connectivity and nodal values (n, 8): the shape operator (xx, xy, xz, yy, yz, zz), H^2 - K, measured H."""
         connectivity = self.connectivity
         space = connect(connectivity.faces, int(connectivity.faces.max()) + 1, SMOOTHED_ORDER[connectivity.basis.order])
         points, weights = triangle_rule(2 * connectivity.basis.order)
         there = element_points(connectivity, self._corners, points, False)
-        normals = harmonic_normals(connectivity, self.nodes)[connectivity.elements]
+        normals = self._gauss[connectivity.elements]
         n_x, n_y = (np.matmul(slope, normals).reshape(-1, 3) for slope in self._slopes(points))
         # S = -dn along both axes of the frame
         along = there.to_local
@@ -118,6 +123,12 @@ class ElementSurface:
             deviator,
             (along[:, 0] + 1j * along[:, 1]) / (4 * square),
         )
+
+    def smooth_normal(self, where: Places) -> Floats:
+        """Unit normal of the harmonic Gauss map at n places, (n, 3): it does not jump between elements."""
+        local = self._gauss[self.connectivity.elements[where.element]]
+        normal = np.einsum("nk,nkc->nc", self.connectivity.basis.basis(where.local), local)
+        return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])
 
     def measured(self, where: Places) -> ElementPoints:
         """Position, frame and unsmoothed shape operator at n places."""
