@@ -43,6 +43,14 @@ def network_cautions(network: Network, height: float, closing: str = "open") -> 
             if network.left_out > 1
             else "1 lamella shorter than network.minimum_length is left out"
         )
+    if len(network.faces_left_out):
+        places = "; ".join(
+            ", ".join(f"{x:.3g}" for x in point) for point in network.node_points[network.faces_left_out[:3]]
+        )
+        yield (
+            f"{len(network.faces_left_out)} faces of more than six corners between lamellas and rim are left out (near "
+            f"{places} m): more cells make them smaller"
+        )
     median = float(np.median(network.cell_edges))
     if median < height:
         yield (

@@ -73,6 +73,7 @@ def cylinder_net(cells: int = 6, rows: int = 4, per_cell: int = 8) -> tuple[Netw
         stop_arclengths=np.tile(arclengths[::per_cell], count),
         face_offsets=np.append(np.arange(len(quads)) * 4, len(quads) * 4 + 3 * np.arange(cells + 1)),
         face_nodes=np.concatenate((quads.ravel(), triangles.ravel())),
+        faces_left_out=np.zeros(0, np.int64),
     )
     lamellas = Lamellas(
         section=Section(height=0.1, thickness=0.0015),

@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from lamella.errors import InputError
 from lamella.network.cell_map import CellMap
 from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
-from lamella.network.isothermic import Isothermic, Transition, integrate, with_shifts
+from lamella.network.holonomy import Holonomy, crossed, holonomies
+from lamella.network.isothermic import FoldedError, Isothermic, Transition, integrate, with_shifts
 from lamella.network.net_mesh import NetMesh, make_net_mesh
 from lamella.network.network import SINGULAR, Network, Period
 from lamella.network.trace_elements import trace_elements
+from lamella.network.whole_shifts import nearest_whole
 from lamella.surface.element.quadrature import triangle_rule
-from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.points import Complexes, Floats
@@ -28,6 +29,8 @@ Closing = Literal["open", "round"]
 
 # of a cell: a shift nearer to whole numbers closes the net (docs/files.md)
 CLOSES = 1e-3
+# of the longest principal line: a shorter period around a hole is none to count cells on
+LEAST_PERIOD = 1e-2
 
 
 def _silent(message: str) -> None:
@@ -175,9 +178,10 @@ def element_network(
         f"  isothermic coordinates on {mesh.connectivity.node_count:,} nodes: off by {iso.residual:.1e} of their slope"
     )
     names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
-    lattice = choose_lattice(iso, umbilics, cells, spacing)
+    around = holonomies(iso)
+    lattice = choose_lattice(iso, around, umbilics, cells, spacing)
     raw = CellMap.of(iso, lattice.origin, lattice.step)
-    near = np.round(raw.shifts.real) + 1j * np.round(raw.shifts.imag)
+    near = nearest_whole(iso, raw.signs, raw.shifts, singular_nodes=closing == "round")
     off = np.maximum(np.abs((raw.shifts - near).real), np.abs((raw.shifts - near).imag))
     wanted = np.where((off <= CLOSES) | (closing == "round"), near, np.nan)
     iso = _closed(iso, raw, wanted, lattice)
@@ -185,12 +189,15 @@ def element_network(
     network = trace_elements(
         CellMap.of(iso, lattice.origin, lattice.step),
         iso.cut,
-        mesh.umbilics[mesh.umbilics >= 0],
-        umbilics.orders[mesh.umbilics >= 0],
+        umbilics.orders,
         mean_curvature=surface.mean_curvature,
         rim_loop=rim_loop,
         count=lattice.cells,
-        periods=_periods(iso, raw, rim_loop, names),
+        periods=tuple(
+            Period(names[one.loop], *(part / lattice.step for part in crossed(one.shift)))
+            for one in around
+            if one.sign == 1
+        ),
         minimum_length=minimum_length,
     )
     joints = tuple(
@@ -204,18 +211,21 @@ def _closed(iso: Isothermic, raw: CellMap, wanted: Complexes, lattice: Lattice) 
     """The coordinates with whole shifts, nan: free."""
     if np.isnan(wanted).all():
         return iso
-    shifts = wanted * lattice.step / (1 + 1j) - (raw.signs - 1) * lattice.origin
     try:
-        return with_shifts(iso, shifts)
-    except ValueError:
+        return with_shifts(iso, wanted * lattice.step / (1 + 1j) - (raw.signs - 1) * lattice.origin)
+    except FoldedError as folded:
+        worst = float(np.nanmax(np.abs(raw.shifts - wanted)))
         raise InputError(
-            "the nearest whole numbers of cells of this net contradict each other where its cuts meet",
-            'choose another number of cells, or closing = "open"',
+            f"closing the net by rounding takes up to {worst:.2g} cells, and folds it near "
+            f"({', '.join(f'{x:.4g}' for x in folded.place)}) m",
+            'raise network.cells, change the boundary, or choose closing = "open"',
             "network.closing",
         ) from None
 
 
-def choose_lattice(iso: Isothermic, umbilics: Umbilics, cells: int | None, spacing: float | None) -> Lattice:
+def choose_lattice(
+    iso: Isothermic, around: tuple[Holonomy, ...], umbilics: Umbilics, cells: int | None, spacing: float | None
+) -> Lattice:
     """Origin and step: a singular node on the lattice, a whole number of cells around the first hole or across."""
     mesh = iso.mesh
     corner = iso.value[:, :3]
@@ -226,7 +236,7 @@ def choose_lattice(iso: Isothermic, umbilics: Umbilics, cells: int | None, spaci
         odd = inside[umbilics.orders[inside] % 2 == 1]
         vertex = mesh.umbilics[odd[0] if len(odd) else inside[0]]
         origin = complex(corner[mesh.connectivity.faces == vertex].mean())
-    whole = _whole_length(iso)
+    whole = _whole_length(iso, around)
     points, weights = triangle_rule(8)
     mu_area, edge = _cell_densities(iso, points, weights)
     requested = f"cells = {cells}"
@@ -278,46 +288,13 @@ def _cell_densities(iso: Isothermic, points: Floats, weights: Floats) -> tuple[F
     return (2 * area).ravel(), edge.ravel()
 
 
-def _whole_length(iso: Isothermic) -> float:
+def _whole_length(iso: Isothermic, around: tuple[Holonomy, ...]) -> float:
     """What `cells` divides: the period around the first hole, or the longest principal line, sqrt(m)."""
-    for piece in iso.transitions:
-        if piece.sign == 1:
-            a, b = piece.shift.real, piece.shift.imag
-            return float(max(abs(a + b), abs(a - b)))
     corner = iso.value[:, :3]
-    return float(max(np.ptp(corner.real), np.ptp(corner.imag)))
-
-
-def _periods(iso: Isothermic, raw: CellMap, rim_loop: NDArray[np.int64], names: tuple[str, ...]) -> tuple[Period, ...]:
-    """Cells crossed on the way around each hole, where the coordinates come back as themselves."""
-    mesh = iso.mesh
-    rims = element_rims(mesh.connectivity, mesh.nodes, rim_loop)
-    periods = []
-    for hole in range(1, len(rims)):
-        place = {int(v): float(t) for v, t in zip(rims[hole].vertices, rims[hole].starts, strict=True)}
-        passed = []
-        for number, piece in enumerate(iso.transitions):
-            tips = _tip_vertices(mesh, piece)
-            for side, end in enumerate(piece.ends):
-                if end == -1 - hole:
-                    passed.append((place[tips[side]], number, side == 0))
-        sign, shift = 1, 0j
-        for _, number, inwards in sorted(passed):
-            s, c = int(raw.signs[number]), complex(raw.shifts[number])
-            # from before the piece to behind it: left to right where it leads away from the rim
-            sign, shift = (s * sign, s * shift + c) if inwards else (s * sign, s * (shift - c))
-        if sign == 1:
-            name = names[hole] if hole < len(names) else f"hole {hole}"
-            periods.append(Period(name, abs(shift.imag), abs(shift.real)))
-    return tuple(periods)
-
-
-def _tip_vertices(mesh: NetMesh, piece: Transition) -> tuple[int, int]:
-    """First and last vertex of a piece of the cut."""
-    faces = mesh.connectivity.faces
-    first = faces[piece.left[0], piece.left_edge[0]]
-    last = faces[piece.left[-1], (piece.left_edge[-1] + 1) % 3]
-    return int(first), int(last)
+    longest = float(max(np.ptp(corner.real), np.ptp(corner.imag)))
+    if around and around[0].sign == 1 and max(crossed(around[0].shift)) > LEAST_PERIOD * longest:
+        return max(crossed(around[0].shift))
+    return longest
 
 
 def _named(piece: Transition, mesh: NetMesh, names: tuple[str, ...]) -> str:

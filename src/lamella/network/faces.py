@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,7 +12,26 @@ from lamella.errors import InputError
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-MOST_SIDES = 6
+# corners of a face that is written, and of one that is left out
+MOST_SIDES, MOST_CORNERS = 6, 12
+
+
+class Faces(NamedTuple):
+    """Faces of a net.
+
+    Attributes
+    ----------
+    offsets : (f + 1,) int
+    nodes : (k,) int
+        Counter-clockwise; those of face i from offsets[i] to offsets[i + 1].
+    large : (l,) int
+        A node of each face that is left out, since it has more than six corners: a cell around an umbilic that is no
+        node, cut by the rim.
+    """
+
+    offsets: Integers
+    nodes: Integers
+    large: Integers
 
 
 def trace_faces(
@@ -21,7 +42,7 @@ def trace_faces(
     rim: list[Integers],
     rim_directions: Floats,
     seam: NDArray[np.bool_] | None = None,
-) -> tuple[Integers, Integers]:
+) -> Faces:
     """Walk around the faces of a net embedded in a surface.
 
     At every node the edges are sorted by angle about the normal; a face is followed by taking, at the end of
@@ -44,10 +65,8 @@ def trace_faces(
 
     Returns
     -------
-    offsets : (f + 1,) int
-    nodes : (e,) int
-        Faces with 3 to 6 nodes, counter-clockwise about the normal. What lies outside the rim is left out, and so
-        are slivers between the rim and a single edge.
+    Faces
+        What lies outside the rim is left out, and so are slivers between the rim and a single edge.
     """
     n = len(normals)
     forward_tail = np.concatenate([loop for loop in rim if len(loop) > 1] or [np.zeros(0, np.int64)])
@@ -108,13 +127,15 @@ def trace_faces(
     first_edge = np.flatnonzero((smallest == np.arange(len(tail))) & ~crosses_rim & (sides > 2))
     count = sides[first_edge]
     endless = bool(((sides == 0) & ~crosses_rim).any())
-    if endless or (len(count) and count.max() > MOST_SIDES):
+    if endless or (len(count) and count.max() > MOST_CORNERS):
         corners = "many" if endless else f"{count.max()}"
         raise InputError(
             f"the net is too coarse for this surface: a face between lamellas and rim has {corners} corners",
             "raise network.cells (or lower network.spacing)",
             "network.cells",
         )
+    large = tail[first_edge[count > MOST_SIDES]]
+    first_edge, count = first_edge[count <= MOST_SIDES], count[count <= MOST_SIDES]
     offsets = np.r_[0, np.cumsum(count)]
     nodes = np.empty(offsets[-1], np.int64)
     walker = first_edge
@@ -122,4 +143,4 @@ def trace_faces(
         has = count > step
         nodes[offsets[:-1][has] + step] = tail[walker[has]]
         walker = following[walker]
-    return offsets, nodes
+    return Faces(offsets, nodes, large)

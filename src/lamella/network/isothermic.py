@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
+from lamella.network.cut import cut_edges
 from lamella.network.net_mesh import COLUMNS, ROWS, NetMesh
 from lamella.sparse import SymmetricPattern, packed
 from lamella.surface.element.connectivity import Connectivity
-from lamella.surface.element.geometry import dirichlet_blocks, tangents
+from lamella.surface.element.geometry import dirichlet_blocks, tangents, weighted_dirichlet_blocks
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.points import Complexes, Floats
 
@@ -87,6 +88,14 @@ class Isothermic:
     residual: float
 
 
+class FoldedError(ValueError):
+    """Shifts that fold the net; `place` (3,), m, says where."""
+
+    def __init__(self, place: Floats) -> None:
+        super().__init__("the coordinates turn over")
+        self.place = place
+
+
 def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
     """Isothermic coordinates of a surface.
 
@@ -96,8 +105,8 @@ def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
     odd : (z,) int
         Vertices that are umbilics of odd order.
     """
-    sign, consistent = _signs(mesh)
-    cut = _cut_edges(mesh, consistent, odd)
+    cut = cut_edges(mesh, odd)
+    sign, cut = _signs(mesh, cut)
     sector = sectors(mesh.connectivity, cut)
     system = _Poisson.of(mesh, sign)
     value = system.solve(sector, np.ones(sector.max() + 1), np.zeros(sector.max() + 1, complex), {0: 0j})
@@ -108,6 +117,9 @@ def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
 def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
     """The coordinates nearest to the given ones whose transitions have exactly these shifts.
 
+    What is least is the integral of |change of dw|^2 / |D|^2. After a plain harmonic change, r^(1/2) next to a zero of
+    order 1, half of the rays would miss it; with the weight the change dies out faster than w itself at all zeros.
+
     Parameters
     ----------
     iso : Isothermic
@@ -116,6 +128,8 @@ def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
 
     Raises
     ------
+    FoldedError
+        The coordinates would turn over somewhere.
     ValueError
         The shifts contradict each other where pieces of the cut meet.
     """
@@ -154,10 +168,15 @@ def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
                 elif abs(new_offset - offset[other]) > tolerance:
                     raise ValueError("the shifts contradict each other where cuts meet")
     system = _Poisson.of(mesh, iso.sign)
+    change = system.near(iso.value)
     used, number = np.unique(home, return_inverse=True)
     place = {int(v): k for k, v in enumerate(used)}
     held = {place[v]: w for v, w in fixed.items()} or {0: 0j}
-    value = system.solve(number[sector], sign, offset, held, sector)
+    value = change.solve(number[sector], sign, offset, held, sector)
+    folds = system.folds(value) & ~system.folds(iso.value)
+    if folds.any():
+        place = mesh.nodes[mesh.connectivity.elements[np.flatnonzero(folds)[0], 0]]
+        raise FoldedError(place)
     measured, across = _transitions(mesh, iso.cut, value, iso.odd)
     pieces = tuple(
         piece if np.isnan(shift) else replace(piece, shift=complex(shift), spread=0.0)
@@ -192,6 +211,16 @@ class _Poisson:
         pull = ((g * form_a - f * form_b) / area) @ x + ((e * form_b - f * form_a) / area) @ y
         return cls(blocks, pull, form_a, form_b, (e, f, g), area, x, y)
 
+    def near(self, value: Complexes) -> _Poisson:
+        """The problem of staying near to coordinates (m, k) instead, with the weight 1 / |D|^2."""
+        e, f, g = self.metric
+        square = g * np.abs(self.form_a) ** 2 - 2 * f * (self.form_a * self.form_b.conj()).real
+        square = (square + e * np.abs(self.form_b) ** 2) / (e * g - f * f)
+        # |sqrt(D) dz|^2 is 2 |D|
+        weight = (square.mean() / square) ** 2
+        blocks = weighted_dirichlet_blocks(self.x, self.y, self.metric, self.area / weight)
+        return replace(self, blocks=blocks, pull=np.einsum("eij,ej->ei", blocks, value))
+
     def solve(
         self,
         unknown: Integers,
@@ -219,6 +248,11 @@ class _Poisson:
         solved = pattern.factor(pattern.assemble(packed(blocks))).solve(np.stack(both, 1).astype(np.float64))
         value[free] = solved[:, 0] + 1j * solved[:, 1]
         return np.asarray(s * value[unknown] + o)
+
+    def folds(self, value: Complexes) -> NDArray[np.bool_]:
+        """Elements (m,) on which coordinates turn over anywhere."""
+        w_x, w_y = value @ self.x.T, value @ self.y.T
+        return np.asarray((w_x.real * w_y.imag <= w_x.imag * w_y.real).any(1))
 
     def residual(self, value: Complexes) -> float:
         """Root mean square of dw - sqrt(D) dz over that of sqrt(D) dz."""
@@ -277,67 +311,33 @@ _MIDDLES = np.array([[0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 _DIRECTIONS = np.array([[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]])
 
 
-def _signs(mesh: NetMesh) -> tuple[Integers, NDArray[np.bool_]]:
-    """Sign of each element's root, (m,), and whether that agrees with the neighbour's across each edge, (m, 3)."""
+def _signs(mesh: NetMesh, cut: NDArray[np.bool_]) -> tuple[Integers, NDArray[np.bool_]]:
+    """Sign of each element's root, (m,), alike across what is not cut; and the cut.
+
+    Where an umbilic next to the rim was not cut to, the signs still disagree across some edges: these are cut as well.
+    """
     root, along, other, _ = _root(mesh, _MIDDLES)
     through = root * (along * _DIRECTIONS[:, 0] + other * _DIRECTIONS[:, 1])
     connectivity = mesh.connectivity
-    element, edge = np.nonzero(connectivity.neighbours >= 0)
+    element, edge = np.nonzero((connectivity.neighbours >= 0) & ~cut)
     neighbour = connectivity.neighbours[element, edge]
     back = through[neighbour, connectivity.neighbour_edges[element, edge]]
     # the neighbour runs along the edge the other way
-    same = (through[element, edge] * -back.conj()).real > 0
+    same = np.where((through[element, edge] * -back.conj()).real > 0, 1, -1)
     m = len(connectivity.elements)
     # signs are handed on where the root is large, away from umbilics
     cost = 1 / np.maximum(np.abs(root[element, edge]), 1e-300)
     tree = minimum_spanning_tree(coo_matrix((cost, (element, neighbour)), (m, m)).tocsr())
     order, parent = breadth_first_order(tree, int(np.abs(root).mean(1).argmax()), directed=False)
-    relation = coo_matrix((np.where(same, 1, -1), (element, neighbour)), (m, m)).tocsr()
+    relation = coo_matrix((same, (element, neighbour)), (m, m)).tocsr()
     to_parent = np.asarray(relation[order[1:], parent[order[1:]]]).ravel()
     sign = np.ones(m, np.int64)
     for child, value in zip(order[1:].tolist(), to_parent.tolist(), strict=True):
         sign[child] = value * sign[parent[child]]
-    agrees = np.ones((m, 3), bool)
-    agrees[element, edge] = (np.where(same, 1, -1) * sign[element] * sign[neighbour]) > 0
-    return sign, agrees
-
-
-def _cut_edges(mesh: NetMesh, consistent: NDArray[np.bool_], odd: Integers) -> NDArray[np.bool_]:
-    """Edges to cut along, (m, 3), alike from both sides: a tree between rims and odd umbilics.
-
-    All edges that a spanning tree of the elements does not cross form a tree once each rim is one point; what ends
-    at an ordinary vertex is cut off again.
-    """
-    connectivity = mesh.connectivity
-    m = len(connectivity.elements)
-    element, edge = np.nonzero(connectivity.neighbours >= 0)
-    neighbour = connectivity.neighbours[element, edge]
-    once = element < neighbour
-    element, edge, neighbour = element[once], edge[once], neighbour[once]
-    # short ways are cheap to keep uncut in the middle of the surface: the cut runs where elements are few
-    graph = coo_matrix((np.where(consistent[element, edge], 1.0, 1e6), (element, neighbour)), (m, m)).tocsr()
-    order, parent = breadth_first_order(minimum_spanning_tree(graph), 0, directed=False)
-    joined = np.minimum(order[1:], parent[order[1:]]) * m + np.maximum(order[1:], parent[order[1:]])
-    free = ~np.isin(element * m + neighbour, joined)
-    element, edge = element[free], edge[free]
-    ends = connectivity.faces[element[:, None], (edge[:, None] + [0, 1]) % 3]
-    vertices = int(connectivity.faces.max()) + 1
-    point = np.where(mesh.loop >= 0, vertices + mesh.loop, np.arange(vertices))[ends]
-    kept = np.ones(len(element), bool)
-    fixed = np.zeros(vertices + int(mesh.loop.max()) + 1, bool)
-    fixed[vertices:] = True
-    fixed[odd] = True
-    while True:
-        degree = np.bincount(point[kept].ravel(), minlength=len(fixed))
-        loose = kept & ((degree[point] == 1) & ~fixed[point]).any(1)
-        if not loose.any():
-            break
-        kept &= ~loose
-    cut = np.zeros((m, 3), bool)
-    element, edge = element[kept], edge[kept]
-    cut[element, edge] = True
-    cut[connectivity.neighbours[element, edge], connectivity.neighbour_edges[element, edge]] = True
-    return cut
+    cut = cut.copy()
+    off = same * sign[element] * sign[neighbour] < 0
+    cut[element[off], edge[off]] = True
+    return sign, cut
 
 
 def sectors(connectivity: Connectivity, cut: NDArray[np.bool_]) -> Integers:

@@ -45,8 +45,9 @@ class SmallTriangles:
         Local coordinates of the corners.
     chi : (g,) complex
         At the grid points.
-    singular : (g,) bool
-        Grid points that are umbilics on the lattice.
+    singular : (g, 2) bool
+        Grid points that are umbilics with a whole real part, and imaginary part, of chi: lamellas of B, and of A, end
+        there.
     """
 
     element: Integers
@@ -116,15 +117,17 @@ def small_triangles(cells: CellMap, cut: NDArray[np.bool_], umbilics: Integers) 
     chi = np.zeros(int(point.max()) + 1, complex)
     chi[point] = values
     # umbilics on the lattice have whole values; no other grid point may
-    singular = np.zeros(len(chi), bool)
+    singular = np.zeros((len(chi), 2), bool)
+    pair = np.stack([chi.real, chi.imag], 1)
     for vertex in umbilics.tolist():
         element, which = np.nonzero(connectivity.faces == vertex)
         at = np.unique(point[element, which])
-        near = np.round(chi[at].real) + 1j * np.round(chi[at].imag)
-        if (np.abs(chi[at] - near) < WHOLE).all():
-            chi[at], singular[at] = near, True
-    off_real, off_imag = (np.abs(part - np.round(part)) < NUDGE for part in (chi.real, chi.imag))
-    chi = chi + np.where(off_real & ~singular, 3 * NUDGE, 0) + 1j * np.where(off_imag & ~singular, 3 * NUDGE, 0)
+        settled = (np.abs(pair[at] - np.round(pair[at])) < WHOLE).all(0)
+        singular[at] = settled
+        pair[at] = np.where(settled, np.round(pair[at]), pair[at])
+    near = (np.abs(pair - np.round(pair)) < NUDGE) & ~singular
+    pair += np.where(near, 3 * NUDGE, 0)
+    chi = pair[:, 0] + 1j * pair[:, 1]
     # both sides of a cut alike to the last digit, where the net goes on across it
     element, edge = np.nonzero(cells.across > 0)
     piece = cells.across[element, edge] - 1
@@ -136,7 +139,7 @@ def small_triangles(cells: CellMap, cut: NDArray[np.bool_], umbilics: Integers) 
         mine = piece == number
         target = right[mine].ravel()
         wanted = cells.signs[number] * chi[left[mine].ravel()] + whole[number]
-        free = ~singular[target]
+        free = ~singular[target].any(1)
         chi[target[free]] = wanted[free]
     faces = local_faces(parts)
     m = len(connectivity.elements)

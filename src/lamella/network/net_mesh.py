@@ -63,6 +63,8 @@ class NetMesh:
         Boundary loop of each vertex, -1 inside.
     umbilics : (z,) int
         Vertex of each umbilic; -1: it lies on the boundary.
+    radii : (z,)
+        Of the rosettes around them, m.
     """
 
     connectivity: Connectivity
@@ -71,6 +73,7 @@ class NetMesh:
     normals: Floats
     loop: Integers
     umbilics: Integers
+    radii: Floats
 
 
 @dataclass(frozen=True)
@@ -166,7 +169,7 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         positions[names], element[names], local[names] = there, places.element, places.local
     every = Places(element, local)
     operator = surface.at(every).shape_operator[:, ROWS, COLUMNS]
-    return NetMesh(new, positions, operator, surface.smooth_normal(every), loop, at)
+    return NetMesh(new, positions, operator, surface.smooth_normal(every), loop, at, radii)
 
 
 def _positions(parts: Parts, surface: ElementSurface) -> Floats:

@@ -75,6 +75,8 @@ class Network:
     face_offsets : (f + 1,) int
     face_nodes : (e,) int
         Faces, counter-clockwise about the normal.
+    faces_left_out : (l,) int
+        A node of each face with more corners than are written.
     """
 
     mean_curvature: float
@@ -101,6 +103,7 @@ class Network:
     stop_arclengths: Floats
     face_offsets: Integers
     face_nodes: Integers
+    faces_left_out: Integers
 
     @property
     def lengths(self) -> Floats:

@@ -160,7 +160,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
     tails, heads = lattice.nodes[segments.first_stop], lattice.nodes[segments.first_stop + 1]
     normals, tangents = samples.normals, samples.tangents
     node_where = samples.where[node_sample]
-    face_offsets, face_nodes = trace_faces(
+    faces = trace_faces(
         normals[node_sample],
         np.r_[tails, heads],
         np.r_[heads, tails],
@@ -191,8 +191,9 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         stop_nodes=lattice.nodes,
         stop_samples=stop_sample - offsets[stop_owner],
         stop_arclengths=arclengths[stop_sample],
-        face_offsets=face_offsets,
-        face_nodes=face_nodes,
+        face_offsets=faces.offsets,
+        face_nodes=faces.nodes,
+        faces_left_out=faces.large,
     )
 
 

@@ -10,20 +10,20 @@ from numpy.typing import NDArray
 from lamella.errors import InputError
 from lamella.network.arcs import ArcLengths
 from lamella.network.cell_map import CellMap
+from lamella.network.element_segments import ElementSegments
 from lamella.network.faces import trace_faces
 from lamella.network.lattice import ragged_ranges
 from lamella.network.level_lines import (
     CLOSED,
     SEAM_END,
     SINGULAR_END,
-    Chains,
-    SmallTriangles,
     level_chains,
     small_triangles,
 )
 from lamella.network.net_mesh import COLUMNS, ROWS
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network, Period
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
+from lamella.network.tracks import A, B, Tracks, make_tracks, rim_tips, singular_ends
 from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import element_rims
@@ -31,136 +31,10 @@ from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
 
-A, B = 0, 1
-# of a ray's first cell: a place taken for the singular node's own direction
-BESIDE = 1e-3
-# of a ray's first cell: nearer to the node it is led out from it to points at these multiples
-OUT, LEADING = 0.2, np.array([1.0, 1.5, 2.0, 2.5])
 # samples to either side over which a lamella turns by its geodesic curvature: the kinks at elements average out
 WIDE = 3
 # the speed along a lamella has a kink at every element's edge: so many points of a segment's series do, and at most
 ROUGH, SETTLE = 1e-6, 48
-
-
-@dataclass(frozen=True)
-class _Tracks:
-    """Chains of both families with a running coordinate tau in cells, A before B."""
-
-    family: Integers  # of each chain
-    ends: Integers  # (c, 2)
-    owner: Integers  # chain of each link
-    triangle: Integers
-    level: Integers
-    start: Floats
-    way: Floats  # +-1: how the other coordinate runs along the chain
-    tau: Floats  # at the link's start, counted from the chain's
-    span: Floats
-    local_start: Floats
-    local_end: Floats
-    element: Integers
-
-    @property
-    def first(self) -> Integers:
-        """First link of each chain."""
-        return np.searchsorted(self.owner, np.arange(len(self.family)))
-
-    @property
-    def last(self) -> Integers:
-        """Last link of each chain."""
-        return np.searchsorted(self.owner, np.arange(len(self.family)), side="right") - 1
-
-
-def _tracks(small: SmallTriangles, chains: tuple[Chains, Chains]) -> _Tracks:
-    counts = [len(c.offsets) - 1 for c in chains]
-    owner = np.concatenate([chains[A].owner, chains[B].owner + counts[0]])
-
-    def both(name: str) -> NDArray[np.generic]:
-        return np.concatenate([getattr(c, name) for c in chains])
-
-    start, end = both("start").astype(float), both("end").astype(float)
-    span = np.abs(end - start)
-    running = np.cumsum(span) - span
-    first = np.searchsorted(owner, np.arange(sum(counts)))
-    triangle = both("triangle").astype(np.int64)
-    return _Tracks(
-        np.repeat([A, B], counts),
-        both("ends").astype(np.int64),
-        owner,
-        triangle,
-        both("level").astype(np.int64),
-        start,
-        np.where(end >= start, 1.0, -1.0),
-        running - running[first][owner],
-        span,
-        both("local_start").astype(float),
-        both("local_end").astype(float),
-        small.element[triangle],
-    )
-
-
-class _Segments:
-    """Pieces of lamella between neighbouring stops."""
-
-    def __init__(
-        self, cells: CellMap, tracks: _Tracks, chain: Integers, tau: Floats, reach: Floats, power: Floats
-    ) -> None:
-        self._cells, self._tracks = cells, tracks
-        self.owner, self._chain, self._tau, self._reach, self._power = chain, chain, tau, reach, power
-        self._stride = float(tracks.tau.max() + tracks.span.max() + 2)
-        self._keys = tracks.owner * self._stride + tracks.tau
-
-    @property
-    def singular(self) -> NDArray[np.bool_]:
-        """Which segments begin at a singular node."""
-        return np.asarray(self._power != 1)
-
-    def tau(self, segment: Integers, sigma: Floats) -> Floats:
-        """Running coordinate of the chain."""
-        return np.asarray(self._tau[segment] + sigma ** self._power[segment] * self._reach[segment])
-
-    def _find(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats]:
-        """Places of parameters (k,) of segments (k,), and which way the chain's coordinate runs on their sheets."""
-        t = self._tracks
-        tau, chain = self.tau(segment, sigma), self._chain[segment]
-        link = np.searchsorted(self._keys, chain * self._stride + np.clip(tau, 0, self._stride - 1), side="right") - 1
-        link = np.clip(link, t.first[chain], t.last[chain])
-        ahead = tau - t.tau[link]
-        share = np.clip(ahead / np.maximum(t.span[link], 1e-300), 0, 1)
-        local = t.local_start[link] + share[:, None] * (t.local_end[link] - t.local_start[link])
-        other = t.start[link] + ahead * t.way[link]
-        target = np.where(t.family[chain] == A, other + 1j * t.level[link], t.level[link] + 1j * other)
-        places, turn, _ = self._cells.invert(Places(t.element[link], local), target)
-        return places, turn * t.way[link]
-
-    def velocity(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats, Floats]:
-        """Places, positions (k, 3) and their derivatives by sigma (k, 3), m."""
-        # at a singular node chi has no slope: the way out is that of a place just beside it
-        beside = np.where((self._power[segment] != 1) & (sigma < BESIDE), BESIDE, sigma)
-        places, way = self._find(segment, beside)
-        position, first, second = self._cells.tangents(places)
-        chi_x, chi_y = self._cells.slopes(places)
-        determinant = chi_x.real * chi_y.imag - chi_x.imag * chi_y.real
-        is_a = self._tracks.family[self._chain[segment]] == A
-        step = np.where(
-            is_a[:, None],
-            np.stack([chi_y.imag, -chi_x.imag], 1),
-            np.stack([-chi_y.real, chi_x.real], 1),
-        )
-        power = self._power[segment]
-        rate = way * power * beside ** (power - 1) * self._reach[segment] / determinant
-        velocity = (step[:, :1] * first + step[:, 1:] * second) * rate[:, None]
-        moved = beside != sigma
-        if moved.any():
-            places = Places(places.element.copy(), places.local.copy())
-            exact, _ = self._find(segment[moved], sigma[moved])
-            places.element[moved], places.local[moved] = exact.element, exact.local
-            position[moved] = self._cells.tangents(exact)[0]
-        return places, position, velocity
-
-    def speed(self, segment: Integers, sigma: Floats) -> Floats:
-        """Arc length per sigma, m, at parameters (p,) of segments (s,), shape (s, p)."""
-        _, _, velocity = self.velocity(np.repeat(segment, len(sigma)), np.tile(sigma, len(segment)))
-        return np.asarray(np.linalg.norm(velocity, axis=1)).reshape(len(segment), len(sigma))
 
 
 @dataclass(frozen=True)
@@ -173,7 +47,7 @@ class _Stops:
     kinds: Integers  # of the nodes
 
 
-def _crossings(tracks: _Tracks, alive: NDArray[np.bool_]) -> tuple[Integers, Floats, Integers]:
+def _crossings(tracks: Tracks, alive: NDArray[np.bool_]) -> tuple[Integers, Floats, Integers]:
     """Chain, tau and name of every whole number passed by a living chain whose partner lives as well."""
     end = tracks.start + tracks.way * tracks.span
     low, high = np.minimum(tracks.start, end), np.maximum(tracks.start, end)
@@ -200,7 +74,7 @@ def _crossings(tracks: _Tracks, alive: NDArray[np.bool_]) -> tuple[Integers, Flo
     return tracks.owner[link][kept], tau[kept], number[kept]
 
 
-def _stops(tracks: _Tracks, alive: NDArray[np.bool_], singular: Integers, tips: Floats) -> _Stops:
+def _stops(tracks: Tracks, alive: NDArray[np.bool_], singular: Integers, tips: Floats) -> _Stops:
     """All stops of living chains; `singular` (c, 2) is the umbilic at each end, `tips` (c, 2) the exact tau there."""
     chain, tau, name = _crossings(tracks, alive)
     closed = tracks.ends[:, 0] == CLOSED
@@ -237,7 +111,6 @@ def _stops(tracks: _Tracks, alive: NDArray[np.bool_], singular: Integers, tips: 
 def trace_elements(
     cells: CellMap,
     cut: NDArray[np.bool_],
-    umbilics: Integers,
     orders: Integers,
     *,
     mean_curvature: float,
@@ -253,8 +126,8 @@ def trace_elements(
     cells : CellMap
     cut : (m, 3) bool
         Edges that are cut, see `Isothermic.cut`.
-    umbilics, orders : (z,) int
-        Vertices that are umbilics, and their orders.
+    orders : (z,) int
+        Of the umbilics.
     mean_curvature : float
         H, 1/m.
     rim_loop : (b,) int
@@ -270,11 +143,11 @@ def trace_elements(
     InputError
         No two lamellas cross, or the net is too coarse.
     """
-    small = small_triangles(cells, cut, umbilics)
-    tracks = _tracks(small, (level_chains(small, cells, A), level_chains(small, cells, B)))
+    small = small_triangles(cells, cut, cells.mesh.umbilics[cells.mesh.umbilics >= 0])
+    tracks = make_tracks(small, (level_chains(small, cells, A), level_chains(small, cells, B)))
     chains = len(tracks.family)
-    singular, power_of = _singular_ends(cells, small, tracks, umbilics, orders)
-    tips = _tips(cells, tracks)
+    singular = singular_ends(cells, tracks)
+    tips = rim_tips(cells, tracks)
     rough = np.linalg.norm(
         cells.tangents(Places(tracks.element, tracks.local_end))[0]
         - cells.tangents(Places(tracks.element, tracks.local_start))[0],
@@ -295,8 +168,9 @@ def trace_elements(
     pair = np.flatnonzero(stops.chain[1:] == stops.chain[:-1])
     chain, reach = stops.chain[pair], stops.tau[pair + 1] - stops.tau[pair]
     begins = np.r_[True, stops.chain[1:] != stops.chain[:-1]][pair]
-    power = np.where(begins, power_of[chain], 1.0)
-    segments = _Segments(cells, tracks, chain, stops.tau[pair], reach, power)
+    ends = np.r_[stops.chain[1:] != stops.chain[:-1], True][pair + 1]
+    zeros = np.where(np.stack([begins, ends], 1), singular[chain], -1)
+    segments = ElementSegments(cells, tracks, chain, stops.tau[pair], reach, zeros, orders)
     arcs = ArcLengths(segments, ROUGH, SETTLE)
 
     per_cell = FINE if len(stops.kinds) <= FINE_LIMIT else COARSE
@@ -309,7 +183,7 @@ def trace_elements(
     parameter = arcs.parameter(segment, fraction)
     places, points, velocity = segments.velocity(segment, parameter)
     tangents = velocity / np.linalg.norm(velocity, axis=1)[:, None]
-    _lead_out(segments, segment, parameter, points, tangents)
+    points, tangents = segments.lead_out(segment, parameter, points, tangents)
     normals = _normals(cells, places)
     tangents -= (tangents * normals).sum(1)[:, None] * normals
     tangents /= np.linalg.norm(tangents, axis=1)[:, None]
@@ -340,7 +214,7 @@ def trace_elements(
     loops, rim_directions = _rims(cells, rim_loop, places, node_sample, kinds)
     starts, ends = stop_sample[first_stop], stop_sample[first_stop + 1]
     tails, heads = at[first_stop], at[first_stop + 1]
-    face_offsets, face_nodes = trace_faces(
+    faces = trace_faces(
         normals[node_sample],
         np.r_[tails, heads],
         np.r_[heads, tails],
@@ -374,76 +248,10 @@ def trace_elements(
         stop_nodes=at,
         stop_samples=stop_sample - offsets[stop_chain],
         stop_arclengths=arclengths[stop_sample],
-        face_offsets=face_offsets,
-        face_nodes=face_nodes,
+        face_offsets=faces.offsets,
+        face_nodes=faces.nodes,
+        faces_left_out=faces.large,
     )
-
-
-def _lead_out(segments: _Segments, segment: Integers, sigma: Floats, points: Floats, tangents: Floats) -> None:
-    """Points and directions next to singular nodes, from the node and points a little further out.
-
-    chi has next to no slope there, and a zero of higher order is not quite one in numbers: a lamella would pass the
-    node by. As a function of sigma a ray is analytic.
-    """
-    near = np.flatnonzero(segments.singular[segment] & (sigma < OUT))
-    if not len(near):
-        return
-    own, row = np.unique(segment[near], return_inverse=True)
-    at = np.r_[0.0, OUT * LEADING]
-    where = segments.velocity(np.repeat(own, len(at)), np.tile(at, len(own)))[1].reshape(len(own), len(at), 3)
-    series = np.matmul(np.linalg.inv(np.vander(at, increasing=True)), where)[row.ravel()]
-    power = np.arange(len(at))
-    points[near] = np.einsum("np,npc->nc", sigma[near, None] ** power, series)
-    slope = power[1:] * sigma[near, None] ** power[:-1]
-    there = np.einsum("np,npc->nc", slope, series[:, 1:])
-    tangents[near] = there / np.linalg.norm(there, axis=1)[:, None]
-
-
-def _singular_ends(
-    cells: CellMap, small: SmallTriangles, tracks: _Tracks, umbilics: Integers, orders: Integers
-) -> tuple[Integers, Floats]:
-    """Umbilic at each end of the chains, (c, 2), -1 where there is none; and the power of sigma at the start."""
-    result = np.full(tracks.ends.shape, -1)
-    power = np.ones(len(result))
-    if not len(umbilics):
-        return result, power
-    zeros = cells.mesh.nodes[umbilics]
-    for side, (link, local) in enumerate(((tracks.first, tracks.local_start), (tracks.last, tracks.local_end))):
-        mine = np.flatnonzero(tracks.ends[:, side] == SINGULAR_END)
-        if not len(mine):
-            continue
-        at = cells.tangents(Places(tracks.element[link[mine]], local[link[mine]]))[0]
-        result[mine, side] = np.linalg.norm(at[:, None] - zeros, axis=2).argmin(1)
-        if side == 0:
-            power[mine] = 1 + orders[result[mine, 0]] / 2
-    return result, power
-
-
-def _tips(cells: CellMap, tracks: _Tracks) -> Floats:
-    """Exact tau of the chains' ends on the rim, (c, 2): where the boundary edge has the chain's level."""
-    last = tracks.last
-    tips = np.stack([np.zeros(len(last)), tracks.tau[last] + tracks.span[last]], 1)
-    basis = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-    for side, (link, local) in enumerate(((tracks.first, tracks.local_start), (last, tracks.local_end))):
-        mine = np.flatnonzero((tracks.ends[:, side] != SINGULAR_END) & (tracks.ends[:, side] != CLOSED))
-        index = link[mine]
-        at = local[index]
-        barycentric = np.column_stack([1 - at.sum(1), at])
-        edge = (barycentric.argmin(1) + 1) % 3
-        begin, along = basis[edge], basis[(edge + 1) % 3] - basis[edge]
-        share = ((at - begin) * along).sum(1) / (along**2).sum(1)
-        is_a = tracks.family[mine] == A
-        for _ in range(8):
-            place = Places(tracks.element[index], begin + share[:, None] * along)
-            chi = cells.at(place)
-            slopes = cells.slopes(place)
-            slope = slopes[0] * along[:, 0] + slopes[1] * along[:, 1]
-            miss = np.where(is_a, chi.imag, chi.real) - tracks.level[index]
-            share = np.clip(share - miss / np.where(is_a, slope.imag, slope.real), 0, 1)
-        chi = cells.at(Places(tracks.element[index], begin + share[:, None] * along))
-        other = np.where(is_a, chi.real, chi.imag)
-        tips[mine, side] = tracks.tau[index] + (other - tracks.start[index]) * tracks.way[index]
-    return tips
 
 
 def _normals(cells: CellMap, places: Places) -> Floats:

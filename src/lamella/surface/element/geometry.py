@@ -102,6 +102,14 @@ def dirichlet_blocks(
     """
     e, f, g = (np.einsum("eqc,eqc->eq", u, v) for u, v in ((first, first), (first, second), (second, second)))
     area = np.sqrt(np.maximum(e * g - f * f, 1e-12 * e * g)) / weights
+    return weighted_dirichlet_blocks(basis_x, basis_y, (e, f, g), area), (e, f, g), area
+
+
+def weighted_dirichlet_blocks(
+    basis_x: Floats, basis_y: Floats, metric: tuple[Floats, Floats, Floats], area: Floats
+) -> Floats:
+    """Integrals of a weight times grad phi_i . grad phi_j, (m, k, k); the weight divides the area element (m, q)."""
+    e, f, g = metric
     q, k = basis_x.shape
     tables = [
         (u[:, :, None] * v[:, None, :]).reshape(q, -1)
@@ -109,4 +117,4 @@ def dirichlet_blocks(
     ]
     blocks = ((g / area) @ tables[0] + (e / area) @ tables[2]).reshape(-1, k, k)
     mixed = ((f / area) @ tables[1]).reshape(-1, k, k)
-    return blocks - mixed - mixed.transpose(0, 2, 1), (e, f, g), area
+    return np.asarray(blocks - mixed - mixed.transpose(0, 2, 1))

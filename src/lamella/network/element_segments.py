@@ -1,0 +1,147 @@
+"""Pieces of lamella on a surface of elements, between neighbouring stops.
+
+Along a ray the coordinate in cells goes like the distance from the singular node to the power 1 + m/2, so that places
+are asked for by a parameter sigma in which they are analytic: the share of a cell is the incomplete beta function with
+that power at each singular end, sigma itself where there is none.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import beta, betainc
+
+from lamella.network.cell_map import CellMap
+from lamella.network.tracks import A, Tracks
+from lamella.surface.element.places import Places
+from lamella.surface.points import Floats
+
+Integers = NDArray[np.int64]
+
+# of a ray's first cell: a place taken for the singular node's own direction
+BESIDE = 1e-3
+# of a ray's first cell: nearer to the node it is led out from it to points at these multiples, inside the rosette
+OUT, LEADING = 0.2, np.array([1.0, 1.5, 2.0, 2.5])
+
+
+class ElementSegments:
+    """Pieces of lamella between neighbouring stops.
+
+    Parameters
+    ----------
+    cells : CellMap
+    tracks : Tracks
+    chain : (s,) int
+        Chain of each.
+    tau, reach : (s,)
+        Where it begins, and its length, cells.
+    zeros : (s, 2) int
+        Row of the umbilic in `cells.mesh.umbilics` where it begins and ends, -1: none.
+    orders : (z,) int
+        Of the umbilics.
+
+    Attributes
+    ----------
+    owner : (s,) int
+        Chain of each.
+    """
+
+    def __init__(
+        self,
+        cells: CellMap,
+        tracks: Tracks,
+        chain: Integers,
+        tau: Floats,
+        reach: Floats,
+        zeros: Integers,
+        orders: Integers,
+    ) -> None:
+        self._cells, self._tracks = cells, tracks
+        self.owner, self._tau, self._reach, self._zeros = chain, tau, reach, zeros
+        self._power = np.where(zeros >= 0, 1 + np.r_[orders, 0][zeros] / 2, 1.0)
+        self._stride = float(tracks.tau.max() + tracks.span.max() + 2)
+        self._keys = tracks.owner * self._stride + tracks.tau
+
+    def _find(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats]:
+        """Places of parameters (k,) of segments (k,), and which way the chain's coordinate runs on their sheets."""
+        t, chain = self._tracks, self.owner[segment]
+        share = np.clip(sigma, 0, 1)
+        bent = np.flatnonzero((self._power[segment] != 1).any(1))
+        share[bent] = betainc(*self._power[segment[bent]].T, share[bent])
+        tau = self._tau[segment] + share * self._reach[segment]
+        link = np.searchsorted(self._keys, chain * self._stride + np.clip(tau, 0, self._stride - 1), side="right") - 1
+        link = np.clip(link, t.first[chain], t.last[chain])
+        ahead = tau - t.tau[link]
+        along = np.clip(ahead / np.maximum(t.span[link], 1e-300), 0, 1)
+        local = t.local_start[link] + along[:, None] * (t.local_end[link] - t.local_start[link])
+        other = t.start[link] + ahead * t.way[link]
+        target = np.where(t.family[chain] == A, other + 1j * t.level[link], t.level[link] + 1j * other)
+        places, turn, _ = self._cells.invert(Places(t.element[link], local), target)
+        return places, turn * t.way[link]
+
+    def velocity(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats, Floats]:
+        """Places, positions (k, 3) and their derivatives by sigma (k, 3), m."""
+        # at a singular node chi has no slope: the way out is that of a place just beside it
+        zeros = self._zeros[segment]
+        beside = np.where((zeros[:, 0] >= 0) & (sigma < BESIDE), BESIDE, sigma)
+        beside = np.where((zeros[:, 1] >= 0) & (sigma > 1 - BESIDE), 1 - BESIDE, beside)
+        places, way = self._find(segment, beside)
+        position, first, second = self._cells.tangents(places)
+        chi_x, chi_y = self._cells.slopes(places)
+        determinant = chi_x.real * chi_y.imag - chi_x.imag * chi_y.real
+        is_a = self._tracks.family[self.owner[segment]] == A
+        step = np.where(
+            is_a[:, None],
+            np.stack([chi_y.imag, -chi_x.imag], 1),
+            np.stack([-chi_y.real, chi_x.real], 1),
+        )
+        rate = way * self._reach[segment] / determinant
+        p, q = self._power[segment].T
+        bent = np.flatnonzero((p != 1) | (q != 1))
+        rate[bent] *= beside[bent] ** (p[bent] - 1) * (1 - beside[bent]) ** (q[bent] - 1) / beta(p[bent], q[bent])
+        velocity = (step[:, :1] * first + step[:, 1:] * second) * rate[:, None]
+        moved = beside != sigma
+        if moved.any():
+            places = Places(places.element.copy(), places.local.copy())
+            exact, _ = self._find(segment[moved], sigma[moved])
+            places.element[moved], places.local[moved] = exact.element, exact.local
+            position[moved] = self._cells.tangents(exact)[0]
+        return places, position, velocity
+
+    def speed(self, segment: Integers, sigma: Floats) -> Floats:
+        """Arc length per sigma, m, at parameters (p,) of segments (s,), shape (s, p)."""
+        _, _, velocity = self.velocity(np.repeat(segment, len(sigma)), np.tile(sigma, len(segment)))
+        return np.asarray(np.linalg.norm(velocity, axis=1)).reshape(len(segment), len(sigma))
+
+    def lead_out(self, segment: Integers, sigma: Floats, points: Floats, tangents: Floats) -> tuple[Floats, Floats]:
+        """Points and directions (k, 3), those next to singular nodes from the node and points a little further out.
+
+        chi has next to no slope there, and a zero of higher order is not quite one in numbers: a lamella would pass
+        the node by. As a function of sigma a ray is analytic.
+        """
+        points, tangents = points.copy(), tangents.copy()
+        for side in range(2):
+            mine = np.flatnonzero(self._zeros[segment, side] >= 0)
+            own, row = np.unique(segment[mine], return_inverse=True)
+            if not len(own):
+                continue
+            row = row.ravel()
+            out = self._out(own, side)
+            at = np.r_[0.0, LEADING]
+            apart = (out[:, None] * at).ravel()
+            ahead = self.velocity(np.repeat(own, len(at)), np.abs(side - apart))[1].reshape(len(own), len(at), 3)
+            series = np.matmul(np.linalg.inv(np.vander(at, increasing=True)), ahead)
+            share = np.abs(side - sigma[mine]) / out[row]
+            near = share < 1
+            mine, share, series = mine[near], share[near, None], series[row[near]]
+            power = np.arange(len(at))
+            points[mine] = np.einsum("np,npc->nc", share**power, series)
+            away = np.einsum("np,npc->nc", power[1:] * share ** power[:-1], series[:, 1:])
+            tangents[mine] = (1 - 2 * side) * away / np.linalg.norm(away, axis=1)[:, None]
+        return points, tangents
+
+    def _out(self, segment: Integers, side: int) -> Floats:
+        """How far segments (k,) are led out from the node at one end, as sigma: inside the node's rosette."""
+        node, beside = (self.velocity(segment, np.full(len(segment), abs(side - away)))[1] for away in (0.0, BESIDE))
+        speed = np.linalg.norm(beside - node, axis=1) / BESIDE
+        return np.asarray(np.minimum(OUT, self._cells.mesh.radii[self._zeros[segment, side]] / (LEADING[-1] * speed)))

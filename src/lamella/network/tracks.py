@@ -1,0 +1,115 @@
+"""Lamellas as chains of pieces with a running coordinate, from the level lines of both families."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.network.cell_map import CellMap
+from lamella.network.level_lines import CLOSED, SINGULAR_END, Chains, SmallTriangles
+from lamella.surface.element.places import Places
+from lamella.surface.points import Floats
+
+Integers = NDArray[np.int64]
+
+A, B = 0, 1
+
+
+@dataclass(frozen=True)
+class Tracks:
+    """Chains of both families with a running coordinate tau in cells, A before B."""
+
+    family: Integers  # of each chain
+    ends: Integers  # (c, 2)
+    owner: Integers  # chain of each link
+    triangle: Integers
+    level: Integers
+    start: Floats
+    way: Floats  # +-1: how the other coordinate runs along the chain
+    tau: Floats  # at the link's start, counted from the chain's
+    span: Floats
+    local_start: Floats
+    local_end: Floats
+    element: Integers
+
+    @property
+    def first(self) -> Integers:
+        """First link of each chain."""
+        return np.searchsorted(self.owner, np.arange(len(self.family)))
+
+    @property
+    def last(self) -> Integers:
+        """Last link of each chain."""
+        return np.searchsorted(self.owner, np.arange(len(self.family)), side="right") - 1
+
+
+def make_tracks(small: SmallTriangles, chains: tuple[Chains, Chains]) -> Tracks:
+    """Chains of the families A and B with their running coordinate."""
+    counts = [len(c.offsets) - 1 for c in chains]
+    owner = np.concatenate([chains[A].owner, chains[B].owner + counts[0]])
+
+    def both(name: str) -> NDArray[np.generic]:
+        return np.concatenate([getattr(c, name) for c in chains])
+
+    start, end = both("start").astype(float), both("end").astype(float)
+    span = np.abs(end - start)
+    running = np.cumsum(span) - span
+    first = np.searchsorted(owner, np.arange(sum(counts)))
+    triangle = both("triangle").astype(np.int64)
+    return Tracks(
+        np.repeat([A, B], counts),
+        both("ends").astype(np.int64),
+        owner,
+        triangle,
+        both("level").astype(np.int64),
+        start,
+        np.where(end >= start, 1.0, -1.0),
+        running - running[first][owner],
+        span,
+        both("local_start").astype(float),
+        both("local_end").astype(float),
+        small.element[triangle],
+    )
+
+
+def singular_ends(cells: CellMap, tracks: Tracks) -> Integers:
+    """Row of the umbilic in `cells.mesh.umbilics` at each end of the chains, (c, 2), -1 where there is none."""
+    result = np.full(tracks.ends.shape, -1)
+    mesh = cells.mesh
+    inside = np.flatnonzero(mesh.umbilics >= 0)
+    for side, (link, local) in enumerate(((tracks.first, tracks.local_start), (tracks.last, tracks.local_end))):
+        mine = np.flatnonzero(tracks.ends[:, side] == SINGULAR_END)
+        if len(mine):
+            at = cells.tangents(Places(tracks.element[link[mine]], local[link[mine]]))[0]
+            apart = np.linalg.norm(at[:, None] - mesh.nodes[mesh.umbilics[inside]], axis=2)
+            result[mine, side] = inside[apart.argmin(1)]
+    return result
+
+
+def rim_tips(cells: CellMap, tracks: Tracks) -> Floats:
+    """Exact tau of the chains' ends on the rim, (c, 2): where the boundary edge has the chain's level."""
+    last = tracks.last
+    tips = np.stack([np.zeros(len(last)), tracks.tau[last] + tracks.span[last]], 1)
+    basis = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    for side, (link, local) in enumerate(((tracks.first, tracks.local_start), (last, tracks.local_end))):
+        mine = np.flatnonzero((tracks.ends[:, side] != SINGULAR_END) & (tracks.ends[:, side] != CLOSED))
+        index = link[mine]
+        at = local[index]
+        barycentric = np.column_stack([1 - at.sum(1), at])
+        edge = (barycentric.argmin(1) + 1) % 3
+        begin, along = basis[edge], basis[(edge + 1) % 3] - basis[edge]
+        share = ((at - begin) * along).sum(1) / (along**2).sum(1)
+        is_a = tracks.family[mine] == A
+        for _ in range(8):
+            place = Places(tracks.element[index], begin + share[:, None] * along)
+            chi = cells.at(place)
+            slopes = cells.slopes(place)
+            slope = slopes[0] * along[:, 0] + slopes[1] * along[:, 1]
+            miss = np.where(is_a, chi.imag, chi.real) - tracks.level[index]
+            share = np.clip(share - miss / np.where(is_a, slope.imag, slope.real), 0, 1)
+        chi = cells.at(Places(tracks.element[index], begin + share[:, None] * along))
+        other = np.where(is_a, chi.real, chi.imag)
+        tips[mine, side] = tracks.tau[index] + (other - tracks.start[index]) * tracks.way[index]
+    return tips
