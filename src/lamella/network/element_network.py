@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from lamella.errors import InputError
 from lamella.network.cell_map import CellMap
 from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
+from lamella.network.gluing import FoldedError, integrate, with_shifts
 from lamella.network.holonomy import Holonomy, crossed, holonomies
-from lamella.network.isothermic import FoldedError, Isothermic, Transition, integrate, with_shifts
+from lamella.network.isothermic import Isothermic, Transition
 from lamella.network.net_mesh import NetMesh, make_net_mesh
 from lamella.network.network import SINGULAR, Network, Period
 from lamella.network.trace_elements import trace_elements
@@ -181,7 +182,7 @@ def element_network(
     around = holonomies(iso)
     lattice = choose_lattice(iso, around, umbilics, cells, spacing)
     raw = CellMap.of(iso, lattice.origin, lattice.step)
-    near = nearest_whole(iso, raw.signs, raw.shifts, singular_nodes=closing == "round")
+    near = nearest_whole(iso, raw.shifts, singular_nodes=closing == "round")
     off = np.maximum(np.abs((raw.shifts - near).real), np.abs((raw.shifts - near).imag))
     wanted = np.where((off <= CLOSES) | (closing == "round"), near, np.nan)
     iso = _closed(iso, raw, wanted, lattice)

@@ -1,12 +1,18 @@
-"""What isothermic coordinates do once around a hole."""
+"""What isothermic coordinates do once around a hole, and around a vertex of the cut."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from lamella.network.isothermic import Isothermic, Transition
 from lamella.network.net_mesh import NetMesh
+from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.rim import element_rims
+
+Integers = NDArray[np.int64]
 
 
 class Holonomy(NamedTuple):
@@ -50,3 +56,55 @@ def tip_vertices(mesh: NetMesh, piece: Transition) -> tuple[int, int]:
 def crossed(shift: complex) -> tuple[float, float]:
     """|u + v| and |u - v| of a period: over l0 the A and the B lamellas that are crossed."""
     return abs(shift.real + shift.imag), abs(shift.real - shift.imag)
+
+
+def vertex_relations(
+    mesh: NetMesh, pieces: tuple[Transition, ...], across: Integers, odd: Integers
+) -> dict[int, Integers]:
+    """For each ordinary vertex where pieces meet: whole factors (t,) whose sum with the shifts is 0."""
+    tips = [tip_vertices(mesh, piece) for piece in pieces]
+    ends: dict[int, list[tuple[int, bool]]] = {}
+    for number, (first, last) in enumerate(tips):
+        ends.setdefault(first, []).append((number, True))
+        ends.setdefault(last, []).append((number, False))
+    umbilics = set(odd.tolist())
+    result = {}
+    for vertex, meeting in ends.items():
+        if vertex in umbilics or mesh.loop[vertex] >= 0 or len(meeting) < 2:
+            continue
+        sign, factors = 1, np.zeros(len(tips), np.int64)
+        for number, leaves in _around(mesh.connectivity, across, vertex):
+            s = pieces[number].sign
+            # a piece that leaves the vertex is crossed from its right side to its left
+            if leaves:
+                factors = s * factors
+                factors[number] -= s
+            else:
+                factors = s * factors
+                factors[number] += 1
+            sign *= s
+        if sign != 1:
+            raise ValueError("the signs around an ordinary vertex of the cut do not agree")
+        result[vertex] = factors
+    return result
+
+
+def _around(connectivity: Connectivity, across: Integers, vertex: int) -> list[tuple[int, bool]]:
+    """Pieces crossed once around a vertex counter-clockwise, each with whether it leaves the vertex."""
+    element, corner = (int(part[0]) for part in np.nonzero(connectivity.faces == vertex))
+    first = element
+    passed = []
+    while True:
+        # out of the triangle over the edge that ends in the vertex: counter-clockwise around it
+        edge = (corner + 2) % 3
+        through = int(across[element, edge])
+        if through:
+            # over a transition from its left to its right: the piece leads to the vertex
+            passed.append((abs(through) - 1, through < 0))
+        element, other = (
+            int(connectivity.neighbours[element, edge]),
+            int(connectivity.neighbour_edges[element, edge]),
+        )
+        corner = other
+        if element == first:
+            return passed

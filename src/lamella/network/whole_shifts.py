@@ -9,22 +9,21 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.network.holonomy import tip_vertices
+from lamella.network.holonomy import tip_vertices, vertex_relations
 from lamella.network.isothermic import Isothermic
-from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.points import Complexes
 
 Integers = NDArray[np.int64]
 
 
-def nearest_whole(iso: Isothermic, signs: Integers, shifts: Complexes, *, singular_nodes: bool) -> Complexes:
+def nearest_whole(iso: Isothermic, shifts: Complexes, *, singular_nodes: bool) -> Complexes:
     """Whole shifts near to the given ones that do not contradict each other.
 
     Parameters
     ----------
     iso : Isothermic
         Its transitions say how the pieces hang together.
-    signs, shifts : (t,)
+    shifts : (t,) complex
         Of the pieces, in cells; a lattice point is at 0.
     singular_nodes : bool
         Put umbilics where the cut ends on nodes of the lattice: their shifts, twice their places, are even then.
@@ -34,7 +33,7 @@ def nearest_whole(iso: Isothermic, signs: Integers, shifts: Complexes, *, singul
     (t,) complex
     """
     tips = [tip_vertices(iso.mesh, piece) for piece in iso.transitions]
-    relations = _relations(iso, signs, tips)
+    relations = vertex_relations(iso.mesh, iso.transitions, iso.across, iso.odd)
     count = np.bincount(np.array(tips, np.int64).ravel(), minlength=1) if tips else np.zeros(1, np.int64)
     step = np.ones(len(tips))
     if singular_nodes:
@@ -72,56 +71,6 @@ def _groups(tips: list[tuple[int, int]], relations: dict[int, Integers]) -> list
         if len(group) > 1:
             result.append(sorted(group))
     return result
-
-
-def _relations(iso: Isothermic, signs: Integers, tips: list[tuple[int, int]]) -> dict[int, Integers]:
-    """For each ordinary vertex where pieces meet: whole factors (t,) whose sum with the shifts is 0."""
-    mesh = iso.mesh
-    ends: dict[int, list[tuple[int, bool]]] = {}
-    for number, (first, last) in enumerate(tips):
-        ends.setdefault(first, []).append((number, True))
-        ends.setdefault(last, []).append((number, False))
-    odd = set(iso.odd.tolist())
-    result = {}
-    for vertex, meeting in ends.items():
-        if vertex in odd or mesh.loop[vertex] >= 0 or len(meeting) < 2:
-            continue
-        sign, factors = 1, np.zeros(len(tips), np.int64)
-        for number, leaves in _around(mesh.connectivity, iso.across, vertex):
-            s = int(signs[number])
-            # a piece that leaves the vertex is crossed from its right side to its left
-            if leaves:
-                factors = s * factors
-                factors[number] -= s
-            else:
-                factors = s * factors
-                factors[number] += 1
-            sign *= s
-        if sign != 1:
-            raise ValueError("the signs around an ordinary vertex of the cut do not agree")
-        result[vertex] = factors
-    return result
-
-
-def _around(connectivity: Connectivity, across: Integers, vertex: int) -> list[tuple[int, bool]]:
-    """Pieces crossed once around a vertex counter-clockwise, each with whether it leaves the vertex."""
-    element, corner = (int(part[0]) for part in np.nonzero(connectivity.faces == vertex))
-    first = element
-    passed = []
-    while True:
-        # out of the triangle over the edge that ends in the vertex: counter-clockwise around it
-        edge = (corner + 2) % 3
-        through = int(across[element, edge])
-        if through:
-            # over a transition from its left to its right: the piece leads to the vertex
-            passed.append((abs(through) - 1, through < 0))
-        element, other = (
-            int(connectivity.neighbours[element, edge]),
-            int(connectivity.neighbour_edges[element, edge]),
-        )
-        corner = other
-        if element == first:
-            return passed
 
 
 def _settled(

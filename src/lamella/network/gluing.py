@@ -1,0 +1,148 @@
+"""Isothermic coordinates that go over into +-w + c across each piece of the cut, c alike along the whole piece.
+
+One factorisation serves all: the coordinates are affine in the shifts c, and which shifts are best is a small problem
+of its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.network.cut import cut_edges
+from lamella.network.holonomy import vertex_relations
+from lamella.network.isothermic import Isothermic, Transition, cut_pieces, root_signs, sectors
+from lamella.network.net_mesh import NetMesh
+from lamella.network.poisson import Poisson
+from lamella.surface.points import Complexes, Floats
+
+Integers = NDArray[np.int64]
+
+
+class FoldedError(ValueError):
+    """Shifts that fold the net; `place` (3,), m, says where."""
+
+    def __init__(self, place: Floats) -> None:
+        super().__init__("the coordinates turn over")
+        self.place = place
+
+
+def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
+    """Isothermic coordinates of a surface.
+
+    Parameters
+    ----------
+    mesh : NetMesh
+    odd : (z,) int
+        Vertices that are umbilics of odd order.
+    """
+    sign, cut, turns = root_signs(mesh, cut_edges(mesh, odd))
+    pieces, across = cut_pieces(mesh, cut, turns, odd)
+    system = Poisson.of(mesh, sign)
+    value, shifts = _glued(mesh, cut, pieces, across, odd, system, np.full(len(pieces), np.nan, complex))
+    return Isothermic(mesh, odd, sign, cut, value, _shifted(pieces, shifts), across, system.residual(value))
+
+
+def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
+    """The coordinates nearest to the given ones whose transitions have exactly these shifts.
+
+    What is least is the integral of |change of dw|^2 / |D|^2. After a plain harmonic change, r^(1/2) next to a zero of
+    order 1, half of the rays would miss it; with the weight the change dies out faster than w itself at all zeros.
+
+    Parameters
+    ----------
+    iso : Isothermic
+    shifts : (t,) complex
+        sqrt(m); nan: any. They must not contradict each other where pieces of the cut meet.
+
+    Raises
+    ------
+    FoldedError
+        The coordinates would turn over somewhere.
+    """
+    mesh = iso.mesh
+    system = Poisson.of(mesh, iso.sign)
+    near = system.near(iso.value)
+    value, found = _glued(mesh, iso.cut, iso.transitions, iso.across, iso.odd, near, shifts)
+    folds = system.folds(value) & ~system.folds(iso.value)
+    if folds.any():
+        raise FoldedError(mesh.nodes[mesh.connectivity.elements[np.flatnonzero(folds)[0], 0]])
+    return replace(iso, value=value, transitions=_shifted(iso.transitions, found), residual=system.residual(value))
+
+
+def _shifted(pieces: tuple[Transition, ...], shifts: Complexes) -> tuple[Transition, ...]:
+    return tuple(replace(piece, shift=shift) for piece, shift in zip(pieces, shifts.tolist(), strict=True))
+
+
+def _glued(
+    mesh: NetMesh,
+    cut: NDArray[np.bool_],
+    pieces: tuple[Transition, ...],
+    across: Integers,
+    odd: Integers,
+    system: Poisson,
+    shifts: Complexes,
+) -> tuple[Complexes, Complexes]:
+    """Values (m, k) and shifts (t,), some of them given (else nan), that are the best of a least squares problem."""
+    sector = sectors(mesh.connectivity, cut)
+    home, sign, offset, held = _links(mesh, pieces, sector)
+    base, moves = system.solve(sector, home, sign, offset, held)
+    gram, right = system.quadratic(base, moves)
+    relations = vertex_relations(mesh, pieces, across, odd)
+    rows = [*relations.values(), *np.eye(len(pieces), dtype=np.int64)[~np.isnan(shifts)]]
+    goal = np.concatenate([np.zeros(len(relations), complex), shifts[~np.isnan(shifts)]])
+    if len(pieces):
+        # least squares with conditions that may repeat each other: the part they fix, and the rest
+        conditions = np.array(rows, float).reshape(-1, len(pieces))
+        _, singular, across_free = np.linalg.svd(conditions, full_matrices=True)
+        rank = int((singular > 1e-9).sum())
+        given = np.linalg.lstsq(conditions, goal, rcond=None)[0] if rank else np.zeros(len(pieces), complex)
+        loose = across_free[rank:]
+        rest = np.linalg.solve(loose @ gram @ loose.T, loose @ (right - gram @ given))
+        found: Complexes = np.asarray(given + loose.T @ rest, np.complex128)
+        found = np.where(np.isnan(shifts), found, shifts)
+    else:
+        found = shifts
+    return np.asarray(base + np.einsum("t,tek->ek", found, moves)), found
+
+
+def _links(
+    mesh: NetMesh, pieces: tuple[Transition, ...], sector: Integers
+) -> tuple[Integers, Floats, Floats, dict[int, Floats]]:
+    """Sectors joined across the cut: unknown of each, sign, offset per shift (s, t), and unknowns held by shifts."""
+    nodes = mesh.connectivity.basis.edge_nodes
+    links: dict[int, list[tuple[int, int, int, int]]] = {}
+    for number, piece in enumerate(pieces):
+        left = sector[piece.left[:, None], nodes[piece.left_edge]].ravel()
+        right = sector[piece.right[:, None], nodes[piece.right_edge][:, ::-1]].ravel()
+        for one, other in zip(left.tolist(), right.tolist(), strict=True):
+            links.setdefault(one, []).append((other, piece.sign, number, 1))
+            links.setdefault(other, []).append((one, piece.sign, number, -piece.sign))
+    count = int(sector.max()) + 1
+    sign, offset = np.ones(count), np.zeros((count, len(pieces)))
+    home = np.arange(count)
+    held: dict[int, Floats] = {}
+    done: set[int] = set()
+    for first in links:
+        if first in done:
+            continue
+        stack = [first]
+        done.add(first)
+        while stack:
+            one = stack.pop()
+            for other, turn, number, way in links[one]:
+                there = turn * offset[one]
+                there[number] += way
+                if other not in done:
+                    done.add(other)
+                    home[other], sign[other], offset[other] = first, turn * sign[one], there
+                    stack.append(other)
+                elif turn * sign[one] != sign[other]:
+                    # only a fixed point of w -> -w + c comes back to itself: an umbilic
+                    held[first] = (offset[other] - there) / (turn * sign[one] - sign[other])
+    used, number_of = np.unique(home, return_inverse=True)
+    place = {int(v): k for k, v in enumerate(used)}
+    fixed = {place[first]: row for first, row in held.items()}
+    return number_of.ravel(), sign, offset, fixed or {0: np.zeros(len(pieces))}

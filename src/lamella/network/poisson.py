@@ -1,0 +1,180 @@
+"""The least squares problem of isothermic coordinates: dw as near as can be to sqrt(D) dz."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.network.net_mesh import COLUMNS, ROWS, NetMesh
+from lamella.sparse import SymmetricPattern, packed
+from lamella.surface.element.geometry import dirichlet_blocks, tangents, weighted_dirichlet_blocks
+from lamella.surface.element.quadrature import triangle_rule
+from lamella.surface.points import Complexes, Floats
+
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Poisson:
+    """The least squares problem of fitting dw to the forms, element by element."""
+
+    blocks: Floats
+    pull: Complexes
+    form_a: Complexes
+    form_b: Complexes
+    metric: tuple[Floats, Floats, Floats]
+    area: Floats
+    x: Floats
+    y: Floats
+
+    @classmethod
+    def of(cls, mesh: NetMesh, sign: Integers) -> Poisson:
+        """The problem on a mesh with signs (m,) of the roots."""
+        basis = mesh.connectivity.basis
+        points, weights = triangle_rule(2 * basis.order)
+        form_a, form_b, (e, f, g) = _forms(mesh, points)
+        form_a, form_b = form_a * sign[:, None], form_b * sign[:, None]
+        x, y = basis.basis(points, 1, 0), basis.basis(points, 0, 1)
+        corners = mesh.nodes[mesh.connectivity.elements]
+        blocks, _, area = dirichlet_blocks(x, y, *tangents(x, y, corners), weights)
+        pull = ((g * form_a - f * form_b) / area) @ x + ((e * form_b - f * form_a) / area) @ y
+        return cls(blocks, pull, form_a, form_b, (e, f, g), area, x, y).weighted()
+
+    def weighted(self) -> Poisson:
+        """The same fit with the weight 1 / |D|^2: what the forms are not closed by stays away from umbilics.
+
+        A plain least squares fit leaves a harmonic error, like r^(1/2) next to a zero of order 1, where w itself goes
+        like r^(3/2): however small, it would take half of its rays from a singular node. With the weight the error dies
+        out faster than w at zeros of any order.
+        """
+        e, f, g = self.metric
+        square = g * np.abs(self.form_a) ** 2 - 2 * f * (self.form_a * self.form_b.conj()).real
+        square = (square + e * np.abs(self.form_b) ** 2) / (e * g - f * f)
+        # |sqrt(D) dz|^2 is 2 |D|
+        area = self.area * (square / square.mean()) ** 2
+        blocks = weighted_dirichlet_blocks(self.x, self.y, self.metric, area)
+        pull = ((g * self.form_a - f * self.form_b) / area) @ self.x
+        pull = pull + ((e * self.form_b - f * self.form_a) / area) @ self.y
+        return replace(self, blocks=blocks, pull=pull)
+
+    def near(self, value: Complexes) -> Poisson:
+        """The problem of staying near to coordinates (m, k) instead."""
+        return replace(self, pull=np.einsum("eij,ej->ei", self.blocks, value))
+
+    def solve(
+        self, sector: Integers, home: Integers, sign: Floats, offset: Floats, held: dict[int, Floats]
+    ) -> tuple[Complexes, Floats]:
+        """Least values, and how they change with t parameters c.
+
+        Parameters
+        ----------
+        sector : (m, k) int
+        home : (s,) int
+            Unknown of each sector.
+        sign : (s,)
+        offset : (s, t)
+            The value of a sector is sign U + offset c.
+        held : dict
+            Unknowns that are a row (t,) times c.
+
+        Returns
+        -------
+        base : (m, k) complex
+            For c = 0.
+        moves : (t, m, k)
+            Per c.
+        """
+        count = int(home.max()) + 1
+        free = np.ones(count, bool)
+        free[list(held)] = False
+        number = np.where(free, np.cumsum(free) - 1, -1)
+        at = np.zeros((count, offset.shape[1]))
+        for index, row in held.items():
+            at[index] = row
+        unknown, s = home[sector], sign[sector]
+        blocks = self.blocks * s[:, :, None] * s[:, None, :]
+        flat = number[unknown].ravel()
+        inside = flat >= 0
+        size = int(free.sum())
+
+        def gathered(part: Floats) -> Floats:
+            return np.bincount(flat[inside], (s * part).ravel()[inside], size).astype(np.float64)
+
+        # what the held unknowns and the offsets make of c = 1 without the free unknowns
+        fixed = [s * at[unknown, t] + offset[sector, t] for t in range(offset.shape[1])]
+        right = [gathered(self.pull.real), gathered(self.pull.imag)]
+        right += [-gathered(np.matmul(self.blocks, part[..., None])[..., 0]) for part in fixed]
+        pattern = SymmetricPattern.from_elements(number[unknown], size)
+        solved = pattern.factor(pattern.assemble(packed(blocks))).solve(np.stack(right, 1))
+        padded = np.vstack([solved, np.zeros((1, solved.shape[1]))])[number]
+        base = s * (padded[unknown, 0] + 1j * padded[unknown, 1])
+        moves = np.array([s * padded[unknown, 2 + t] + part for t, part in enumerate(fixed)])
+        return np.asarray(base), moves.reshape(-1, *sector.shape)
+
+    def quadratic(self, base: Complexes, moves: Floats) -> tuple[Floats, Complexes]:
+        """Matrix (t, t) and right side (t,) of the parameters' least squares."""
+        stiff = np.matmul(self.blocks, moves[..., None])[..., 0]
+        gram = np.einsum("tek,sek->ts", moves, stiff)
+        return np.asarray(gram), np.asarray(
+            np.einsum("tek,ek->t", moves, self.pull) - np.einsum("tek,ek->t", stiff, base)
+        )
+
+    def folds(self, value: Complexes) -> NDArray[np.bool_]:
+        """Elements (m,) on which coordinates turn over anywhere."""
+        w_x, w_y = value @ self.x.T, value @ self.y.T
+        return np.asarray((w_x.real * w_y.imag <= w_x.imag * w_y.real).any(1))
+
+    def residual(self, value: Complexes) -> float:
+        """Root mean square of dw - sqrt(D) dz over that of sqrt(D) dz."""
+        e, f, g = self.metric
+
+        def energy(one: Complexes, other: Complexes) -> float:
+            density = g * np.abs(one) ** 2 - 2 * f * (one * other.conj()).real + e * np.abs(other) ** 2
+            return float((density / self.area).sum())
+
+        miss = energy(value @ self.x.T - self.form_a, value @ self.y.T - self.form_b)
+        return float(np.sqrt(miss / energy(self.form_a, self.form_b)))
+
+
+def _frames(mesh: NetMesh, local: Floats) -> tuple[Complexes, Complexes, tuple[Floats, Floats, Floats], Complexes]:
+    """Tangents as complex numbers in the frame along the first one, metric, and D, at local points (m, q)."""
+    connectivity = mesh.connectivity
+    basis = connectivity.basis
+    value, x, y = (basis.basis(local, *d) for d in ((0, 0), (1, 0), (0, 1)))
+    corners = mesh.nodes[connectivity.elements]
+    a, b = np.matmul(x, corners), np.matmul(y, corners)
+    e, f, g = (np.einsum("eqc,eqc->eq", s, t) for s, t in ((a, a), (a, b), (b, b)))
+    normal = np.cross(a, b)
+    normal /= np.linalg.norm(normal, axis=2)[..., None]
+    e_u = a / np.sqrt(e)[..., None]
+    e_v = np.cross(normal, e_u)
+    shape = np.matmul(value, mesh.shape[connectivity.elements])
+
+    def form(s: Floats, t: Floats) -> Floats:
+        both = s[..., ROWS] * t[..., COLUMNS] + s[..., COLUMNS] * t[..., ROWS]
+        return np.asarray((shape * both * np.where(ROWS == COLUMNS, 0.5, 1.0)).sum(-1))
+
+    deviator = (form(e_u, e_u) - form(e_v, e_v)) / 2 - 1j * form(e_u, e_v)
+    along = np.sqrt(e) + 0j
+    other = (f + 1j * np.sqrt(e * g - f * f)) / np.sqrt(e)
+    return along, other, (e, f, g), deviator
+
+
+def deviator_root(
+    mesh: NetMesh, local: Floats
+) -> tuple[Complexes, Complexes, Complexes, tuple[Floats, Floats, Floats]]:
+    """sqrt(D), one branch an element, with the tangents and the metric, at local points (m, q)."""
+    along, other, metric, deviator = _frames(mesh, np.vstack([local, [[1 / 3, 1 / 3]]]))
+    root = np.sqrt(deviator)
+    middle = root[:, -1:]
+    root = np.where((root * middle.conj()).real < 0, -root, root)
+    e, f, g = (part[:, :-1] for part in metric)
+    return root[:, :-1], along[:, :-1], other[:, :-1], (e, f, g)
+
+
+def _forms(mesh: NetMesh, local: Floats) -> tuple[Complexes, Complexes, tuple[Floats, Floats, Floats]]:
+    """dw along both local coordinates at local points (m, q), and the metric."""
+    root, along, other, metric = deviator_root(mesh, local)
+    return root * along, root * other, metric
