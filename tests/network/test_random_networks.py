@@ -1,0 +1,86 @@
+"""Networks on films of random boundaries: what holds of every net, whatever the surface.
+
+Issue: every regular node is one A and one B lamella, faces form a disc with holes of the right Euler number, every
+singular node has its rays, and lamellas do not cross themselves within a node spacing.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from lamella.errors import InputError
+from lamella.network.element_network import ElementNetwork, element_network
+from lamella.network.network import REGULAR, SEAM, SINGULAR
+from lamella.surface.found.find import find_film
+from network.random_boundaries import sketch
+from network.test_found_network import euler, ruler
+
+
+def woven(seed: int) -> tuple[str, ElementNetwork | None, int]:
+    """What became of a sketch, its net if there is one, and its number of loops."""
+    case = sketch(seed)
+    try:
+        found = find_film(case.loops, case.mean_curvature, tolerance=2e-2, most_nodes=12_000)
+    except InputError as error:
+        assert error.remedy, seed
+        return "no surface", None, len(case.loops)
+    closing = ("open", "round")[seed % 2]
+    try:
+        net = element_network(found.surface("form-found"), cells=case.cells, closing=closing, minimum_length=0.0)
+    except InputError as error:
+        # rounding may take more cells than there are between two umbilics
+        assert closing == "round", (seed, error.message)
+        assert "folds it near" in error.message, (seed, error.message)
+        return "folded", None, len(case.loops)
+    return closing, net, len(case.loops)
+
+
+def check(seed: int) -> str:
+    told, net, loops = woven(seed)
+    if net is None:
+        return told
+    network = net.network
+    a, b = network.node_degrees()
+    regular = network.node_kinds == REGULAR
+    assert (a[regular] == 1).all(), seed
+    assert (b[regular] == 1).all(), seed
+    for node in np.flatnonzero(network.node_kinds == SINGULAR):
+        zero = int(np.linalg.norm(net.umbilics.position - network.node_points[node], axis=1).argmin())
+        rays = int(net.umbilics.orders[zero]) + 2
+        # with one of its coordinates half a cell off the lattice it is a node of one family alone
+        assert {int(a[node]), int(b[node])} in ({rays}, {0, rays}), (seed, a[node], b[node])
+    sides = np.diff(network.face_offsets)
+    assert sides.min() >= 3, seed
+    assert sides.max() <= 6, seed
+    number = euler(network)
+    if not (network.node_kinds == SEAM).any():
+        assert number == 2 - loops - len(network.faces_left_out), seed
+        assert len(np.unique(network.face_nodes)) == len(network.node_points), seed
+    if told == "round":
+        assert not (network.node_kinds == SEAM).any(), seed
+        assert all(joint.closed for joint in net.joints), seed
+    assert ruler(network)["family_sign_errors"] == 0, seed
+    # no lamella passes one node twice, but where a closed one comes back to its first
+    for k in range(len(network.ids)):
+        stops = network.stop_nodes[network.stop_offsets[k] : network.stop_offsets[k + 1]]
+        inside = stops[:-1] if network.closed[k] else stops
+        twice = [node for node, times in Counter(inside.tolist()).items() if times > 1]
+        assert all(network.node_kinds[node] == SINGULAR for node in twice), (seed, network.ids[k])
+    return told
+
+
+@pytest.mark.parametrize("seed", [1, 9, 24])
+def test_random_networks(seed: int) -> None:
+    check(seed)
+
+
+@pytest.mark.slow
+def test_many_random_networks() -> None:
+    """What is refused is refused for its reason, and most are not."""
+    told = Counter(check(seed) for seed in range(100, 140))
+    print(dict(told))
+    assert told["open"] + told["round"] >= 20
+    assert told["folded"] <= 6
