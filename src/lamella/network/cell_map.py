@@ -7,6 +7,7 @@ element has its own sheet; through a cut chi goes over into sign chi + shift.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,26 +64,30 @@ class CellMap:
             step,
         )
 
-    def at(self, where: Places) -> Complexes:
-        """chi at places, each on its element's own sheet, (n,)."""
-        basis = self.mesh.connectivity.basis.basis(where.local)
-        return np.asarray((basis * self.value[where.element]).sum(1))
+    @cached_property
+    def _chi(self) -> Complexes:
+        """Coefficients of chi, (m, k)."""
+        return np.asarray(self.mesh.connectivity.basis.coefficients(self.value))
 
-    def slopes(self, where: Places) -> tuple[Complexes, Complexes]:
-        """Derivatives of chi by both local coordinates, (n,)."""
-        basis = self.mesh.connectivity.basis
-        value = self.value[where.element]
-        return (
-            np.asarray((basis.basis(where.local, 1, 0) * value).sum(1)),
-            np.asarray((basis.basis(where.local, 0, 1) * value).sum(1)),
+    @cached_property
+    def _position(self) -> Floats:
+        """Coefficients of the position, (m, k, 3)."""
+        corners = self.mesh.nodes[self.mesh.connectivity.elements]
+        return np.asarray(self.mesh.connectivity.basis.coefficients(corners))
+
+    def jet(self, where: Places) -> tuple[Complexes, Complexes, Complexes]:
+        """chi at places, each on its element's own sheet, and its derivatives by both local coordinates, (n,)."""
+        chi = self._chi[where.element]
+        value, first, second = (
+            np.einsum("nk,nk->n", table, chi) for table in self.mesh.connectivity.basis.monomials(where.local)
         )
+        return value, first, second
 
     def tangents(self, where: Places) -> tuple[Floats, Floats, Floats]:
         """Position and its derivatives by both local coordinates, m, (n, 3) each."""
-        basis = self.mesh.connectivity.basis
-        corners = self.mesh.nodes[self.mesh.connectivity.elements[where.element]]
+        corners = self._position[where.element]
         position, first, second = (
-            np.einsum("nk,nkc->nc", basis.basis(where.local, *d), corners) for d in ((0, 0), (1, 0), (0, 1))
+            np.einsum("nk,nkc->nc", table, corners) for table in self.mesh.connectivity.basis.monomials(where.local)
         )
         return position, first, second
 
@@ -110,8 +115,8 @@ class CellMap:
         active = np.arange(len(element))
         for _ in range(MOST_STEPS):
             here = Places(element[active], local[active])
-            miss = target[active] - self.at(here)
-            first, second = self.slopes(here)
+            value, first, second = self.jet(here)
+            miss = target[active] - value
             determinant = first.real * second.imag - first.imag * second.real
             safe = np.where(np.abs(determinant) < 1e-300, 1.0, determinant)
             step = np.stack(
@@ -136,7 +141,7 @@ class CellMap:
             active = active[~done]
             if not len(active):
                 break
-        close = np.abs(target - self.at(Places(element, local))) < 1e-9
+        close = np.abs(target - self.jet(Places(element, local))[0]) < 1e-9
         barycentric = np.column_stack([1 - local.sum(1), local])
         found |= close
         found &= barycentric.min(1) > -1e-6

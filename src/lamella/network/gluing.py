@@ -41,8 +41,15 @@ def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
     sign, cut, turns = root_signs(mesh, cut_edges(mesh, odd))
     pieces, across = cut_pieces(mesh, cut, turns, odd)
     system = Poisson.of(mesh, sign)
-    value, shifts = _glued(mesh, cut, pieces, across, odd, system, np.full(len(pieces), np.nan, complex))
-    return Isothermic(mesh, odd, sign, cut, value, _shifted(pieces, shifts), across, system.residual(value))
+    sector = sectors(mesh.connectivity, cut)
+    base, moves = system.solve(sector, *_links(mesh, pieces, sector))
+    gram, right = system.quadratic(base, moves)
+    relations = vertex_relations(mesh, pieces, across, odd)
+    shifts = _best(gram, right, list(relations.values()), np.zeros(len(relations), complex))
+    value = base + np.einsum("t,tek->ek", shifts, moves)
+    return Isothermic(
+        mesh, odd, sign, cut, value, _shifted(pieces, shifts), across, moves, gram, system.residual(value)
+    )
 
 
 def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
@@ -62,13 +69,20 @@ def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
     FoldedError
         The coordinates would turn over somewhere.
     """
-    mesh = iso.mesh
+    mesh, given = iso.mesh, np.flatnonzero(~np.isnan(shifts))
+    before = np.array([piece.shift for piece in iso.transitions], complex)
+    relations = vertex_relations(mesh, iso.transitions, iso.across, iso.odd)
+    rows = [*relations.values(), *np.eye(len(before), dtype=np.int64)[given]]
+    goal = np.concatenate([np.zeros(len(relations), complex), shifts[given] - before[given]])
+    change = _best(iso.gram, np.zeros(len(before), complex), rows, goal)
+    change[given] = shifts[given] - before[given]
+    value = iso.value + np.einsum("t,tek->ek", change, iso.moves)
     system = Poisson.of(mesh, iso.sign)
-    near = system.near(iso.value)
-    value, found = _glued(mesh, iso.cut, iso.transitions, iso.across, iso.odd, near, shifts)
     folds = system.folds(value) & ~system.folds(iso.value)
     if folds.any():
         raise FoldedError(mesh.nodes[mesh.connectivity.elements[np.flatnonzero(folds)[0], 0]])
+    found = before + change
+    found[given] = shifts[given]
     return replace(iso, value=value, transitions=_shifted(iso.transitions, found), residual=system.residual(value))
 
 
@@ -76,36 +90,18 @@ def _shifted(pieces: tuple[Transition, ...], shifts: Complexes) -> tuple[Transit
     return tuple(replace(piece, shift=shift) for piece, shift in zip(pieces, shifts.tolist(), strict=True))
 
 
-def _glued(
-    mesh: NetMesh,
-    cut: NDArray[np.bool_],
-    pieces: tuple[Transition, ...],
-    across: Integers,
-    odd: Integers,
-    system: Poisson,
-    shifts: Complexes,
-) -> tuple[Complexes, Complexes]:
-    """Values (m, k) and shifts (t,), some of them given (else nan), that are the best of a least squares problem."""
-    sector = sectors(mesh.connectivity, cut)
-    home, sign, offset, held = _links(mesh, pieces, sector)
-    base, moves = system.solve(sector, home, sign, offset, held)
-    gram, right = system.quadratic(base, moves)
-    relations = vertex_relations(mesh, pieces, across, odd)
-    rows = [*relations.values(), *np.eye(len(pieces), dtype=np.int64)[~np.isnan(shifts)]]
-    goal = np.concatenate([np.zeros(len(relations), complex), shifts[~np.isnan(shifts)]])
-    if len(pieces):
-        # least squares with conditions that may repeat each other: the part they fix, and the rest
-        conditions = np.array(rows, float).reshape(-1, len(pieces))
-        _, singular, across_free = np.linalg.svd(conditions, full_matrices=True)
-        rank = int((singular > 1e-9).sum())
-        given = np.linalg.lstsq(conditions, goal, rcond=None)[0] if rank else np.zeros(len(pieces), complex)
-        loose = across_free[rank:]
-        rest = np.linalg.solve(loose @ gram @ loose.T, loose @ (right - gram @ given))
-        found: Complexes = np.asarray(given + loose.T @ rest, np.complex128)
-        found = np.where(np.isnan(shifts), found, shifts)
-    else:
-        found = shifts
-    return np.asarray(base + np.einsum("t,tek->ek", found, moves)), found
+def _best(gram: Floats, right: Complexes, rows: list[Integers], goal: Complexes) -> Complexes:
+    """Least squares of shifts (t,) under conditions rows . shifts = goal, which may repeat each other."""
+    count = len(gram)
+    if not count:
+        return np.zeros(0, complex)
+    conditions = np.array(rows, float).reshape(-1, count)
+    _, singular, directions = np.linalg.svd(conditions, full_matrices=True)
+    rank = int((singular > 1e-9).sum())
+    fixed = np.linalg.lstsq(conditions, goal, rcond=None)[0] if rank else np.zeros(count, complex)
+    loose = directions[rank:]
+    rest = np.linalg.solve(loose @ gram @ loose.T, loose @ (right - gram @ fixed))
+    return np.asarray(fixed + loose.T @ rest, np.complex128)
 
 
 def _links(

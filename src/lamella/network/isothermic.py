@@ -18,7 +18,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components, mini
 from lamella.network.net_mesh import NetMesh
 from lamella.network.poisson import deviator_root
 from lamella.surface.element.connectivity import Connectivity
-from lamella.surface.points import Complexes
+from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
 
@@ -67,6 +67,10 @@ class Isothermic:
     transitions : tuple of Transition
     across : (m, 3) int
         Transition through each local edge: 0: none, t + 1: transition t from left to right, -t - 1: back.
+    moves : (t, m, k)
+        How w changes with the shift of each transition, the least that |change of dw|^2 / |D|^2 can be.
+    gram : (t, t)
+        That integral, per pair of shifts.
     residual : float
         Root mean square of |dw - sqrt(D) dz| over that of |sqrt(D) dz|: how far the surface is from constant mean
         curvature.
@@ -79,6 +83,8 @@ class Isothermic:
     value: Complexes
     transitions: tuple[Transition, ...]
     across: Integers
+    moves: Floats
+    gram: Floats
     residual: float
 
 

@@ -59,10 +59,6 @@ class Poisson:
         pull = pull + ((e * self.form_b - f * self.form_a) / area) @ self.y
         return replace(self, blocks=blocks, pull=pull)
 
-    def near(self, value: Complexes) -> Poisson:
-        """The problem of staying near to coordinates (m, k) instead."""
-        return replace(self, pull=np.einsum("eij,ej->ei", self.blocks, value))
-
     def solve(
         self, sector: Integers, home: Integers, sign: Floats, offset: Floats, held: dict[int, Floats]
     ) -> tuple[Complexes, Floats]:

@@ -104,12 +104,11 @@ def rim_tips(cells: CellMap, tracks: Tracks) -> Floats:
         is_a = tracks.family[mine] == A
         for _ in range(8):
             place = Places(tracks.element[index], begin + share[:, None] * along)
-            chi = cells.at(place)
-            slopes = cells.slopes(place)
-            slope = slopes[0] * along[:, 0] + slopes[1] * along[:, 1]
+            chi, chi_x, chi_y = cells.jet(place)
+            slope = chi_x * along[:, 0] + chi_y * along[:, 1]
             miss = np.where(is_a, chi.imag, chi.real) - tracks.level[index]
             share = np.clip(share - miss / np.where(is_a, slope.imag, slope.real), 0, 1)
-        chi = cells.at(Places(tracks.element[index], begin + share[:, None] * along))
+        chi, _, _ = cells.jet(Places(tracks.element[index], begin + share[:, None] * along))
         other = np.where(is_a, chi.real, chi.imag)
         tips[mine, side] = tracks.tau[index] + (other - tracks.start[index]) * tracks.way[index]
     return tips

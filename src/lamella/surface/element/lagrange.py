@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,19 @@ class Lagrange:
         powers = np.maximum(powers, 0)
         x, y = (local[:, axis, None] ** np.arange(self.order + 1) for axis in (0, 1))
         return np.asarray((x[:, powers[:, 0]] * y[:, powers[:, 1]] * factor) @ self._coefficients)
+
+    def coefficients(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Coefficients of the monomials x^i y^j, (m, k, ...), of polynomials with nodal values (m, k, ...)."""
+        return np.asarray(np.moveaxis(np.tensordot(self._coefficients, values, (1, 1)), 0, 1))
+
+    def monomials(self, local: Floats) -> tuple[Floats, Floats, Floats]:
+        """x^i y^j and their derivatives by x and y at local coordinates (n, 2), each (n, k)."""
+        i, j = self._exponents.T
+        x, y = np.ones((2, self.order + 1, len(local)))
+        for power in range(1, self.order + 1):
+            x[power], y[power] = x[power - 1] * local[:, 0], y[power - 1] * local[:, 1]
+        by_x, by_y = np.maximum(i - 1, 0), np.maximum(j - 1, 0)
+        return (x[i] * y[j]).T, (i[:, None] * x[by_x] * y[j]).T, (j[:, None] * x[i] * y[by_y]).T
 
     def second_jet(self, local: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         """Values and derivatives x, y, xx, xy, yy of the basis at local coordinates (n, 2), each (n, k)."""
