@@ -292,7 +292,7 @@ class MeshTable(Table):
         examples=["mm"],
     )
     mean_curvature: Literal["fit"] | float = number(
-        'Mean curvature with respect to the mesh\'s normal, or "fit": the one that fits the mesh best.',
+        'Mean curvature with respect to the mesh\'s normal, or "fit": that of the surface nearest to the mesh.',
         "1/m",
         default="fit",
         union_mode="left_to_right",
