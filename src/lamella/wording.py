@@ -12,6 +12,11 @@ def cut(text: str, most: int = 80) -> str:
     return line if len(line) <= most else line[: most - 3] + "..."
 
 
+def counted(number: int, one: str, several: str = "") -> str:
+    """A number with its noun: 1 vertex, 2 vertices, 1,234 faces."""
+    return f"{number:,} {one if number == 1 else several or one + 's'}"
+
+
 def shown(value: Any) -> str:
     """A value as TOML writes it, or what it is."""
     if isinstance(value, bool):

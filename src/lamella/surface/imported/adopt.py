@@ -25,7 +25,7 @@ from lamella.surface.found.meshing import on_surface
 from lamella.surface.found.newton import Equilibrium, NoFilmError, find_equilibrium
 from lamella.surface.imported.border import BorderCurve, border_curves
 from lamella.surface.imported.clean import CleanMesh, clean
-from lamella.surface.imported.edges import find_edges, vertex_areas
+from lamella.surface.imported.edges import face_normals, find_edges, vertex_areas
 from lamella.surface.imported.fit import Fit, fit_mean_curvature
 from lamella.surface.imported.nearest import nearest_of_family
 from lamella.surface.imported.raw_mesh import Floats
@@ -45,6 +45,8 @@ SAMPLES = 24
 MINIMAL, TOLD = 2e-3, 1e-4
 # vertices of a mesh whose curvature may be read wrongly for its coarseness alone: the surface itself decides then
 COARSE = 400
+# mean cosine between neighbouring faces
+CRUMPLED = 0.8
 # largest distance between mesh and surface, over the size, at which the surface still is what the mesh means
 FAR = 0.05
 
@@ -80,7 +82,7 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = _silen
         f"{fit.scale:.4g} 1/m"
     )
     uneven = fit.deviation > table.deviation
-    if uneven and len(mesh.points) > COARSE:
+    if uneven and (len(mesh.points) > COARSE or _crumpled(mesh)):
         raise _not_constant(fit, table.deviation)
     areas = vertex_areas(mesh.points, mesh.faces)
     start = fit.mean_curvature if given is None else given
@@ -138,6 +140,14 @@ def _not_constant(fit: Fit, limit: float) -> InputError:
         f"mend the mesh, or raise deviation to take the nearest surface of H = {fit.mean_curvature:.4g} 1/m",
         "surface.file",
     )
+
+
+def _crumpled(mesh: CleanMesh) -> bool:
+    """Whether neighbouring faces turn so much that elements cannot be laid on them."""
+    normals = face_normals(mesh.points, mesh.faces)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    one, other = (find_edges(mesh.faces).inner_pairs // 3).T
+    return bool((normals[one] * normals[other]).sum(1).mean() < CRUMPLED)
 
 
 def _distances(film: Film, points: Floats) -> Floats:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lamella.surface.imported.clean import CleanMesh
 from lamella.surface.imported.edges import vertex_normals
+from lamella.surface.imported.noise import smooth_scatter
 from lamella.surface.imported.raw_mesh import Floats
 from lamella.surface.imported.zigzag import is_zigzag, smooth_zigzag
 
@@ -105,6 +106,12 @@ def border_curve(
         points, corner = kept[:, :3], kept[:, 3] > 0
     if len(points) < before:
         notes.append(f"{before - len(points)} of {before} vertices left out, closer than {1000 * limit:.3g} mm")
+    points, scatter, move = smooth_scatter(points, corner)
+    if scatter:
+        notes.append(
+            f"its vertices scatter by {1000 * scatter:.2g} mm about a smooth curve; that was taken, which moves "
+            f"vertices by up to {1000 * move:.2g} mm"
+        )
     return BorderCurve(points, corner, tuple(notes))
 
 
