@@ -23,7 +23,7 @@ from lamella.surface.found.film import Film, harmonic_over_itself
 from lamella.surface.found.find import adapted, notes_on
 from lamella.surface.found.meshing import on_surface
 from lamella.surface.found.newton import Equilibrium, NoFilmError, find_equilibrium
-from lamella.surface.imported.border import BorderCurve, border_curves
+from lamella.surface.imported.border import BorderCurve, border_curves, border_names
 from lamella.surface.imported.clean import CleanMesh, clean
 from lamella.surface.imported.edges import face_normals, find_edges, vertex_areas
 from lamella.surface.imported.fit import Fit, fit_mean_curvature
@@ -45,6 +45,8 @@ SAMPLES = 24
 MINIMAL, TOLD = 2e-3, 1e-4
 # vertices of a mesh whose curvature may be read wrongly for its coarseness alone: the surface itself decides then
 COARSE = 400
+# 1/m; a radius of a thousand kilometres
+LEAST = 1e-9
 # mean cosine between neighbouring faces
 CRUMPLED = 0.8
 # largest distance between mesh and surface, over the size, at which the surface still is what the mesh means
@@ -85,6 +87,7 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = _silen
     if uneven and (len(mesh.points) > COARSE or _crumpled(mesh)):
         raise _not_constant(fit, table.deviation)
     areas = vertex_areas(mesh.points, mesh.faces)
+    progress("  laying elements on the mesh")
     start = fit.mean_curvature if given is None else given
     try:
         first = _near(_film(mesh, loops, table.order, start), start, given is None, progress)
@@ -178,8 +181,8 @@ def _refuse_far(distance: Floats, here: Equilibrium) -> None:
 
 
 def _told_zero(mean_curvature: float, nearest: float) -> tuple[str, ...]:
-    """That H was taken as 0, if it was."""
-    if mean_curvature == nearest:
+    """That H was taken as 0, if it was and is more than rounding."""
+    if mean_curvature == nearest or abs(nearest) < LEAST:
         return ()
     return (f"H taken as 0: the surface nearest to the mesh has H = {nearest:.4g} 1/m, less than a mesh can tell",)
 
@@ -246,18 +249,9 @@ def _near(film: Film, mean_curvature: float, free: bool, progress: Progress) -> 
 
 def border_loops(mesh: CleanMesh, corner_angle: float) -> tuple[tuple[Loop, ...], tuple[str, ...]]:
     """Smooth loops through the borders of a mesh, with their corners, and what was done to them."""
-    loops: list[Loop] = []
-    notes: list[str] = []
-    for index, border in enumerate(mesh.borders):
-        points = mesh.points[border]
-        spacing = None
-        if len(border) > MOST_BORDER_POINTS:
-            length = np.linalg.norm(np.roll(points, -1, 0) - points, axis=1).sum()
-            spacing = float(length) / MOST_BORDER_POINTS
-        curve = border_curves(CleanMesh(mesh.points, mesh.faces, (border,), ()), corner_angle, spacing)[0]
-        notes += curve.notes
-        loops.append(_loop(curve, f"border {index}" if index else "border"))
-    return tuple(loops), tuple(notes)
+    curves = border_curves(mesh, corner_angle, MOST_BORDER_POINTS)
+    loops = tuple(_loop(curve, name) for curve, name in zip(curves, border_names(mesh), strict=True))
+    return loops, tuple(note for curve in curves for note in curve.notes)
 
 
 def _loop(curve: BorderCurve, name: str) -> Loop:

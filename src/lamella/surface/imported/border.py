@@ -46,7 +46,7 @@ class BorderCurve:
 
 
 def border_curves(
-    mesh: CleanMesh, corner_angle: float = CORNER_ANGLE, spacing: float | None = None
+    mesh: CleanMesh, corner_angle: float = CORNER_ANGLE, most: int | None = None
 ) -> tuple[BorderCurve, ...]:
     """Curves of all border loops of a mesh, in their order.
 
@@ -55,17 +55,24 @@ def border_curves(
     mesh : CleanMesh
     corner_angle : float
         Degrees; see `border_curve`.
-    spacing : float, optional
-        m; see `border_curve`.
+    most : int, optional
+        Loops of more vertices are thinned to about as many.
     """
     normals = vertex_normals(mesh.points, mesh.faces)
-    many = len(mesh.borders) > 1
     curves = []
-    for number, loop in enumerate(mesh.borders):
-        curve = border_curve(mesh.points[loop], normals[loop], corner_angle, spacing)
-        name = "the border" if not many else "the outer border" if number == 0 else f"border {number + 1}"
-        curves.append(BorderCurve(curve.points, curve.corner, tuple(f"{name}: {note}" for note in curve.notes)))
+    for name, loop in zip(border_names(mesh), mesh.borders, strict=True):
+        points = mesh.points[loop]
+        spacing = float(_steps(points).sum()) / most if most and len(loop) > most else None
+        curve = border_curve(points, normals[loop], corner_angle, spacing)
+        curves.append(BorderCurve(curve.points, curve.corner, tuple(f"the {name}: {note}" for note in curve.notes)))
     return tuple(curves)
+
+
+def border_names(mesh: CleanMesh) -> list[str]:
+    """What the border loops of a mesh are called."""
+    if len(mesh.borders) == 1:
+        return ["border"]
+    return ["outer border", *(f"border {k}" for k in range(2, len(mesh.borders) + 1))]
 
 
 def border_curve(
