@@ -13,7 +13,7 @@ from lamella.project_values import (
     Refusal,
     Table,
     Unit,
-    file_of,
+    file_name,
     length,
     list_of_tables,
     number,
@@ -115,7 +115,7 @@ class BoundaryTable(Table):
     )
     interpolation: Interpolation | None = Field(default=None, description=_INTERPOLATION)
     circle: CircleTable | None = Field(default=None, description="A circle {center, radius, normal}.")
-    file: str | None = Field(
+    file: Annotated[str | None, file_name(CURVE_FILES)] = Field(
         default=None,
         max_length=1000,
         description="Curve file (.3dm, .dxf or .json), relative to the project file.",
@@ -141,11 +141,6 @@ class BoundaryTable(Table):
     slide: SlideTable | None = Field(default=None, description="Where the loop may slide; fixed when not given.")
 
     _default = model_validator(mode="before")(_with_interpolation)
-
-    @field_validator("file", mode="before")
-    @classmethod
-    def _readable(cls, value: Any) -> Any:
-        return file_of(value, CURVE_FILES)
 
     @field_validator("part", mode="before")
     @classmethod

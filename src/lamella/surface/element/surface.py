@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.curvature import ElementPoints, element_points
+from lamella.surface.element.edge_basis import edge_rule, edge_slopes, edge_values
 from lamella.surface.element.gauss_map import harmonic_normals
 from lamella.surface.element.geometry import normal_and_area, project_onto_nodes, tangents
 from lamella.surface.element.places import Places
@@ -160,12 +161,8 @@ class ElementSurface:
         position = np.matmul(basis.basis(points), self._corners - middle)
         cross = np.cross(*tangents(*self._slopes(points), self._corners))
         total = float(((position * cross).sum(2) * weights).sum() / 3)
-        rule, weight = np.polynomial.legendre.leggauss(2 * basis.order)
-        rule, weight = (rule + 1) / 2, weight / 2
-        line = np.vander(np.linspace(0, 1, basis.order + 1), increasing=True)
-        value = np.vander(rule, basis.order + 1, increasing=True) @ np.linalg.inv(line)
-        slope_powers = np.arange(1, basis.order + 1) * np.vander(rule, basis.order, increasing=True)
-        slope = np.column_stack([np.zeros(len(rule)), slope_powers]) @ np.linalg.inv(line)
+        rule, weight = edge_rule(basis.order)
+        value, slope = edge_values(basis.order, rule), edge_slopes(basis.order, rule)
         along = self.nodes[self.connectivity.rim_nodes] - middle
         for loop in np.unique(self.rim_loop):
             edges = along[self.rim_loop == loop]
