@@ -252,6 +252,9 @@ class FoundTable(Table):
     """Stands for the table of a surface that has to be found."""
 
     kind: str
+    order: int = 4
+    tolerance: float = 5e-3
+    most_nodes: int = 100_000
 
 
 @pytest.fixture(params=["form-found", "mesh"])
