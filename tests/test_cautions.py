@@ -144,7 +144,7 @@ def test_order_two_is_told_before_it_is_tried() -> None:
     rings = [{"circle": {"center": [0.0, 0.0, z], "radius": r}} for z, r in ((0.0, 3.0), (2.0, 2.0))]
     surface = {"kind": "form-found", "order": 2, "tolerance": 0.01, "most_nodes": 500, "boundary": rings}
     project = parse_project({"surface": surface})
-    with pytest.raises(InputError, match="surface.tolerance: H is off") as refusal:
+    with pytest.raises(InputError, match=r"surface\.tolerance: H is off") as refusal:
         make_surface(project, progress=told.append)
     assert refusal.value.remedy.startswith("write order = 3 or 4, or ")
     assert told[0].startswith("  order = 2 takes about 40,000 nodes for tolerance = 0.01 (most_nodes = 500)")

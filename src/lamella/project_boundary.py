@@ -155,7 +155,17 @@ class BoundaryTable(Table):
             remedy = f"keep one of {', '.join(given)}" if given else "add one of them"
             raise Refusal(f"{told}: has to be one of {', '.join(_SHAPES)}", remedy)
         if self.interpolation is not None and self.points is None:
-            raise Refusal("interpolation goes with points", "leave interpolation out", "interpolation")
+            if self.file is None:
+                raise Refusal("interpolation goes with points", "leave interpolation out", "interpolation")
+            in_file = self.file.lower().endswith(".json")
+            raise Refusal(
+                "interpolation goes with points of this table, not with a file: "
+                + ("each curve of a .json says its own" if in_file else "curves of a drawing are exact as they are"),
+                f'write "interpolation": "{self.interpolation}" beside the points in the file'
+                if in_file
+                else "leave interpolation out",
+                "interpolation",
+            )
         for key in ("layer", "id", "unit"):
             if getattr(self, key) is not None and self.file is None:
                 remedy = "lengths here are in metres" if key == "unit" else f"leave {key} out"
