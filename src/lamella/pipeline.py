@@ -217,7 +217,8 @@ def compute(
     project = fill_in(project, surface)
     progress("    sampling the surface for files and pictures")
     mesh = surface.mesh()
-    figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh)}
+    loops = summary.loop_summary(surface, getattr(project.surface, "boundary", ()))
+    figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh) | loops}
     clock.stop("surface", f"area {figures['surface']['area']:.4g} m2, H = {surface.mean_curvature:.6g} 1/m")
     warnings += [*surface.warnings(), *cautions.size_cautions(mesh, project.lamella.height)]
     warnings += cautions.surface_file_cautions(surface)

@@ -23,13 +23,14 @@ from lamella.surface.found.film import Film, harmonic_over_itself
 from lamella.surface.found.find import adapted, notes_on
 from lamella.surface.found.meshing import on_surface
 from lamella.surface.found.newton import Equilibrium, NoFilmError, find_equilibrium
-from lamella.surface.imported.border import BorderCurve, border_curves, border_names
+from lamella.surface.imported.border import BorderCurve, border_curves
 from lamella.surface.imported.clean import CleanMesh, clean
 from lamella.surface.imported.edges import face_normals, find_edges, vertex_areas
 from lamella.surface.imported.fit import Fit, fit_mean_curvature
 from lamella.surface.imported.nearest import nearest_of_family
 from lamella.surface.imported.raw_mesh import Floats
 from lamella.surface.imported.read_mesh import read_mesh
+from lamella.wording import loop_names
 
 if TYPE_CHECKING:
     from lamella.project import MeshTable
@@ -250,7 +251,7 @@ def _near(film: Film, mean_curvature: float, free: bool, progress: Progress) -> 
 def border_loops(mesh: CleanMesh, corner_angle: float) -> tuple[tuple[Loop, ...], tuple[str, ...]]:
     """Smooth loops through the borders of a mesh, with their corners, and what was done to them."""
     curves = border_curves(mesh, corner_angle, MOST_BORDER_POINTS)
-    loops = tuple(_loop(curve, name) for curve, name in zip(curves, border_names(mesh), strict=True))
+    loops = tuple(_loop(curve, name) for curve, name in zip(curves, loop_names(len(mesh.borders)), strict=True))
     return loops, tuple(note for curve in curves for note in curve.notes)
 
 

@@ -12,6 +12,7 @@ from lamella.surface.imported.edges import vertex_normals
 from lamella.surface.imported.noise import smooth_scatter
 from lamella.surface.imported.raw_mesh import Floats
 from lamella.surface.imported.zigzag import is_zigzag, smooth_zigzag
+from lamella.wording import loop_names
 
 CORNER_ANGLE = 40.0
 """Degrees."""
@@ -60,19 +61,12 @@ def border_curves(
     """
     normals = vertex_normals(mesh.points, mesh.faces)
     curves = []
-    for name, loop in zip(border_names(mesh), mesh.borders, strict=True):
+    for name, loop in zip(loop_names(len(mesh.borders)), mesh.borders, strict=True):
         points = mesh.points[loop]
         spacing = float(_steps(points).sum()) / most if most and len(loop) > most else None
         curve = border_curve(points, normals[loop], corner_angle, spacing)
         curves.append(BorderCurve(curve.points, curve.corner, tuple(f"the {name}: {note}" for note in curve.notes)))
     return tuple(curves)
-
-
-def border_names(mesh: CleanMesh) -> list[str]:
-    """What the border loops of a mesh are called."""
-    if len(mesh.borders) == 1:
-        return ["border"]
-    return ["outer border", *(f"border {k}" for k in range(2, len(mesh.borders) + 1))]
 
 
 def border_curve(
