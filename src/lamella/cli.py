@@ -197,9 +197,9 @@ def _terminate(number: int, frame: FrameType | None) -> None:
 def _one_blas_thread() -> None:
     """Let the linear algebra of this process run in one thread.
 
-    How many threads share a matrix product decides how its sums are rounded: files would differ in their last digits
-    from machine to machine. The matrices here are small, and more threads only make them slower. The sparse solver has
-    threads of its own, which do not change its results.
+    How many threads share a dot product of long vectors decides how its sum is rounded: files would differ in their
+    last digits from machine to machine. The matrices here are small, and more threads only make them slower. The sparse
+    solver has threads of its own, which do not change its results.
     """
     # read once, when numpy is loaded
     if "numpy" not in sys.modules:
