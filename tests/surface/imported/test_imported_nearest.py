@@ -44,10 +44,10 @@ def tube(around, along, radius, height):
 
 @pytest.fixture
 def adopt(tmp_path):
-    def adopt(points, faces, **keys):
+    def adopt(points, faces, told=lambda message: None, **keys):
         (tmp_path / "a.obj").write_text(obj_text(points, np.asarray(faces).tolist()))
         surface = {"kind": "mesh", "file": "a.obj", "tolerance": 3e-3} | keys
-        return make_surface(parse_project({"name": "x", "surface": surface}), tmp_path)
+        return make_surface(parse_project({"name": "x", "surface": surface}), tmp_path, told)
 
     return adopt
 
@@ -128,3 +128,28 @@ def test_what_no_mesh_can_tell_from_zero_is_no_warning(adopt):
     assert surface.mean_curvature == 0
     assert abs(surface.figures["nearest_mean_curvature"]) < 1e-4
     assert not any("taken as 0" in note for note in surface.notes)
+
+
+def test_a_millimetre_of_scatter_costs_no_elements(adopt):
+    """A spline through the scattered rims would bend by 0.06/m, and take up to 100,000 nodes to follow."""
+    points, faces = tube(48, 20, lambda z: 2.0, (0, 4))
+    exact = adopt(points, faces, tolerance=5e-3)
+    points = points + 1e-3 * np.random.default_rng(0).normal(size=points.shape)
+    surface = adopt(points, faces, tolerance=5e-3)
+    assert surface.mean_curvature == pytest.approx(-0.25, rel=1e-3)
+    # less than half of how far off the curvature of the vertices is
+    assert error_of(surface, -0.25)[0] < 0.5 * error_of(surface, -0.25)[1]
+    assert surface.figures["distance_rms"] == pytest.approx(1e-3, rel=0.2)
+    assert surface.figures["surface_nodes"] < 4 * exact.figures["surface_nodes"]
+    assert sum("scatter by" in line for line in surface.figures["treatment"]) == 2
+
+
+@pytest.mark.parametrize("n", [12, 60])
+def test_crumpled_meshes_are_refused_with_figures_before_elements_are_laid(adopt, n):
+    uv, faces = irregular(n)
+    points = np.column_stack((4 * uv, 0.8 * np.sin(2 * uv[:, 0]) * np.sin(2 * uv[:, 1])))
+    points += 2 / n * np.random.default_rng(0).normal(size=points.shape)
+    told = []
+    with pytest.raises(InputError, match=r"H = .* fits best, its vertices are off by 0.\d+ of the curvature scale"):
+        adopt(points, faces, told.append)
+    assert not any("laying elements" in line for line in told)
