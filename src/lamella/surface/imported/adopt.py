@@ -81,29 +81,12 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = _silen
     fit = fit_mean_curvature(mesh.points, mesh.faces)
     given = None if table.mean_curvature == "fit" else float(table.mean_curvature)
     progress(
-        f"  best-fit H = {fit.mean_curvature:.6g} 1/m, off by {fit.deviation:.2g} of the curvature scale "
-        f"{fit.scale:.4g} 1/m"
+        f"  curvature at the vertices: H = {fit.mean_curvature:.6g} 1/m, off by {fit.deviation:.2g} of the curvature "
+        f"scale {fit.scale:.4g} 1/m"
     )
-    uneven = fit.deviation > table.deviation
-    if uneven and (len(mesh.points) > COARSE or _crumpled(mesh)):
-        raise _not_constant(fit, table.deviation)
     areas = vertex_areas(mesh.points, mesh.faces)
-    progress("  laying elements on the mesh")
-    start = fit.mean_curvature if given is None else given
-    try:
-        first = _near(_film(mesh, loops, table.order, start), start, given is None, progress)
-    except InputError:
-        if uneven:
-            raise _not_constant(fit, table.deviation) from None
-        raise
-    if given is None:
-        first = nearest_of_family(first, mesh.points, areas, progress)
+    first, exact = _coarse(mesh, loops, fit, areas, table, progress)
     nearest = first.mean_curvature
-    distance = _distances(first.film, mesh.points)
-    exact = _within_facets(mesh, distance, areas, fit.scale, table.deviation)
-    if uneven and not exact:
-        raise _not_constant(fit, table.deviation)
-    _refuse_far(distance, first)
     if given is None:
         first = _without_curvature(first, fit.scale, progress)
         notes += _told_zero(first.mean_curvature, nearest)
@@ -135,6 +118,42 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = _silen
     )
 
 
+def _coarse(
+    mesh: CleanMesh, loops: tuple[Loop, ...], fit: Fit, areas: Floats, table: MeshTable, progress: Progress
+) -> tuple[Equilibrium, bool]:
+    """The surface a mesh means on coarse elements, and whether its vertices lie on it but for their coarseness.
+
+    Raises
+    ------
+    InputError
+        There is none, or the mesh is too far from it.
+    """
+    free = table.mean_curvature == "fit"
+    start = fit.mean_curvature if free else float(table.mean_curvature)
+    uneven = fit.deviation > table.deviation
+    if uneven and (len(mesh.points) > COARSE or _crumpled(mesh)):
+        raise _not_constant(fit, table.deviation)
+    progress("  laying elements on the mesh")
+    try:
+        first = _near(_film(mesh, loops, table.order, start), start, free, progress)
+    except InputError:
+        if uneven:
+            raise _not_constant(fit, table.deviation) from None
+        raise
+    if free:
+        first = nearest_of_family(first, mesh.points, areas, progress)
+    distance = _distances(first.film, mesh.points)
+    typical = float(np.sqrt(areas @ distance**2 / areas.sum()))
+    progress(f"  nearest to the vertices: H = {first.mean_curvature:.6g} 1/m, {1000 * typical:.3g} mm off")
+    # vertices off by d change the curvature of edges of length h by up to 8 d / h^2
+    edge = float(np.median(find_edges(mesh.faces).lengths(mesh.points)))
+    exact = 8 * typical / edge**2 <= table.deviation * fit.scale
+    if uneven and not exact:
+        raise _not_constant(fit, table.deviation)
+    _refuse_far(distance, first)
+    return first, exact
+
+
 def _not_constant(fit: Fit, limit: float) -> InputError:
     """The refusal of a mesh whose curvature varies."""
     return InputError(
@@ -158,16 +177,6 @@ def _distances(film: Film, points: Floats) -> Floats:
     """Distances of points from a film, m, (n,)."""
     _, position = ClosestPoint(film.connectivity, film.nodes)(points)
     return np.asarray(np.linalg.norm(position - points, axis=1))
-
-
-def _within_facets(mesh: CleanMesh, distance: Floats, areas: Floats, scale: float, deviation: float) -> bool:
-    """Whether vertices are so near to the surface that only the mesh's coarseness can make their curvature vary.
-
-    Vertices off by d change the curvature of edges of length h by up to 8 d / h^2.
-    """
-    edge = float(np.median(find_edges(mesh.faces).lengths(mesh.points)))
-    off = float(np.sqrt(areas @ distance**2 / areas.sum()))
-    return 8 * off / edge**2 <= deviation * scale
 
 
 def _refuse_far(distance: Floats, here: Equilibrium) -> None:
