@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lamella import compute, parse_project
-from lamella.cautions import lamella_cautions, network_cautions
+from exact_elements import sphere_cap
+from lamella import InputError, compute, make_surface, parse_project
+from lamella.cautions import lamella_cautions, network_cautions, surface_file_cautions
 
 
 def warnings(kind: str, until: str = "lamellas", tables: dict[str, Any] | None = None, **surface: Any) -> list[str]:
@@ -136,3 +137,36 @@ def test_layers_cut_alike_that_drift_apart() -> None:
     for lamella in ({"layers": 1}, {"layer_lengths": "own"}, {"offset": 0.002}):
         found = warnings("catenoid", neck_radius=2.0, height=[-2, 2], tables={"lamella": lamella})
         assert not any("layers" in m for m in found)
+
+
+def test_order_two_is_told_before_it_is_tried() -> None:
+    told: list[str] = []
+    rings = [{"circle": {"center": [0.0, 0.0, z], "radius": r}} for z, r in ((0.0, 3.0), (2.0, 2.0))]
+    surface = {"kind": "form-found", "order": 2, "tolerance": 0.01, "most_nodes": 500, "boundary": rings}
+    project = parse_project({"surface": surface})
+    with pytest.raises(InputError, match=r"surface\.tolerance: H is off") as refusal:
+        make_surface(project, progress=told.append)
+    assert refusal.value.remedy.startswith("write order = 3 or 4, or ")
+    assert told[0].startswith("  order = 2 takes about 40,000 nodes for tolerance = 0.01 (most_nodes = 500)")
+    told.clear()
+    found = make_surface(parse_project({"surface": surface | {"order": 3, "most_nodes": 5000}}), progress=told.append)
+    assert not any("order = " in line for line in told)
+    assert found.describe()["surface_nodes"] < 5000
+
+
+def test_nodes_of_order_two_grow_as_told() -> None:
+    """Nodes fall with the square of the tolerance, and are within a factor of three of what is told beforehand."""
+    rings = [{"circle": {"center": [0.0, 0.0, z], "radius": r}} for z, r in ((0.0, 3.0), (2.0, 2.0))]
+    surface = {"kind": "form-found", "order": 2, "boundary": rings}
+    for tolerance in (0.1, 0.03):
+        nodes = make_surface(parse_project({"surface": surface | {"tolerance": tolerance}})).describe()["surface_nodes"]
+        assert 1 / 3 < nodes / (4 / tolerance**2) < 3
+
+
+def test_a_surface_file_without_nurbs_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    surface = sphere_cap(3)
+    assert list(surface_file_cautions(surface)) == []
+    count = 3 * len(surface.connectivity.elements)
+    monkeypatch.setattr("lamella.files.surface_3dm.MOST_PATCHES", count - 1)
+    (told,) = surface_file_cautions(surface)
+    assert f"NURBS would be {count:,} patches (limit {count - 1:,})" in told

@@ -552,3 +552,15 @@ def test_a_reader_of_the_progress_that_goes_early(here: Path, earlier: dict[str,
     assert process.wait(30) == 1
     assert contents(here / "out") == earlier
     assert [p.name for p in (here / "out").iterdir()] == ["p"]
+
+
+def test_the_number_of_threads_does_not_change_a_byte(tmp_path: Path) -> None:
+    """Of this example it does, on two cores, where OpenBLAS takes as many threads as it is allowed."""
+    contents = []
+    for threads in ("1", "2"):
+        out = tmp_path / threads
+        environment = {**os.environ, "OPENBLAS_NUM_THREADS": threads, "OMP_NUM_THREADS": threads}
+        arguments = ["run", str(EXAMPLES / "10_saddle.toml"), "--until", "surface", "--out", str(out), "--quiet"]
+        subprocess.run([sys.executable, "-m", "lamella", *arguments], check=True, env=environment)
+        contents.append({path.name: path.read_bytes() for path in sorted(out.iterdir()) if path.suffix != ".json"})
+    assert contents[0] == contents[1]

@@ -313,7 +313,7 @@ MISSED = (
     r"\d of \d umbilics are no nodes of the net \(at [-\d., e;]+ m\): lamellas pass around them; "
     r"another number of cells \(even, where two lie on one principal line\) makes them nodes"
 )
-BEYOND = r"\d+ pairs of strips meet beyond the rim, where no slot is cut: .*"
+BEYOND = r"\d+ pairs? of strips meets? beyond the rim, where no slot is cut: .*"
 WARNINGS = {
     "01_unduloid": [SPLIT],
     "04_helicoid": [SPLIT],

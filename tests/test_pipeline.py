@@ -252,6 +252,9 @@ class FoundTable(Table):
     """Stands for the table of a surface that has to be found."""
 
     kind: str
+    order: int = 4
+    tolerance: float = 5e-3
+    most_nodes: int = 100_000
 
 
 @pytest.fixture(params=["form-found", "mesh"])
@@ -457,3 +460,47 @@ def test_the_copy_of_a_project_names_the_same_files(tmp_path: Path, monkeypatch:
     far = moved(mesh, tmp_path, tmp_path / "o").surface
     assert isinstance(far, MeshTable)
     assert far.file == os.path.realpath(tmp_path / "m.obj")
+
+
+SLIDING: dict[str, Any] = {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0]}
+ARCH: list[dict[str, Any]] = [
+    {"arc": {"start": [0.0, -2.0, 0.0], "middle": [0.0, 0.0, 2.0], "end": [0.0, 2.0, 0.0]}},
+    {"points": [[0.0, 2.0, 0.0], [2.4, 2.0, 0.0]], "slide": SLIDING},
+    {"arc": {"start": [2.4, 2.0, 0.0], "middle": [2.4, 0.0, 2.0], "end": [2.4, -2.0, 0.0]}},
+    {"points": [[2.4, -2.0, 0.0], [0.0, -2.0, 0.0]]},
+]
+
+
+def test_summary_and_report_tell_the_loops_the_volume_and_the_verdict() -> None:
+    results = compute(film(ring(0.0), ring(1.6)), until="surface")
+    s = results.summary["surface"]
+    assert [loop["name"] for loop in s["loops"]] == ["at 0", "at 1.6"]
+    assert [loop["length"] for loop in s["loops"]] == pytest.approx([4 * math.pi] * 2, rel=1e-6)
+    assert [loop["held"] for loop in s["loops"]] == ["held", "held"]
+    told = {(section, label): (value, unit) for section, label, value, unit in report_data(results).figures}
+    assert told["Boundary", "at 1.6"] == ("12.57 m, held", "")
+    assert told["Surface", "Volume, with lids over the loops"] == (f"{s['volume']:.4g}", "m³")
+    assert told["Surface", "Lowest Jacobi eigenvalue"] == (f"{s['jacobi_eigenvalue']:.3g}", "1/m²")
+    assert told["Surface", "Stability"] == ("stable", "")
+    results = compute(film({"name": "edge", "part": ARCH}), until="surface")
+    (edge,) = results.summary["surface"]["loops"]
+    assert edge["held"] == "1 of 4 parts slides on a plane, the others are held"
+    # the sliding side has drawn in
+    assert edge["length"] < 4 * math.pi + 4.8 + 0.5
+
+
+def test_summary_and_report_of_a_mesh_tell_the_distance(tmp_path: Path) -> None:
+    mesh = lamella.Catenoid(2.0, (-1.0, 1.5)).mesh()
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh.points.tolist()]
+    lines += ["f " + " ".join(str(i + 1) for i in face) for face in mesh.faces.tolist()]
+    (tmp_path / "a.obj").write_text("\n".join(lines))
+    project = parse_project({"surface": {"kind": "mesh", "file": "a.obj", "tolerance": 0.05}})
+    results = compute(project, until="surface", folder=tmp_path)
+    s = results.summary["surface"]
+    assert [loop["name"] for loop in s["loops"]] == ["outer border", "border 2"]
+    assert [loop["length"] for loop in s["loops"]] == pytest.approx(
+        [4 * math.pi * math.cosh(0.75), 4 * math.pi * math.cosh(0.5)], rel=1e-5
+    )
+    told = {(section, label): (value, unit) for section, label, value, unit in report_data(results).figures}
+    assert told["Surface", "Off the mesh's vertices, largest"] == (f"{1e3 * s['distance_max']:.3g}", "mm")
+    assert told["Boundary", "outer border"] == (f"{s['loops'][0]['length']:.4g} m, held", "")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas, layer_drift
+from lamella.surface.element.surface import ElementSurface
 from lamella.surface.mesh import SurfaceMesh
+from lamella.surface.surface import Surface
 
 # m; the largest timber gridshells span well under 200 m
 LARGE = 250.0
@@ -30,6 +33,36 @@ def size_cautions(mesh: SurfaceMesh, height: float) -> Iterator[str]:
         yield (
             f"the surface is only {size:.3g} m across for a lamella {height:g} m high: all lengths in a project file "
             "are metres"
+        )
+
+
+def order_caution(order: int, tolerance: float, most_nodes: int) -> str:
+    """That elements of order 2 will need too many nodes, before they are made; empty: they will not.
+
+    Their curvature is off by the first power of their size, 2 / sqrt(nodes) of the curvature scale on films between
+    rings.
+    """
+    nodes = 4 / tolerance**2
+    if order > 2 or nodes <= most_nodes:
+        return ""
+    return (
+        f"order = 2 takes about {nodes:,.0f} nodes for tolerance = {tolerance:g} (most_nodes = {most_nodes:,}): order "
+        "= 3 or 4 keeps it with a few thousand"
+    )
+
+
+def surface_file_cautions(surface: Surface[Any]) -> Iterator[str]:
+    """A surface.3dm that is no NURBS."""
+    if not isinstance(surface, ElementSurface):
+        return
+    from lamella.files.surface_3dm import MESH_TOLERANCE, MOST_PATCHES
+
+    count = 3 * len(surface.connectivity.elements)
+    if count > MOST_PATCHES:
+        yield (
+            f"surface.3dm holds one mesh, within about {MESH_TOLERANCE:g} of the surface's size, and exact boundary "
+            f"curves: NURBS would be {count:,} patches (limit {MOST_PATCHES:,}); a larger surface.tolerance or a "
+            "higher surface.order takes fewer"
         )
 
 

@@ -30,6 +30,10 @@ twisting leave in the strips.
 Open out/unduloid/report.html in a browser, model.3dm in Rhino, fabrication/*.dxf at the laser."""
 
 
+# of OpenBLAS, MKL, BLIS and Apple's Accelerate
+_BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+
+
 class _Parser(argparse.ArgumentParser):
     """Mistakes in the arguments read like all others: what, and the remedy."""
 
@@ -190,6 +194,18 @@ def _terminate(number: int, frame: FrameType | None) -> None:
     raise SystemExit(128 + number)
 
 
+def _one_blas_thread() -> None:
+    """Let the linear algebra of this process run in one thread.
+
+    How many threads share a dot product of long vectors decides how its sum is rounded: files would differ in their
+    last digits from machine to machine. The matrices here are small, and more threads only make them slower. The sparse
+    solver has threads of its own, which do not change its results.
+    """
+    # read once, when numpy is loaded
+    if "numpy" not in sys.modules:
+        os.environ.update(dict.fromkeys(_BLAS_THREADS, "1"))
+
+
 def _mend(error: OSError) -> str:
     if error.errno in (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)):
         return "free some space on the disk, or write to another one"
@@ -200,6 +216,7 @@ def _mend(error: OSError) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code is 0, or 2 for what the user can mend."""
+    _one_blas_thread()
     with contextlib.suppress(ValueError):
         signal.signal(signal.SIGTERM, _terminate)
     if isinstance(sys.stdout, io.TextIOWrapper):

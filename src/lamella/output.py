@@ -106,10 +106,19 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
     figures.append(("Surface", "Size", " × ".join(f"{x:.3g}" for x in s["size"]), "m"))
     add("Surface", "Largest k1", s["k1_max"], "1/m")
     add("Surface", "Smallest k2", s["k2_min"], "1/m")
+    if "volume" in s:
+        add("Surface", "Volume, with lids over the loops", s["volume"], "m³")
     if s["stability"]:
         figures.append(("Surface", "Stability", str(s["stability"]), ""))
+    if "jacobi_eigenvalue" in s:
+        add("Surface", "Lowest Jacobi eigenvalue", s["jacobi_eigenvalue"], "1/m²", form=".3g")
+    if "distance_max" in s:
+        add("Surface", "Off the mesh's vertices, largest", s["distance_max"], "mm", 1e3, ".3g")
+        add("Surface", "Off the mesh's vertices, typical", s["distance_rms"], "mm", 1e3, ".3g")
     if "elements" in s:
         figures.append(("Surface", "Curved triangles", f"{s['elements']:,} of order {s['order']}", ""))
+    for loop in s.get("loops", ()):
+        figures.append(("Boundary", loop["name"], f"{loop['length']:.4g} m, {loop['held']}", ""))
     if n:
         add("Network", "Lamellas", n["lamellas"], form=",")
         add("Network", "Nodes", n["nodes"], form=",")

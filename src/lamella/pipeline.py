@@ -105,17 +105,25 @@ def make_surface(project: Project, folder: Path = Path(), progress: Progress = _
         No such surface.
     """
     table = project.surface
-    if table.kind == "form-found":
-        from lamella.surface.found.find import surface_of_table as find
+    if table.kind not in ("form-found", "mesh"):
+        return CLOSED_FORMS[table.kind](**table.model_dump(exclude={"kind"}))
+    too_low = cautions.order_caution(table.order, table.tolerance, table.most_nodes)
+    if too_low:
+        progress(f"  {too_low}")
+    try:
+        if table.kind == "form-found":
+            from lamella.surface.found.find import surface_of_table as find
 
-        progress("  finding the surface between its curves")
-        return find(table, folder, progress)
-    if table.kind == "mesh":
+            progress("  finding the surface between its curves")
+            return find(table, folder, progress)
         from lamella.surface.imported.adopt import surface_of_table as adopt
 
         progress("  reading the mesh")
         return adopt(table, folder, progress)
-    return CLOSED_FORMS[table.kind](**table.model_dump(exclude={"kind"}))
+    except InputError as error:
+        if too_low and error.where == "surface.tolerance":
+            raise InputError(error.message, f"write order = 3 or 4, or {error.remedy}", error.where) from None
+        raise
 
 
 def plan(
@@ -209,9 +217,11 @@ def compute(
     project = fill_in(project, surface)
     progress("    sampling the surface for files and pictures")
     mesh = surface.mesh()
-    figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh)}
+    loops = summary.loop_summary(surface, getattr(project.surface, "boundary", ()))
+    figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh) | loops}
     clock.stop("surface", f"area {figures['surface']['area']:.4g} m2, H = {surface.mean_curvature:.6g} 1/m")
     warnings += [*surface.warnings(), *cautions.size_cautions(mesh, project.lamella.height)]
+    warnings += cautions.surface_file_cautions(surface)
 
     if depth and until is None and not density:
         reason = umbilic_reason(surface.at(surface.check_places()))

@@ -13,7 +13,7 @@ from lamella.project_values import (
     Refusal,
     Table,
     Unit,
-    file_of,
+    file_name,
     length,
     list_of_tables,
     number,
@@ -115,7 +115,7 @@ class BoundaryTable(Table):
     )
     interpolation: Interpolation | None = Field(default=None, description=_INTERPOLATION)
     circle: CircleTable | None = Field(default=None, description="A circle {center, radius, normal}.")
-    file: str | None = Field(
+    file: Annotated[str | None, file_name(CURVE_FILES)] = Field(
         default=None,
         max_length=1000,
         description="Curve file (.3dm, .dxf or .json), relative to the project file.",
@@ -142,11 +142,6 @@ class BoundaryTable(Table):
 
     _default = model_validator(mode="before")(_with_interpolation)
 
-    @field_validator("file", mode="before")
-    @classmethod
-    def _readable(cls, value: Any) -> Any:
-        return file_of(value, CURVE_FILES)
-
     @field_validator("part", mode="before")
     @classmethod
     def _parts(cls, value: Any) -> Any:
@@ -160,7 +155,17 @@ class BoundaryTable(Table):
             remedy = f"keep one of {', '.join(given)}" if given else "add one of them"
             raise Refusal(f"{told}: has to be one of {', '.join(_SHAPES)}", remedy)
         if self.interpolation is not None and self.points is None:
-            raise Refusal("interpolation goes with points", "leave interpolation out", "interpolation")
+            if self.file is None:
+                raise Refusal("interpolation goes with points", "leave interpolation out", "interpolation")
+            in_file = self.file.lower().endswith(".json")
+            raise Refusal(
+                "interpolation goes with points of this table, not with a file: "
+                + ("each curve of a .json says its own" if in_file else "curves of a drawing are exact as they are"),
+                f'write "interpolation": "{self.interpolation}" beside the points in the file'
+                if in_file
+                else "leave interpolation out",
+                "interpolation",
+            )
         for key in ("layer", "id", "unit"):
             if getattr(self, key) is not None and self.file is None:
                 remedy = "lengths here are in metres" if key == "unit" else f"leave {key} out"

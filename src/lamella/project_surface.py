@@ -15,7 +15,7 @@ from lamella.project_values import (
     Refusal,
     Table,
     Unit,
-    file_of,
+    file_name,
     length,
     list_of_tables,
     number,
@@ -281,7 +281,7 @@ class MeshTable(Table):
     """The surface of constant mean curvature that a mesh means: its border kept, its mean curvature fitted or given."""
 
     kind: Literal["mesh"]
-    file: str = Field(
+    file: Annotated[str, file_name(MESH_FILES)] = Field(
         max_length=1000,
         description="Mesh of triangles or quads (.obj, .ply, .stl or .3dm), relative to the project file.",
         examples=["surface.obj"],
@@ -292,7 +292,7 @@ class MeshTable(Table):
         examples=["mm"],
     )
     mean_curvature: Literal["fit"] | float = number(
-        'Mean curvature with respect to the mesh\'s normal, or "fit": the one that fits the mesh best.',
+        'Mean curvature with respect to the mesh\'s normal, or "fit": that of the surface nearest to the mesh.',
         "1/m",
         default="fit",
         union_mode="left_to_right",
@@ -311,11 +311,6 @@ class MeshTable(Table):
         le=1,
         default=0.1,
     )
-
-    @field_validator("file", mode="before")
-    @classmethod
-    def _readable(cls, value: Any) -> Any:
-        return file_of(value, MESH_FILES)
 
     @field_validator("mean_curvature", mode="before")
     @classmethod

@@ -100,6 +100,11 @@ def file_of(value: Any, suffixes: tuple[str, ...]) -> Any:
     return value
 
 
+def file_name(suffixes: tuple[str, ...]) -> BeforeValidator:
+    """The check of a key that names a file with one of these endings."""
+    return BeforeValidator(lambda value: file_of(value, suffixes))
+
+
 class Table(BaseModel):
     """A table of the project file: unknown keys and values of another type are errors."""
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,8 +14,14 @@ from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas
 from lamella.strip.material import Material
 from lamella.strip.unroll import development_deviation
+from lamella.surface.element.rim import element_rims
+from lamella.surface.element.surface import ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
+from lamella.wording import loop_names
+
+if TYPE_CHECKING:
+    from lamella.project import BoundaryTable
 
 
 def surface_summary(surface: Surface[Any], mesh: SurfaceMesh) -> dict[str, Any]:
@@ -31,6 +38,39 @@ def surface_summary(surface: Surface[Any], mesh: SurfaceMesh) -> dict[str, Any]:
         "k2_min": float(mesh.k2.min()),
         "stability": None,
     } | surface.describe()
+
+
+def loop_summary(surface: Surface[Any], boundary: Sequence[BoundaryTable]) -> dict[str, Any]:
+    """The boundary loops of a surface of elements: name, length (m), and whether they are held.
+
+    Parameters
+    ----------
+    surface : Surface
+    boundary : sequence of BoundaryTable
+        Those of the project; none for a surface from a mesh, whose borders are held.
+    """
+    if not isinstance(surface, ElementSurface):
+        return {}
+    rims = element_rims(surface.connectivity, surface.nodes, surface.rim_loop)
+    names = [table.name for table in boundary] or loop_names(len(rims))
+    held = [_held(table) for table in boundary] or ["held"] * len(rims)
+    return {
+        "loops": [
+            {"name": name, "length": rim.length, "held": how} for name, rim, how in zip(names, rims, held, strict=True)
+        ]
+    }
+
+
+def _held(table: BoundaryTable) -> str:
+    """How a loop is held, in words."""
+    slides = [part.slide for part in table.part or ()] or [table.slide]
+    ways = {"along a direction" if slide.direction else "on a plane" for slide in slides if slide is not None}
+    if not ways:
+        return "held"
+    free, how = sum(slide is not None for slide in slides), " and ".join(sorted(ways))
+    if free == len(slides):
+        return f"slides {how}"
+    return f"{free} of {len(slides)} parts {'slides' if free == 1 else 'slide'} {how}, the others are held"
 
 
 def network_summary(network: Network, requested: str) -> dict[str, Any]:

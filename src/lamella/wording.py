@@ -12,6 +12,16 @@ def cut(text: str, most: int = 80) -> str:
     return line if len(line) <= most else line[: most - 3] + "..."
 
 
+def counted(number: int, one: str, several: str = "") -> str:
+    """A number with its noun: 1 vertex, 2 vertices, 1,234 faces."""
+    return f"{number:,} {one if number == 1 else several or one + 's'}"
+
+
+def loop_names(count: int) -> list[str]:
+    """What the border loops of a mesh are called, the outer one first."""
+    return ["border"] if count == 1 else ["outer border", *(f"border {k}" for k in range(2, count + 1))]
+
+
 def shown(value: Any) -> str:
     """A value as TOML writes it, or what it is."""
     if isinstance(value, bool):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lamella.fabrication.rules import Rules
+from lamella.wording import counted
 
 
 @dataclass
@@ -85,7 +86,8 @@ class Notes:
             )
         if self.collisions:
             yield (
-                f"{self.collisions} pairs of strips meet beyond the rim, where no slot is cut: shorten "
+                f"{counted(self.collisions, 'pair')} of strips "
+                f"{'meets' if self.collisions == 1 else 'meet'} beyond the rim, where no slot is cut: shorten "
                 f"fabrication.rim_overhang ({1e3 * rules.rim_overhang:g} mm) or end_distance "
                 f"({1e3 * rules.end_distance:g} mm), or move the rim"
             )

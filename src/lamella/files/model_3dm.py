@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import base64
-import uuid
 from pathlib import Path
 
 import numpy as np
 import rhino3dm
 from numpy.typing import NDArray
 
+from lamella.files.rhino_file import RhinoFile, nurbs_curve
 from lamella.files.splines import RELATIVE_TOLERANCE, fit_spline
-from lamella.files.text import one_line, require_finite
+from lamella.files.text import require_finite
 from lamella.files.whole import write_whole
 from lamella.network.network import NODE_KINDS, Network
 from lamella.strip.lamellas import Lamellas, Section, twisted_strip
@@ -32,8 +31,6 @@ COLOURS = {
 }
 POINT_OBJECTS = 20_000
 """Nodes up to this number are points named by their index; above, one point cloud a layer."""
-
-IDENTITIES = uuid.uuid5(uuid.NAMESPACE_URL, "lamella/model.3dm")
 
 
 def model_bytes(
@@ -83,25 +80,14 @@ class _Model:
     """A .3dm file being filled."""
 
     def __init__(self, name: str, version: str) -> None:
-        self.name, self.version = name, version
-        self.file = rhino3dm.File3dm()
-        self.layers: dict[str, int] = {}
-        self.file.ApplicationName = "lamella"
-        self.file.ApplicationDetails = f"lamella {one_line(version)}, project {one_line(name)}"
-        # openNURBS stamps the time, and on Windows the user's name, into a file of revision 0 only.
-        self.file.Revision = 1
-        self.file.Strings["lamella\\project"] = name
-        self.file.Strings["lamella\\version"] = version
-        settings = self.file.Settings
-        settings.ModelUnitSystem = rhino3dm.UnitSystem.Meters
-        settings.PageUnitSystem = rhino3dm.UnitSystem.Millimeters
-        settings.ModelAbsoluteTolerance = 1e-5
+        self.version = version
+        self.rhino = RhinoFile("model.3dm", name, version)
+        self.file = self.rhino.file
 
     def filled(self, surface: SurfaceMesh, network: Network, lamellas: Lamellas | None) -> _Model:
-        for layer in COLOURS:
-            if lamellas is not None or not layer.startswith("strips"):
-                self._add_layer(layer)
-        self._add_mesh(surface)
+        strips = lamellas is not None
+        self.rhino.add_layers({k: colour for k, colour in COLOURS.items() if strips or not k.startswith("strips")})
+        self.rhino.add_mesh(surface, self.rhino.attributes("surface", "surface", version=self.version))
         for k in range(len(network.ids)):
             self._add_centre_line(network, k)
         if lamellas is not None:
@@ -113,41 +99,7 @@ class _Model:
         return self
 
     def encoded(self) -> bytes:
-        return base64.b64decode(self.file.Encode())
-
-    def _identity(self, *names: str) -> uuid.UUID:
-        return uuid.uuid5(IDENTITIES, "\n".join((self.name, *names)))
-
-    def _add_layer(self, name: str) -> None:
-        layer = rhino3dm.Layer()
-        layer.Name = name
-        layer.Id = self._identity(name)
-        layer.Color = (*COLOURS[name], 255)
-        self.layers[name] = self.file.Layers.Add(layer)
-
-    def _attributes(self, layer: str, name: str, **text: str) -> rhino3dm.ObjectAttributes:
-        attributes = rhino3dm.ObjectAttributes()
-        attributes.Id = self._identity(layer, name)
-        attributes.Name = name
-        attributes.LayerIndex = self.layers[layer]
-        for key, value in text.items():
-            attributes.SetUserString(key, value)
-        return attributes
-
-    def _add_mesh(self, surface: SurfaceMesh) -> None:
-        mesh = rhino3dm.Mesh()
-        vertices, normals, faces = mesh.Vertices, mesh.Normals, mesh.Faces
-        vertices.UseDoublePrecisionVertices = True
-        for x, y, z in surface.points.tolist():
-            vertices.AddPoint3d(x, y, z)
-        for x, y, z in surface.normals.tolist():
-            normals.Add(x, y, z)
-        for a, b, c, d in surface.faces.tolist():
-            if c == d:
-                faces.AddFace(a, b, c)
-            else:
-                faces.AddFace(a, b, c, d)
-        self.file.Objects.AddMesh(mesh, self._attributes("surface", "surface", version=self.version))
+        return self.rhino.encoded()
 
     def _add_centre_line(self, network: Network, k: int) -> None:
         span = slice(network.sample_offsets[k], network.sample_offsets[k + 1])
@@ -158,7 +110,7 @@ class _Model:
             arclengths, network.sample_points[span], tangents[[0, -1]], RELATIVE_TOLERANCE * length / 3**0.5
         )
         family = str(network.families[k])
-        attributes = self._attributes(
+        attributes = self.rhino.attributes(
             f"lamellas {family}",
             network.ids[k],
             id=network.ids[k],
@@ -166,7 +118,7 @@ class _Model:
             length_m=repr(length),
             version=self.version,
         )
-        self.file.Objects.AddCurve(_curve(spline.knots, spline.controls), attributes)
+        self.file.Objects.AddCurve(nurbs_curve(3, spline.knots[1:-1], spline.controls), attributes)
 
     def _add_strip(self, network: Network, section: Section, edges: Floats, k: int) -> None:
         span = slice(network.sample_offsets[k], network.sample_offsets[k + 1])
@@ -174,11 +126,13 @@ class _Model:
         length = float(arclengths[-1])
         slopes = _edge_slopes(network, section.height, span)
         spline = fit_spline(arclengths, edges[span], slopes, RELATIVE_TOLERANCE * length / 3**0.5)
-        lower, upper = (_curve(spline.knots, spline.controls[:, side]) for side in (slice(0, 3), slice(3, 6)))
+        lower, upper = (
+            nurbs_curve(3, spline.knots[1:-1], spline.controls[:, side]) for side in (slice(0, 3), slice(3, 6))
+        )
         strip = rhino3dm.NurbsSurface.CreateRuledSurface(lower, upper)
         strip.SetDomain(1, rhino3dm.Interval(-section.height / 2, section.height / 2))
         family = str(network.families[k])
-        attributes = self._attributes(
+        attributes = self.rhino.attributes(
             f"strips {family}",
             network.ids[k],
             id=network.ids[k],
@@ -198,11 +152,11 @@ class _Model:
             if len(points) > POINT_OBJECTS:
                 if members:
                     cloud = rhino3dm.PointCloud([rhino3dm.Point3d(*points[i]) for i in members])
-                    self.file.Objects.AddPointCloud(cloud, self._attributes(layer, layer, version=self.version))
+                    self.file.Objects.AddPointCloud(cloud, self.rhino.attributes(layer, layer, version=self.version))
                 continue
             for i in members:
                 point = rhino3dm.Point(rhino3dm.Point3d(*points[i]))
-                self.file.Objects.Add(point, self._attributes(layer, str(i)))
+                self.file.Objects.Add(point, self.rhino.attributes(layer, str(i)))
 
 
 def _edge_slopes(network: Network, height: float, span: slice) -> Floats:
@@ -212,13 +166,3 @@ def _edge_slopes(network: Network, height: float, span: slice) -> Floats:
     tg = network.sample_darboux.tg[span][[0, -1], None]
     turning = height / 2 * (-kn * tangents - tg * np.cross(normals, tangents))
     return np.hstack((tangents - turning, tangents + turning))
-
-
-def _curve(knots: Floats, controls: Floats) -> rhino3dm.NurbsCurve:
-    points = [rhino3dm.Point3d(x, y, z) for x, y, z in controls.tolist()]
-    curve = rhino3dm.NurbsCurve.Create(False, 3, points)
-    # openNURBS leaves out the first and the last knot, which no basis function needs.
-    curve_knots = curve.Knots
-    for i, knot in enumerate(knots[1:-1].tolist()):
-        curve_knots[i] = knot
-    return curve

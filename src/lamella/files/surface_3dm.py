@@ -7,8 +7,6 @@ therefore three Bezier patches of degree p x p: the same surface to rounding, wi
 
 from __future__ import annotations
 
-import base64
-import uuid
 from dataclasses import dataclass
 from functools import lru_cache
 from math import comb
@@ -18,11 +16,11 @@ import numpy as np
 import rhino3dm
 from numpy.typing import NDArray
 
-from lamella.files.text import one_line, require_finite
+from lamella.files.rhino_file import RhinoFile, nurbs_curve
+from lamella.files.text import require_finite
 from lamella.files.whole import write_whole
 from lamella.surface.element.lagrange import lagrange, subdivision
 from lamella.surface.element.surface import MOST_PARTS, ElementSurface
-from lamella.surface.mesh import SurfaceMesh
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -40,7 +38,6 @@ SAG_PLACES = 6
 """Parts of the sides of the small triangles between which a mesh's distance from the surface is taken."""
 
 COLOURS = {"surface": (170, 190, 210), "boundary": (60, 60, 60)}
-IDENTITIES = uuid.uuid5(uuid.NAMESPACE_URL, "lamella/surface.3dm")
 
 
 def write_surface_3dm(path: Path, surface: ElementSurface, *, name: str, version: str) -> None:
@@ -75,7 +72,7 @@ def surface_3dm_bytes(surface: ElementSurface, *, name: str, version: str) -> by
     else:
         model.add_mesh(count)
     model.add_boundary()
-    return base64.b64decode(model.file.Encode())
+    return model.rhino.encoded()
 
 
 # --------------------------------------------------------------------------------------------------- geometry
@@ -208,39 +205,25 @@ class _Model:
     """A .3dm file being filled."""
 
     def __init__(self, name: str, version: str, surface: ElementSurface) -> None:
-        self.name, self.version, self.surface = name, version, surface
+        self.version, self.surface = version, surface
         self.diagonal = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
-        self.file = rhino3dm.File3dm()
-        self.file.ApplicationName = "lamella"
-        self.file.ApplicationDetails = f"lamella {one_line(version)}, project {one_line(name)}"
-        # openNURBS stamps the time, and on Windows the user's name, into a file of revision 0 only.
-        self.file.Revision = 1
-        settings = self.file.Settings
-        settings.ModelUnitSystem = rhino3dm.UnitSystem.Meters
-        settings.PageUnitSystem = rhino3dm.UnitSystem.Millimeters
-        # what Rhino joins patches within: far above rounding, far below what can be built
-        settings.ModelAbsoluteTolerance = 1e-5
-        self._say(project=name, version=version, mean_curvature=repr(float(surface.mean_curvature)))
-        self.layers: dict[str, int] = {}
-        for layer_name, colour in COLOURS.items():
-            layer = rhino3dm.Layer()
-            layer.Name = layer_name
-            layer.Id = self._identity(layer_name)
-            layer.Color = (*colour, 255)
-            self.layers[layer_name] = self.file.Layers.Add(layer)
+        self.rhino = RhinoFile("surface.3dm", name, version)
+        self.file = self.rhino.file
+        self.rhino.say(mean_curvature=repr(float(surface.mean_curvature)))
+        self.rhino.add_layers(COLOURS)
 
     def add_patches(self) -> None:
         controls = patches(self.surface)
         p = controls.shape[1] - 1
         tolerance = RELATIVE_TOLERANCE * max(self.diagonal, float(np.abs(self.surface.nodes).max()))
-        self._say(
+        self.rhino.say(
             tolerance_m=f"{tolerance:.1e}",
             surface=f"{len(controls)} Bezier patches of degree {p} x {p}, three to a curved triangle of the program: "
             "the program's surface itself, to rounding. They share their edges; _Join makes them one polysurface.",
         )
         group = rhino3dm.Group()
         group.Name = "surface"
-        group.Id = self._identity("surface", "group")
+        group.Id = self.rhino.identity("surface", "group")
         self.file.Groups.Add(group)
         patch = _bezier_patch(p)
         points = patch.Points
@@ -260,36 +243,23 @@ class _Model:
             reached = sag(self.surface, parts)
         # two digits, and the places between those looked at, rounded up
         tolerance = f"{1.07 * reached:.1e}"
-        self._say(
+        self.rhino.say(
             tolerance_m=tolerance,
             surface=f"one mesh, within {tolerance} m of the program's surface: as NURBS it would be {count} patches, "
             f"more than {MOST_PATCHES}. The boundary curves are exact.",
         )
-        mesh = _rhino_mesh(self.surface.subdivided(parts))
-        self.file.Objects.AddMesh(mesh, self._attributes("surface", "surface", tolerance_m=tolerance))
+        attributes = self._attributes("surface", "surface", tolerance_m=tolerance)
+        self.rhino.add_mesh(self.surface.subdivided(parts), attributes)
 
     def add_boundary(self) -> None:
         for number, curve in enumerate(boundary_curves(self.surface), 1):
             attributes = self._attributes("boundary", f"boundary {number}", loop=str(curve.loop + 1))
-            self.file.Objects.AddCurve(_bezier_curve(curve), attributes)
-
-    def _say(self, **text: str) -> None:
-        for key, value in text.items():
-            self.file.Strings[f"lamella\\{key}"] = value
-
-    def _identity(self, *names: str) -> uuid.UUID:
-        return uuid.uuid5(IDENTITIES, "\n".join((self.name, *names)))
+            knots = np.repeat(curve.breaks, curve.degree)
+            self.file.Objects.AddCurve(nurbs_curve(curve.degree, knots, curve.controls), attributes)
 
     def _attributes(self, layer: str, name: str, **text: str) -> rhino3dm.ObjectAttributes:
-        attributes = rhino3dm.ObjectAttributes()
-        attributes.Id = self._identity(layer, name)
-        attributes.Name = name
-        attributes.LayerIndex = self.layers[layer]
-        if text:
-            shared = {"mean_curvature": repr(float(self.surface.mean_curvature)), "version": self.version}
-            for key, value in (text | shared).items():
-                attributes.SetUserString(key, value)
-        return attributes
+        shared = {"mean_curvature": repr(float(self.surface.mean_curvature)), "version": self.version} if text else {}
+        return self.rhino.attributes(layer, name, **(text | shared))
 
 
 def _bezier_patch(degree: int) -> rhino3dm.NurbsSurface:
@@ -300,25 +270,3 @@ def _bezier_patch(degree: int) -> rhino3dm.NurbsSurface:
         for k in range(degree):
             knots[k], knots[degree + k] = 0.0, 1.0
     return patch
-
-
-def _bezier_curve(bezier: BoundaryCurve) -> rhino3dm.NurbsCurve:
-    points = [rhino3dm.Point3d(x, y, z) for x, y, z in bezier.controls.tolist()]
-    curve = rhino3dm.NurbsCurve.Create(False, bezier.degree, points)
-    knots = curve.Knots
-    for k, knot in enumerate(np.repeat(bezier.breaks, bezier.degree).tolist()):
-        knots[k] = knot
-    return curve
-
-
-def _rhino_mesh(surface: SurfaceMesh) -> rhino3dm.Mesh:
-    mesh = rhino3dm.Mesh()
-    vertices, normals, faces = mesh.Vertices, mesh.Normals, mesh.Faces
-    vertices.UseDoublePrecisionVertices = True
-    for x, y, z in surface.points.tolist():
-        vertices.AddPoint3d(x, y, z)
-    for x, y, z in surface.normals.tolist():
-        normals.Add(x, y, z)
-    for a, b, c, _ in surface.faces.tolist():
-        faces.AddFace(a, b, c)
-    return mesh

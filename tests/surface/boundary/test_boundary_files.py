@@ -15,7 +15,7 @@ from ezdxf.path import make_path
 from scipy.spatial import cKDTree
 
 from lamella import InputError, parse_project
-from lamella.surface.boundary import Loop, boundary_loops
+from lamella.surface.boundary import Loop, boundary_loops, read_json
 
 T = np.random.default_rng(4).uniform(0, 1, 300)
 
@@ -293,6 +293,30 @@ def test_chains_and_closed_curves_are_listed_together(tmp_path: Path) -> None:
 # --- JSON -------------------------------------------------------------------------------------------------------
 
 
+def test_the_json_of_the_documentation(tmp_path: Path) -> None:
+    """docs/files.md and the docstring of the reader show the same file, and it is read."""
+    page = (Path(__file__).parents[3] / "docs" / "files.md").read_text(encoding="utf-8")
+    shown = page.partition("```json\n")[2].partition("```")[0]
+    told = (read_json.__doc__ or "").partition("::\n")[2].partition("`unit` is")[0]
+    assert orjson.loads(shown) == orjson.loads(told)
+    (tmp_path / "c.json").write_text(shown)
+    outer, oculus = (loop_of(tmp_path, file="c.json", id=name) for name in ("outer", "oculus"))
+    assert len(outer.corners) == 4
+    assert outer.length == pytest.approx(4 * np.hypot(4, 1))
+    assert len(oculus.corners) == 0
+    np.testing.assert_allclose(oculus.at(0.0), [1.5, 1.5, 0.9])
+
+
+@pytest.mark.parametrize(
+    ("file", "remedy"),
+    [("c.json", 'write "interpolation": "polyline" beside the points in the file'), ("c.dxf", "leave it out")],
+)
+def test_interpolation_of_a_file(tmp_path: Path, file: str, remedy: str) -> None:
+    with pytest.raises(InputError, match="interpolation goes with points of this table, not with a file") as error:
+        loop_of(tmp_path, file=file, interpolation="polyline")
+    assert remedy.replace("it out", "interpolation out") in error.value.remedy
+
+
 def test_json_curves(tmp_path: Path) -> None:
     t = 2 * np.pi * np.arange(64) / 64
     ring = np.stack([2000 * np.cos(t), 2000 * np.sin(t), 0 * t], axis=1).tolist()
@@ -312,6 +336,7 @@ def test_json_curves(tmp_path: Path) -> None:
     [
         ([], 'has no "curves"'),
         ({"unit": "yd", "curves": {}}, "unit 'yd' is not one of m, mm"),
+        ({"units": "m", "curves": {}}, "unknown key 'units'"),
         ({"unit": "m", "curves": {"a": 3}}, "curve 'a' has no \"points\""),
         ({"unit": "m", "curves": {"a": {"points": [[0, 0, 0], [1, 2]]}}}, "curve 'a': points[1] has 2 numbers"),
         ({"unit": "m", "curves": {"a": {"points": [[0, 0, 0], [1, 2, 3]]}}}, "curve 'a': 2 different points"),

@@ -172,7 +172,7 @@ def test_flat_triangles_are_flipped_inside_and_dropped_on_the_border():
     mesh = cleaned(points, faces)
     assert len(mesh.faces) == 5
     assert area(mesh) == pytest.approx(1.5, rel=1e-5)
-    assert any("1 slivers removed" in note for note in mesh.notes)
+    assert any("1 sliver removed" in note for note in mesh.notes)
     mesh = cleaned(points[:5], faces[:4])
     assert len(mesh.faces) == 3
     assert len(mesh.borders[0]) == 5
@@ -224,7 +224,7 @@ def test_non_manifold_edges_are_refused_with_place():
     points = np.vstack((POINTS, [[0.5, 0.5, 2]]))
     middle = int(np.flatnonzero((POINTS[:, :2] == 0.5).all(axis=1))[0])
     fin = [middle, middle + 1, len(POINTS)]
-    refused(r"1 edges have more than two faces; the first has 3, at \(0.5, 0.5625, 0.0844\) m", points, [*FACES, fin])
+    refused(r"1 edge with more than two faces; the first has 3, at \(0.5, 0.5625, 0.0844\) m", points, [*FACES, fin])
 
 
 def test_bow_ties_are_refused_with_place():
@@ -233,7 +233,7 @@ def test_bow_ties_are_refused_with_place():
     for x, y in ((0.44, 0.44), (0.56, 0.56)):
         near = (np.abs(middles[:, :2] - [x, y]) < 0.0625).all(axis=1)
         keep &= ~near
-    refused(r"at 1 vertices the mesh touches itself .* at \(0.5, 0.5, 0.075\)", POINTS, FACES[keep])
+    refused(r"at 1 vertex the mesh touches itself .* at \(0.5, 0.5, 0.075\)", POINTS, FACES[keep])
 
 
 def test_several_pieces_are_refused_and_fragments_dropped():
@@ -245,7 +245,7 @@ def test_several_pieces_are_refused_and_fragments_dropped():
     small = np.vstack((points, 0.01 * points + [3, 0, 0]))
     mesh = cleaned(small, np.vstack((faces, faces + len(points))))
     assert len(mesh.faces) == len(faces)
-    assert any("1 fragments dropped, together 0.0001 of the area" in note for note in mesh.notes)
+    assert any("1 fragment dropped, together 0.0001 of the area" in note for note in mesh.notes)
     # Pieces that touch at one vertex are pieces.
     touching = np.vstack((points, points + np.array([2, 0, 0])))
     refused("2 pieces", touching, np.vstack((faces, faces + len(points))))

@@ -1,4 +1,17 @@
-"""Curves from JSON: {"unit": "m", "curves": {NAME: {"points": [[x, y, z], ...], "interpolation": "spline"}}}."""
+"""Closed curves from a JSON file, by name.
+
+The format (docs/files.md has it too)::
+
+    {"unit": "mm",
+     "curves": {"outer": {"points": [[0, 0, 0], [4000, 0, 1000], [4000, 4000, 0], [0, 4000, 1000]],
+                          "interpolation": "polyline"},
+                "oculus": {"points": [[1500, 1500, 900], [2500, 1500, 900], [2000, 2500, 900]]}}}
+
+`unit` is one of m, mm, cm, dm, ft, in; without it the project has to give `unit`. Each curve is closed, its first point
+not repeated (a last point that repeats it is left out). `interpolation` is "spline" (when not given: quintic through 7
+points and more, cubic through fewer) or "polyline", whose corners are kept. A project names a curve by ``id``; one
+alone needs no name. Other keys are errors.
+"""
 
 from __future__ import annotations
 
@@ -34,6 +47,9 @@ def read_json(path: Path, where: str) -> tuple[list[FileCurve], float | None]:
     given = content.get("curves") if isinstance(content, dict) else None
     if not isinstance(given, dict):
         raise InputError(f'{path} has no "curves"', _REMEDY, where)
+    unknown = set(content) - {"unit", "curves"}
+    if unknown:
+        raise InputError(f"{path}: unknown key {shown(min(unknown))}", "keys: unit, curves", where)
     unit = content.get("unit")
     if unit is not None and unit not in METRES:
         raise InputError(f"{path}: unit {shown(unit)} is not one of {', '.join(METRES)}", "write one of them", where)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.surface.element.connectivity import Connectivity
+from lamella.surface.element.edge_basis import edge_rule, edge_slopes, edge_values
 from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
@@ -38,26 +39,21 @@ class ElementRim:
     starts: Floats
     _spans: Floats
     _nodes: Floats
-    _inverse: Floats
 
     def at(self, t: Floats) -> Floats:
         """Points (n, 3), m."""
         t = np.asarray(t, float) % 1
         edge = np.clip(np.searchsorted(self.starts, t, side="right") - 1, 0, len(self.starts) - 1)
         share = np.clip((t - self.starts[edge]) / self._spans[edge], 0, 1)
-        powers = np.vander(share, len(self._inverse), increasing=True) @ self._inverse
-        return np.asarray(np.einsum("nk,nkc->nc", powers, self._nodes[edge]))
+        basis = edge_values(self._nodes.shape[1] - 1, share)
+        return np.asarray(np.einsum("nk,nkc->nc", basis, self._nodes[edge]))
 
 
 def element_rims(connectivity: Connectivity, nodes: Floats, rim_loop: Integers) -> tuple[ElementRim, ...]:
     """Boundary loops of elements with nodes (n, 3), by the numbers in `rim_loop` (b,)."""
     p = connectivity.basis.order
-    monomials = np.vander(np.linspace(0, 1, p + 1), increasing=True)
-    inverse: Floats = np.asarray(np.linalg.inv(monomials), np.float64)
-    gauss, weight = np.polynomial.legendre.leggauss(2 * p)
-    gauss = (gauss + 1) / 2
-    slopes = np.zeros((len(gauss), p + 1))
-    slopes[:, 1:] = np.arange(1, p + 1) * np.vander(gauss, p, increasing=True)
+    gauss, weight = edge_rule(p)
+    slopes, ends = edge_slopes(p, gauss), edge_slopes(p, np.array([0.0, 1.0]))
     rim_nodes = connectivity.rim_nodes
     rims = []
     for loop in range(int(rim_loop.max()) + 1):
@@ -68,14 +64,13 @@ def element_rims(connectivity: Connectivity, nodes: Floats, rim_loop: Integers) 
             order.append(after[int(edges[order[-1], -1])])
         edges = edges[order]
         along = nodes[edges]
-        speed = np.linalg.norm(np.matmul(slopes @ inverse, along), axis=2)
-        lengths = (speed * weight / 2).sum(1)
+        speed = np.linalg.norm(np.matmul(slopes, along), axis=2)
+        lengths = (speed * weight).sum(1)
         spans = lengths / lengths.sum()
         starts = np.concatenate([[0.0], np.cumsum(spans)[:-1]])
-        end_slope = np.arange(p + 1) @ inverse
-        leaving = np.einsum("k,bkc->bc", inverse[1], along)
-        arriving = np.roll(np.einsum("k,bkc->bc", end_slope, along), 1, 0)
+        leaving = np.einsum("k,bkc->bc", ends[0], along)
+        arriving = np.roll(np.einsum("k,bkc->bc", ends[1], along), 1, 0)
         cosine = (leaving * arriving).sum(1) / (np.linalg.norm(leaving, axis=1) * np.linalg.norm(arriving, axis=1))
         corners = starts[cosine < np.cos(CORNER)]
-        rims.append(ElementRim(float(lengths.sum()), corners, edges[:, 0], starts, spans, along, inverse))
+        rims.append(ElementRim(float(lengths.sum()), corners, edges[:, 0], starts, spans, along))
     return tuple(rims)

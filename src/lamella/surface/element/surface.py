@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.curvature import ElementPoints, element_points
+from lamella.surface.element.edge_basis import edge_rule, edge_slopes, edge_values
 from lamella.surface.element.gauss_map import harmonic_normals
 from lamella.surface.element.geometry import normal_and_area, project_onto_nodes, tangents
-from lamella.surface.element.lagrange import local_faces
 from lamella.surface.element.places import Places
 from lamella.surface.element.quadrature import triangle_rule
+from lamella.surface.element.sampling import sampled_places
 from lamella.surface.element.umbilics import Umbilics, find_umbilics
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.points import Floats, SurfacePoints
@@ -28,6 +29,8 @@ Integers = NDArray[np.int64]
 SMOOTHED_ORDER = {2: 1, 3: 2, 4: 3}
 # most parts an element's edge is cut into for files and pictures
 MOST_PARTS = 12
+# of a mesh's tolerance, the sag of its rim
+RIM_SHARE = 0.25
 
 
 @dataclass(frozen=True)
@@ -169,12 +172,8 @@ class ElementSurface:
         position = np.matmul(basis.basis(points), self._corners - middle)
         cross = np.cross(*tangents(*self._slopes(points), self._corners))
         total = float(((position * cross).sum(2) * weights).sum() / 3)
-        rule, weight = np.polynomial.legendre.leggauss(2 * basis.order)
-        rule, weight = (rule + 1) / 2, weight / 2
-        line = np.vander(np.linspace(0, 1, basis.order + 1), increasing=True)
-        value = np.vander(rule, basis.order + 1, increasing=True) @ np.linalg.inv(line)
-        slope_powers = np.arange(1, basis.order + 1) * np.vander(rule, basis.order, increasing=True)
-        slope = np.column_stack([np.zeros(len(rule)), slope_powers]) @ np.linalg.inv(line)
+        rule, weight = edge_rule(basis.order)
+        value, slope = edge_values(basis.order, rule), edge_slopes(basis.order, rule)
         along = self.nodes[self.connectivity.rim_nodes] - middle
         for loop in np.unique(self.rim_loop):
             edges = along[self.rim_loop == loop]
@@ -191,7 +190,8 @@ class ElementSurface:
         Parameters
         ----------
         tolerance : float
-            Sag of the mesh's edges over the diagonal of the bounding box.
+            Sag of the mesh's edges over the diagonal of the bounding box; along the rim, which is what is seen, a
+            quarter of it.
         """
         size = float(np.linalg.norm(np.ptp(self.nodes, axis=0)))
         middle = self.measured(Places(np.arange(len(self._corners)), np.full((len(self._corners), 2), 1 / 3)))
@@ -199,25 +199,19 @@ class ElementSurface:
         edges = np.linalg.norm(self._corners[:, :3] - np.roll(self._corners[:, :3], -1, 1), axis=2).max(1)
         # an edge of length l over a curvature k sags by k l^2 / 8
         parts = np.sqrt(np.percentile(bend * edges**2, 99) / (8 * tolerance * size))
-        return self.subdivided(int(np.clip(np.ceil(parts), 1, MOST_PARTS)))
+        return self.subdivided(int(np.clip(np.ceil(parts), 1, MOST_PARTS)), RIM_SHARE * tolerance * size)
 
-    def subdivided(self, parts: int) -> SurfaceMesh:
-        """Every element's edges cut into `parts`; shared vertices are there once."""
-        grid = connect(self.connectivity.faces, int(self.connectivity.faces.max()) + 1, parts)
-        local, faces = grid.basis.nodes, local_faces(parts)
-        m = len(self._corners)
-        first = np.empty(grid.node_count, np.int64)
-        first[grid.elements] = np.arange(m * len(local)).reshape(m, -1)
+    def subdivided(self, parts: int, rim_sag: float = np.inf) -> SurfaceMesh:
+        """Every element's edges cut into `parts`, those on the rim finer where their sag (m) asks for it."""
+        place, faces = sampled_places(self.connectivity, self.nodes, parts, rim_sag)
         space, values = self._smoothed
-        place = Places(first // len(local), local[first % len(local)])
         at = self.at(place)
         measured = np.einsum("nk,nk->n", space.basis.basis(place.local), values[space.elements[place.element]][..., 7])
-        all_faces = grid.elements[:, faces].reshape(-1, 3)
         k1, k2 = at.principal_curvatures
         return SurfaceMesh(
             at.position,
             at.normal,
-            np.column_stack([all_faces, all_faces[:, 2]]),
+            np.column_stack([faces, faces[:, 2]]),
             measured,
             k1 * k2,
             k1,

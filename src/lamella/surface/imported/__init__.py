@@ -1,5 +1,6 @@
-"""Meshes from files: read, cleaned, their borders as curves, and the mean curvature they mean.
+"""Meshes from files: read, cleaned, their borders as curves, and the surface of constant mean curvature they mean.
 
-`read_mesh` -> `RawMesh` -> `clean` -> `CleanMesh` -> `border_curves` and `fit_mean_curvature`. The surface of constant
-mean curvature nearest to such a mesh is found elsewhere; a mesh never is the surface (facets have no curvature).
+`read_mesh` -> `RawMesh` -> `clean` -> `CleanMesh` -> `border_curves` and `fit_mean_curvature` (is it constant, and of
+what value) -> `adopt.surface_of_table`, which finds the film nearest to the vertices (`nearest`). A mesh never is the
+surface: facets have no curvature.
 """

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,9 +25,12 @@ from lamella.surface.found.meshing import on_surface
 from lamella.surface.found.newton import Equilibrium, NoFilmError, find_equilibrium
 from lamella.surface.imported.border import BorderCurve, border_curves
 from lamella.surface.imported.clean import CleanMesh, clean
+from lamella.surface.imported.edges import face_normals, find_edges, vertex_areas
 from lamella.surface.imported.fit import Fit, fit_mean_curvature
+from lamella.surface.imported.nearest import nearest_of_family
 from lamella.surface.imported.raw_mesh import Floats
 from lamella.surface.imported.read_mesh import read_mesh
+from lamella.wording import loop_names
 
 if TYPE_CHECKING:
     from lamella.project import MeshTable
@@ -36,8 +41,15 @@ Progress = Callable[[str], None]
 MOST_BORDER_POINTS = 240
 # samples of a border's curve between two of its vertices
 SAMPLES = 24
-# of the curvature scale: a best fit below it, and below what a mesh can tell, is that of a minimal surface
-MINIMAL = 2e-3
+# of the curvature scale: an H below it, and below what a mesh can tell, is that of a minimal surface; above the other
+# the user is warned of it
+MINIMAL, TOLD = 2e-3, 1e-4
+# vertices of a mesh whose curvature may be read wrongly for its coarseness alone: the surface itself decides then
+COARSE = 400
+# 1/m; a radius of a thousand kilometres
+LEAST = 1e-9
+# mean cosine between neighbouring faces
+CRUMPLED = 0.8
 # largest distance between mesh and surface, over the size, at which the surface still is what the mesh means
 FAR = 0.05
 
@@ -69,51 +81,35 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = _silen
     fit = fit_mean_curvature(mesh.points, mesh.faces)
     given = None if table.mean_curvature == "fit" else float(table.mean_curvature)
     progress(
-        f"  best-fit H = {fit.mean_curvature:.6g} 1/m, off by {fit.deviation:.2g} of the curvature scale "
-        f"{fit.scale:.4g} 1/m"
+        f"  curvature at the vertices: H = {fit.mean_curvature:.6g} 1/m, off by {fit.deviation:.2g} of the curvature "
+        f"scale {fit.scale:.4g} 1/m"
     )
-    if fit.deviation > table.deviation:
-        raise InputError(
-            f"the mesh is not of constant mean curvature: H = {fit.mean_curvature:.4g} 1/m fits best, its vertices are "
-            f"off by {fit.deviation:.2g} of the curvature scale {fit.scale:.4g} 1/m (limit {table.deviation:g}, "
-            f"largest {fit.deviation_max:.2g})",
-            f"mend the mesh, or raise deviation to take the nearest surface of H = {fit.mean_curvature:.4g} 1/m",
-            "surface.file",
-        )
-    mean_curvature = given
-    if mean_curvature is None:
-        mean_curvature = fit.mean_curvature if abs(fit.mean_curvature) > MINIMAL * fit.scale else 0.0
-    try:
-        film = harmonic_over_itself(on_surface(_as_film(mesh, loops), table.order), mean_curvature)
-    except NoFilmError as error:
-        raise InputError(
-            f"no elements could be laid on the mesh: {error}",
-            "mend the mesh where it overlaps, folds or is very thin",
-            "surface.file",
-        ) from None
-    first = _nearest(film, mean_curvature, given is None, progress)
+    areas = vertex_areas(mesh.points, mesh.faces)
+    first, exact = _coarse(mesh, loops, fit, areas, table, progress)
+    nearest = first.mean_curvature
+    if given is None:
+        first = _without_curvature(first, fit.scale, progress)
+        notes += _told_zero(first.mean_curvature, nearest)
 
     def settled(film: Film) -> Equilibrium:
-        return find_equilibrium(film, first.mean_curvature, stable=False, detail=progress)
+        if given is not None or not first.mean_curvature:
+            return find_equilibrium(film, first.mean_curvature, stable=False, detail=progress)
+        # by the volume: at a fold of H there may be no surface of the H of the elements before
+        here = find_equilibrium(film, first.mean_curvature, volume=0.0, stable=False, detail=progress)
+        return nearest_of_family(here, mesh.points, areas, progress)
 
     found = adapted(first, settled, table.tolerance, table.most_nodes, first.steps, False, progress)
-    film = found.equilibrium.film
-    _, position = ClosestPoint(film.connectivity, film.nodes)(mesh.points)
-    distance = np.linalg.norm(position - mesh.points, axis=1)
-    if distance.max() > FAR * film.size:
-        raise InputError(
-            f"the nearest surface of H = {first.mean_curvature:.4g} 1/m is up to {distance.max():.4g} m away from the "
-            f"mesh (limit {FAR * film.size:.4g} m, {FAR:.0%} of its size): the mesh does not mean it",
-            "give another mean_curvature, or mend the mesh",
-            "surface.file",
-        )
+    mean_curvature = found.equilibrium.mean_curvature
+    distance = _distances(found.equilibrium.film, mesh.points)
+    _refuse_far(distance, found.equilibrium)
     for note in (*mesh.notes, *notes):
         progress(f"  {note}")
     return found.surface(
         "mesh",
-        (*_doubts(fit, first.mean_curvature, given), *notes_on(found)),
+        (*_doubts(fit, mean_curvature, nearest, given, exact), *notes_on(found)),
         source=raw.source,
         treatment=[*mesh.notes, *notes],
+        nearest_mean_curvature=nearest if given is None and not mean_curvature else mean_curvature,
         fitted_mean_curvature=fit.mean_curvature,
         fitted_deviation=fit.deviation,
         distance_max=float(distance.max()),
@@ -122,32 +118,140 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = _silen
     )
 
 
-def _doubts(fit: Fit, mean_curvature: float, given: float | None) -> tuple[str, ...]:
-    """Where the surface is not the one that fits the mesh best."""
-    if given is None and abs(mean_curvature - fit.mean_curvature) > 0.02 * fit.scale:
-        return (
-            f"no surface of the best-fit H = {fit.mean_curvature:.5g} 1/m was reached; that of the mesh's volume has "
-            f"H = {mean_curvature:.5g} 1/m",
-        )
-    if given is not None and abs(given - fit.mean_curvature) > 0.05 * fit.scale:
-        return (f"mean_curvature = {given:g} 1/m is not what the mesh has: {fit.mean_curvature:.4g} 1/m fits best",)
-    return ()
+def _coarse(
+    mesh: CleanMesh, loops: tuple[Loop, ...], fit: Fit, areas: Floats, table: MeshTable, progress: Progress
+) -> tuple[Equilibrium, bool]:
+    """The surface a mesh means on coarse elements, and whether its vertices lie on it but for their coarseness.
 
-
-def _nearest(film: Film, mean_curvature: float, free: bool, progress: Progress) -> Equilibrium:
-    """The surface of that H near a film; where there is none and H is free, that of the film's volume."""
+    Raises
+    ------
+    InputError
+        There is none, or the mesh is too far from it.
+    """
+    free = table.mean_curvature == "fit"
+    start = fit.mean_curvature if free else float(table.mean_curvature)
+    uneven = fit.deviation > table.deviation
+    if uneven and (len(mesh.points) > COARSE or _crumpled(mesh)):
+        raise _not_constant(fit, table.deviation)
+    progress("  laying elements on the mesh")
     try:
-        return find_equilibrium(film, mean_curvature, stable=False, detail=progress)
-    except NoFilmError as error:
-        progress(f"    at the best-fit H: {error}")
-        reason = str(error)
+        first = _near(_film(mesh, loops, table.order, start), start, free, progress)
+    except InputError:
+        if uneven:
+            raise _not_constant(fit, table.deviation) from None
+        raise
     if free:
+        first = nearest_of_family(first, mesh.points, areas, progress)
+    distance = _distances(first.film, mesh.points)
+    typical = float(np.sqrt(areas @ distance**2 / areas.sum()))
+    progress(f"  nearest to the vertices: H = {first.mean_curvature:.6g} 1/m, {1000 * typical:.3g} mm off")
+    # vertices off by d change the curvature of edges of length h by up to 8 d / h^2
+    edge = float(np.median(find_edges(mesh.faces).lengths(mesh.points)))
+    exact = 8 * typical / edge**2 <= table.deviation * fit.scale
+    if uneven and not exact:
+        raise _not_constant(fit, table.deviation)
+    _refuse_far(distance, first)
+    return first, exact
+
+
+def _not_constant(fit: Fit, limit: float) -> InputError:
+    """The refusal of a mesh whose curvature varies."""
+    return InputError(
+        f"the mesh is not of constant mean curvature: H = {fit.mean_curvature:.4g} 1/m fits best, its vertices are "
+        f"off by {fit.deviation:.2g} of the curvature scale {fit.scale:.4g} 1/m (limit {limit:g}, "
+        f"largest {fit.deviation_max:.2g})",
+        f"mend the mesh, or raise deviation to take the nearest surface of H = {fit.mean_curvature:.4g} 1/m",
+        "surface.file",
+    )
+
+
+def _crumpled(mesh: CleanMesh) -> bool:
+    """Whether neighbouring faces turn so much that elements cannot be laid on them."""
+    normals = face_normals(mesh.points, mesh.faces)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    one, other = (find_edges(mesh.faces).inner_pairs // 3).T
+    return bool((normals[one] * normals[other]).sum(1).mean() < CRUMPLED)
+
+
+def _distances(film: Film, points: Floats) -> Floats:
+    """Distances of points from a film, m, (n,)."""
+    _, position = ClosestPoint(film.connectivity, film.nodes)(points)
+    return np.asarray(np.linalg.norm(position - points, axis=1))
+
+
+def _refuse_far(distance: Floats, here: Equilibrium) -> None:
+    size = here.film.size
+    if distance.max() > FAR * size:
+        raise InputError(
+            f"the nearest surface of H = {here.mean_curvature:.4g} 1/m is up to {distance.max():.4g} m away from the "
+            f"mesh (limit {FAR * size:.4g} m, {FAR:.0%} of its size): the mesh does not mean it",
+            "give another mean_curvature, or mend the mesh",
+            "surface.file",
+        )
+
+
+def _told_zero(mean_curvature: float, nearest: float) -> tuple[str, ...]:
+    """That H was taken as 0, if it was and is more than rounding."""
+    if mean_curvature == nearest or abs(nearest) < LEAST:
+        return ()
+    return (f"H taken as 0: the surface nearest to the mesh has H = {nearest:.4g} 1/m, less than a mesh can tell",)
+
+
+def _doubts(fit: Fit, mean_curvature: float, nearest: float, given: float | None, exact: bool) -> tuple[str, ...]:
+    """Where the surface is not the one that fits the mesh best."""
+    if given is not None:
+        if abs(given - fit.mean_curvature) > 0.05 * fit.scale:
+            return (f"mean_curvature = {given:g} 1/m is not what the mesh has: {fit.mean_curvature:.4g} 1/m fits best",)
+        return ()
+    doubts = []
+    if not mean_curvature and abs(nearest) > TOLD * fit.scale:
+        doubts.append(
+            f"mean_curvature is taken as 0: the surface nearest to the mesh has {nearest:.4g} 1/m, "
+            f"{abs(nearest) / fit.scale:.1g} of the curvature scale (0 up to {MINIMAL:g}); write mean_curvature = "
+            f"{nearest:.6g} to keep it"
+        )
+    if not exact and abs(nearest - fit.mean_curvature) > 0.05 * fit.scale:
+        doubts.append(
+            f"the surface nearest to the mesh has H = {nearest:.5g} 1/m, but the curvature at the vertices is "
+            f"{fit.mean_curvature:.5g} 1/m: the mesh is rough, or not of constant mean curvature"
+        )
+    return tuple(doubts)
+
+
+def _without_curvature(here: Equilibrium, scale: float, progress: Progress) -> Equilibrium:
+    """The minimal surface in place of one whose H no mesh can tell from 0; that one where there is none."""
+    if abs(here.mean_curvature) > MINIMAL * scale:
+        return here
+    with suppress(NoFilmError):
+        minimal = find_equilibrium(here.film, 0.0, stable=False, detail=progress)
+        return replace(minimal, steps=here.steps + minimal.steps)
+    return here
+
+
+def _film(mesh: CleanMesh, loops: tuple[Loop, ...], order: int, mean_curvature: float) -> Film:
+    """Coarse elements on a mesh, drawn towards that H."""
+    try:
+        return harmonic_over_itself(on_surface(_as_film(mesh, loops), order), mean_curvature)
+    except NoFilmError as error:
+        raise InputError(
+            f"no elements could be laid on the mesh: {error}",
+            "mend the mesh where it overlaps, folds or is very thin",
+            "surface.file",
+        ) from None
+
+
+def _near(film: Film, mean_curvature: float, free: bool, progress: Progress) -> Equilibrium:
+    """A surface near a film: of that H, or where H is free of the film's volume."""
+    reasons = []
+    for volume in (0.0, None) if free else (None,):
         try:
-            return find_equilibrium(film, mean_curvature, volume=0.0, stable=False, detail=progress)
+            return find_equilibrium(film, mean_curvature, volume=volume, stable=False, detail=progress)
         except NoFilmError as error:
-            reason = str(error)
+            progress(f"    {error}")
+            reasons.append(str(error))
     raise InputError(
-        f"no surface of constant mean curvature {mean_curvature:.4g} 1/m was found near the mesh ({reason})",
+        f"no surface of constant mean curvature {mean_curvature:.4g} 1/m was found near the mesh "
+        f"({'; '.join(reasons)})",
         "give mean_curvature, or mend the mesh",
         "surface.mean_curvature",
     )
@@ -155,18 +259,9 @@ def _nearest(film: Film, mean_curvature: float, free: bool, progress: Progress) 
 
 def border_loops(mesh: CleanMesh, corner_angle: float) -> tuple[tuple[Loop, ...], tuple[str, ...]]:
     """Smooth loops through the borders of a mesh, with their corners, and what was done to them."""
-    loops: list[Loop] = []
-    notes: list[str] = []
-    for index, border in enumerate(mesh.borders):
-        points = mesh.points[border]
-        spacing = None
-        if len(border) > MOST_BORDER_POINTS:
-            length = np.linalg.norm(np.roll(points, -1, 0) - points, axis=1).sum()
-            spacing = float(length) / MOST_BORDER_POINTS
-        curve = border_curves(CleanMesh(mesh.points, mesh.faces, (border,), ()), corner_angle, spacing)[0]
-        notes += curve.notes
-        loops.append(_loop(curve, f"border {index}" if index else "border"))
-    return tuple(loops), tuple(notes)
+    curves = border_curves(mesh, corner_angle, MOST_BORDER_POINTS)
+    loops = tuple(_loop(curve, name) for curve, name in zip(curves, loop_names(len(mesh.borders)), strict=True))
+    return loops, tuple(note for curve in curves for note in curve.notes)
 
 
 def _loop(curve: BorderCurve, name: str) -> Loop:

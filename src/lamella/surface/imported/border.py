@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 
 from lamella.surface.imported.clean import CleanMesh
 from lamella.surface.imported.edges import vertex_normals
+from lamella.surface.imported.noise import smooth_scatter
 from lamella.surface.imported.raw_mesh import Floats
 from lamella.surface.imported.zigzag import is_zigzag, smooth_zigzag
+from lamella.wording import loop_names
 
 CORNER_ANGLE = 40.0
 """Degrees."""
@@ -45,7 +47,7 @@ class BorderCurve:
 
 
 def border_curves(
-    mesh: CleanMesh, corner_angle: float = CORNER_ANGLE, spacing: float | None = None
+    mesh: CleanMesh, corner_angle: float = CORNER_ANGLE, most: int | None = None
 ) -> tuple[BorderCurve, ...]:
     """Curves of all border loops of a mesh, in their order.
 
@@ -54,16 +56,16 @@ def border_curves(
     mesh : CleanMesh
     corner_angle : float
         Degrees; see `border_curve`.
-    spacing : float, optional
-        m; see `border_curve`.
+    most : int, optional
+        Loops of more vertices are thinned to about as many.
     """
     normals = vertex_normals(mesh.points, mesh.faces)
-    many = len(mesh.borders) > 1
     curves = []
-    for number, loop in enumerate(mesh.borders):
-        curve = border_curve(mesh.points[loop], normals[loop], corner_angle, spacing)
-        name = "the border" if not many else "the outer border" if number == 0 else f"border {number + 1}"
-        curves.append(BorderCurve(curve.points, curve.corner, tuple(f"{name}: {note}" for note in curve.notes)))
+    for name, loop in zip(loop_names(len(mesh.borders)), mesh.borders, strict=True):
+        points = mesh.points[loop]
+        spacing = float(_steps(points).sum()) / most if most and len(loop) > most else None
+        curve = border_curve(points, normals[loop], corner_angle, spacing)
+        curves.append(BorderCurve(curve.points, curve.corner, tuple(f"the {name}: {note}" for note in curve.notes)))
     return tuple(curves)
 
 
@@ -105,6 +107,12 @@ def border_curve(
         points, corner = kept[:, :3], kept[:, 3] > 0
     if len(points) < before:
         notes.append(f"{before - len(points)} of {before} vertices left out, closer than {1000 * limit:.3g} mm")
+    points, scatter, move = smooth_scatter(points, corner)
+    if scatter:
+        notes.append(
+            f"its vertices scatter by {1000 * scatter:.2g} mm about a smooth curve; that was taken, which moves "
+            f"vertices by up to {1000 * move:.2g} mm"
+        )
     return BorderCurve(points, corner, tuple(notes))
 
 

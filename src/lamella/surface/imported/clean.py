@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from lamella.surface.imported.cracks import NEAR_EDGE, close_t_junctions, near_border
 from lamella.surface.imported.edges import Edges, face_normals, find_edges
@@ -14,12 +15,16 @@ from lamella.surface.imported.merge import drop_collapsed, drop_repeated, drop_u
 from lamella.surface.imported.orient import orient
 from lamella.surface.imported.raw_mesh import Floats, Integers, RawMesh, mesh_error, place
 from lamella.surface.imported.slivers import remove_slivers
+from lamella.wording import counted
 
 FRAGMENT = 1e-3
 """Pieces below this part of the whole area are left over from modelling; they are dropped."""
 
 NARROW_HOLE = 0.05
 """A hole narrower than this part of its own edges is a crack."""
+
+ROUNDING = 1e-9
+"""m; vertices nearer to one another differ by rounding."""
 
 SMALL_HOLE = 8
 """Holes with more vertices are judged by how near their sides come, for they need not be plane."""
@@ -50,8 +55,8 @@ class CleanMesh:
 def clean(raw: RawMesh) -> CleanMesh:
     """Mend what can be mended without guessing, refuse the rest.
 
-    Mended, with a note: vertices at one place, faces without area or given twice, slivers, T-junctions, fragments,
-    faces turned against the others.
+    Mended, with a note: vertices at one place, seams and poles open by less than a tolerance (see `merge`), faces
+    without area or given twice, slivers, T-junctions, fragments, faces turned against the others.
 
     Raises
     ------
@@ -60,26 +65,32 @@ def clean(raw: RawMesh) -> CleanMesh:
         a border, with handles or with cracks; each with numbers and a place.
     """
     notes = list(raw.notes)
-    points, faces, merged = merge_vertices(raw.points, raw.faces)
+    merged = merge_vertices(raw.points, raw.faces)
+    points, faces = merged.points, merged.faces
     # An .stl has no shared vertices: merging them there is reading, not mending.
-    if merged and len(raw.points) != 3 * len(raw.faces):
-        notes.append(f"{merged} vertices merged with others at the same place")
+    if merged.equal and len(raw.points) != 3 * len(raw.faces):
+        notes.append(f"{counted(merged.equal, 'vertex', 'vertices')} merged with others at the same place")
+    if merged.welded:
+        notes.append(
+            f"{counted(merged.welded, 'border vertex', 'border vertices')} welded to others "
+            + (f"up to {1000 * merged.gap:.2g} mm away" if merged.gap > ROUNDING else "a rounding away")
+        )
     whole = drop_collapsed(faces)
     single = drop_repeated(whole)
     if len(whole) < len(faces):
-        notes.append(f"{len(faces) - len(whole)} faces without area removed")
+        notes.append(f"{counted(len(faces) - len(whole), 'face')} without area removed")
     if len(single) < len(whole):
-        notes.append(f"{len(whole) - len(single)} faces given twice removed")
+        notes.append(f"{counted(len(whole) - len(single), 'face')} given twice removed")
     faces, removed, left = remove_slivers(points, single)
     if removed:
-        notes.append(f"{removed} slivers removed")
+        notes.append(f"{counted(removed, 'sliver')} removed")
     if left:
-        notes.append(f"{left} slivers left: without them the mesh would be connected differently")
+        notes.append(f"{counted(left, 'sliver')} left: without them the mesh would be connected differently")
     if not len(faces):
         raise mesh_error("the mesh has no faces with an area", "export it again")
     faces, closed = close_t_junctions(points, faces)
     if closed:
-        notes.append(f"{closed} T-junctions closed: faces split at vertices on their edges")
+        notes.append(f"{counted(closed, 'T-junction')} closed: faces split at vertices on their edges")
     edges = find_edges(faces)
     _require_two_faces_an_edge(points, edges)
     faces, dropped = _one_piece(points, faces, edges)
@@ -102,7 +113,7 @@ def _require_two_faces_an_edge(points: Floats, edges: Edges) -> None:
     if len(bad):
         worst = bad[0]
         raise mesh_error(
-            f"{len(bad)} edges have more than two faces; the first has {edges.count[worst]}, at "
+            f"{counted(len(bad), 'edge')} with more than two faces; the first has {edges.count[worst]}, at "
             f"{place(points[edges.ends[worst]].mean(axis=0))} m",
             "remove the faces inside, or what touches the surface (in Rhino: ExtractNonManifoldMeshEdges)",
         )
@@ -120,15 +131,25 @@ def _one_piece(points: Floats, faces: Integers, edges: Edges) -> tuple[Integers,
     if len(large) > 1:
         sizes = np.bincount(label, minlength=count)
         order = large[np.argsort(-areas[large], kind="stable")]
-        listed = "; ".join(f"{areas[k]:.4g} m2 with {sizes[k]} faces" for k in order[:5])
+        listed = "; ".join(f"{areas[k]:.4g} m2 with {counted(int(sizes[k]), 'face')}" for k in order[:5])
         more = f"; and {len(large) - 5} more" if len(large) > 5 else ""
         raise mesh_error(
-            f"the mesh has {len(large)} pieces that share no edge: {listed}{more}",
+            f"the mesh has {len(large)} pieces that share no edge: {listed}{more}"
+            + _gap(points, faces[label == order[0]], faces[label == order[1]]),
             "keep one of them; if they should be one surface, join them and weld their vertices",
         )
     share = 1 - float(areas[large[0]] / areas.sum())
-    note = f"{count - 1} fragments dropped, together {share:.2g} of the area"
+    note = f"{counted(count - 1, 'fragment')} dropped, together {share:.2g} of the area"
     return faces[label == large[0]], note
+
+
+def _gap(points: Floats, one: Integers, other: Integers) -> str:
+    """How near two pieces come to one another, and where."""
+    here, there = np.unique(one), np.unique(other)
+    distance, nearest = cKDTree(points[there]).query(points[here])
+    k = int(np.argmin(distance))
+    at = place((points[here[k]] + points[there[nearest[k]]]) / 2)
+    return f". The two largest come within {1000 * distance[k]:.3g} mm of one another at {at} m"
 
 
 def _require_one_fan_a_vertex(points: Floats, faces: Integers, edges: Edges) -> None:
@@ -149,9 +170,9 @@ def _require_one_fan_a_vertex(points: Floats, faces: Integers, edges: Edges) -> 
     bad = np.flatnonzero(fans > 1)
     if len(bad):
         raise mesh_error(
-            f"at {len(bad)} vertices the mesh touches itself (faces meet at the vertex but not at an edge); the first "
-            f"is at {place(points[bad[0]])} m",
-            "fill the notch or cut the parts apart there",
+            f"at {counted(len(bad), 'vertex', 'vertices')} the mesh touches itself (faces meet at the vertex but not "
+            f"at an edge); the first is at {place(points[bad[0]])} m",
+            "fill the notch, weld the seam that is open beside it, or cut the parts apart there",
         )
 
 
@@ -196,17 +217,26 @@ def _require_disc(points: Floats, faces: Integers, edges: Edges, borders: int) -
 def _require_no_crack(points: Floats, faces: Integers, edges: Edges, borders: tuple[Integers, ...]) -> None:
     """Refuse holes and notches so narrow that the mesh cannot mean them."""
     mend = "weld the two sides (in Rhino: Weld, MatchMeshEdge) or fill the hole"
-    for loop in (loop for loop in borders[1:] if len(loop) <= SMALL_HOLE):
+    for loop in borders[1:]:
         at = points[loop]
         steps = np.linalg.norm(np.roll(at, -1, axis=0) - at, axis=1)
         centred = at - at.mean(axis=0)
         area = np.linalg.norm(np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0)) / 2
         width = 2 * area / steps.sum()
-        if width < NARROW_HOLE * np.median(steps):
+        if len(loop) <= SMALL_HOLE and width < NARROW_HOLE * np.median(steps):
             raise mesh_error(
                 f"the mesh has a crack of {steps.sum() / 2:.3g} m length and {1000 * width:.3g} mm mean width at "
                 f"{place(at[0])} m",
                 mend,
+            )
+        inner = np.isin(edges.ends, loop).any(axis=1) & ~edges.border
+        around = float(np.median(edges.lengths(points)[inner])) if inner.any() else np.inf
+        across = float(np.linalg.norm(np.ptp(at, axis=0)))
+        if across < NEAR_EDGE * around:
+            raise mesh_error(
+                f"the mesh has a hole only {1000 * across:.3g} mm wide at {place(at[0])} m, between edges of "
+                f"{1000 * around:.3g} mm",
+                "fill the hole, or give it edges of its own size",
             )
     halves = edges.halves[edges.first[edges.border]]
     which, vertex, _, distance = near_border(points, faces, halves, NEAR_EDGE)

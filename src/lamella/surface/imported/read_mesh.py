@@ -13,6 +13,7 @@ from lamella.surface.imported.read_obj import read_obj
 from lamella.surface.imported.read_ply import read_ply
 from lamella.surface.imported.read_stl import read_stl
 from lamella.surface.imported.units import METRES, metres_of, name_of
+from lamella.wording import counted
 
 READERS = {".obj": read_obj, ".ply": read_ply, ".stl": read_stl, ".3dm": read_3dm}
 LARGEST_FILE = 2**30
@@ -108,7 +109,8 @@ def _check(found: Polygons) -> None:
         bad = found.corners[endless]
         number = int(bad.min()) + 1
         raise mesh_error(
-            f"{len(np.unique(bad))} vertices are not numbers (nan or infinite); the first is number {number}",
+            f"{counted(len(np.unique(bad)), 'vertex that is not a number', 'vertices that are not numbers')} (nan or "
+            f"infinite); the first is number {number}",
             "export the mesh again",
         )
 
