@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from lamella.surface.found.find import enclosed_volume
+from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.newton import NoFilmError, find_equilibrium
 from surface.found.exact_patches import CatenoidPatch, SphereCap, UnduloidPatch, catenoid_neck, ring
 from surface.found.films import disc_film, on_sizes, random_places, start, surface, tube
