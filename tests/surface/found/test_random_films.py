@@ -39,8 +39,7 @@ def judged(seed: int) -> str:
         # curvature at places that form finding itself did not look at
         measured = surface.measured(random_places(film, 20_000, seed))
         off = np.abs(measured.mean_curvature - case.mean_curvature)[away_from_corners(film, measured.position)]
-        assert np.sqrt(np.mean(off**2)) <= TOLERANCE * found.scale, (seed, "silently wrong")
-        assert off.max() <= 6 * TOLERANCE * found.scale, (seed, "silently wrong")
+        assert off.max() <= TOLERANCE * found.scale, (seed, "silently wrong", off.max() / found.scale)
         # no element is turned over against its neighbours
         mesh = film.connectivity
         middles = np.array([[0.5, 0], [0.5, 0.5], [0, 0.5]])

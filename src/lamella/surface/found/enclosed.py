@@ -45,32 +45,34 @@ def enclosed_volume(film: Film) -> float:
     middle = (t[:, 0] + span / 2) % 1
     for index, loop in enumerate(film.loops):
         mine = of_loop == index
-        curve, step, length = _along(film.nodes[rim_nodes[mine]] - origin)
+        curve, step = _along(film.nodes[rim_nodes[mine]] - origin)
         if not loop.slides:
-            total += _lid(curve, step, length)
+            total += _lid(curve, step)
             continue
-        drawn = loop.loop if isinstance(loop, SlidRim) else loop
-        start, pieces = _pieces(drawn)
-        sense = float(np.sign(span[mine][0]))
-        first, first_step, first_length = _along(pieces - origin)
-        total += _lid(first, sense * first_step, first_length)
+        start, pieces = _pieces(loop.loop if isinstance(loop, SlidRim) else loop)
+        drawn, drawn_step = _along(pieces - origin)
+        drawn_step *= np.sign(span[mine][0])
+        held = np.ones(len(curve), bool)
+        rim = []
         for slide in loop.slides:
-            here, there = within(middle[mine], slide), within(start, slide)
-            total += _strip(slide, origin, curve[here], step[here])
-            total -= _strip(slide, origin, first[there], sense * first_step[there])
+            now, before = within(middle[mine], slide), within(start, slide)
+            total += _strip(slide, curve[now], step[now]) - _strip(slide, drawn[before], drawn_step[before])
+            held &= ~now
+            rim.append((drawn[before], drawn_step[before]))
+        rim.append((curve[held], step[held]))
+        total += _lid(*(np.concatenate([part[k].reshape(-1, 3) for part in rim]) for k in (0, 1)))
     return total
 
 
-def _along(edges: Floats) -> tuple[Floats, Floats, Floats]:
-    """Points and weighted steps (e, q, 3) and weighted lengths (e, q) along polynomial edges (e, p + 1, 3)."""
+def _along(edges: Floats) -> tuple[Floats, Floats]:
+    """Points and weighted steps (e, q, 3) along polynomial edges (e, p + 1, 3)."""
     p = edges.shape[1] - 1
     places, weights = np.polynomial.legendre.leggauss(2 * p)
     places, weights = (places + 1) / 2, weights / 2
     to_powers = np.linalg.inv(np.vander(np.linspace(0, 1, p + 1), increasing=True))
     value = np.vander(places, p + 1, increasing=True) @ to_powers
     slope = (np.arange(1, p + 1) * np.vander(places, p, increasing=True)) @ to_powers[1:]
-    curve, step = np.matmul(value, edges), np.matmul(slope, edges) * weights[:, None]
-    return curve, step, np.asarray(np.linalg.norm(step, axis=2))
+    return np.matmul(value, edges), np.matmul(slope, edges) * weights[:, None]
 
 
 def _pieces(loop: Loop) -> tuple[Floats, Floats]:
@@ -83,13 +85,14 @@ def _pieces(loop: Loop) -> tuple[Floats, Floats]:
     return (marks[:-1] + marks[1:]) / 2, loop.at(t.ravel()).reshape(*t.shape, 3)
 
 
-def _lid(curve: Floats, step: Floats, length: Floats) -> float:
+def _lid(curve: Floats, step: Floats) -> float:
     """Volume of the cones from the origin over a lid, whose rim runs against the surface's."""
-    centroid = (curve * length[..., None]).sum((0, 1)) / length.sum()
+    length = np.linalg.norm(step, axis=-1)[..., None]
+    centroid = (curve * length).sum(axis=tuple(range(curve.ndim - 1))) / length.sum()
     return -float((np.cross(curve, step) @ centroid).sum()) / 6
 
 
-def _strip(slide: Slide, origin: Floats, curve: Floats, step: Floats) -> float:
+def _strip(slide: Slide, curve: Floats, step: Floats) -> float:
     """One curve's part in the volume of the cones from the origin over a strip."""
     if slide.direction is not None:
         e = np.asarray(slide.direction)

@@ -16,7 +16,7 @@ from lamella.surface.found.chart import Chart, make_chart
 from lamella.surface.found.family import FoldError, Reached, to_curvature, to_volume
 from lamella.surface.found.film import Film, Loop, harmonic_over_itself
 from lamella.surface.found.limits import refuse_apart
-from lamella.surface.found.loop_path import BreakError, along_flat, along_loops, are_apart, drawn_together
+from lamella.surface.found.loop_path import BreakError, along_flat, along_loops, are_apart, drawn_together, is_moved
 from lamella.surface.found.meshing import renewed, start_film
 from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError, find_equilibrium
 
@@ -89,25 +89,32 @@ class FirstFilm:
         ------
         SearchError
         """
-        chart = make_chart(self.loops)
-        here = self._direct(chart, self.loops, mean_curvature)
+        here = self._direct(make_chart(self.loops), self.loops, mean_curvature)
         if here and not unstable:
             return First(here, here.steps, False)
-        starts = [here] if here else []
-        if not here and not self._no_minimal():
-            calm = self._minimal(chart)
-            if calm and not mean_curvature and not unstable:
-                return First(calm, self.steps, True)
-            starts = [calm] if calm else []
+        starts = iter([here]) if here else self._starts(mean_curvature)
         for start in starts:
-            with suppress(NoFilmError, FoldError):
-                return self._followed(start, mean_curvature, unstable)
-        for start in self._from_drawn(mean_curvature):
-            if (start.negative > 0) == unstable:
+            at_target = abs(start.mean_curvature - mean_curvature) * start.film.size < 1e-9
+            if at_target and (start.negative > 0) == unstable:
                 return First(start, self.steps, True)
             with suppress(NoFilmError, FoldError):
                 return self._followed(start, mean_curvature, unstable)
         raise SearchError(tuple(self.reasons), self.fold, self.steps)
+
+    def _starts(self, mean_curvature: float) -> Iterator[Equilibrium]:
+        """Films in the given loops, of the wanted mean curvature or without pressure, the shorter ways first."""
+        chart = make_chart(self.loops)
+        minimal = not self._no_minimal()
+        if mean_curvature and minimal:
+            calm = self._direct(chart, self.loops, 0.0)
+            if calm:
+                minimal = False
+                yield calm
+        yield from self._from_drawn(mean_curvature)
+        if minimal:
+            calm = self._minimal(chart)
+            if calm:
+                yield calm
 
     def of_volume(self, volume: float) -> First:
         """The film of an enclosed volume, m^3, stable or not at its own pressure.
@@ -116,18 +123,26 @@ class FirstFilm:
         ------
         SearchError
         """
-        if not self._no_minimal():
-            chart = make_chart(self.loops)
-            calm = self._direct(chart, self.loops, 0.0) or self._minimal(chart)
-            if calm:
-                try:
-                    reached = to_volume(calm, volume, self.progress)
-                    return First(reached.equilibrium, self.steps + reached.steps, True)
-                except NoFilmError as error:
-                    self._tell(f"followed from the film without pressure: {error}")
+        chart = make_chart(self.loops)
+        minimal = not self._no_minimal()
+        calm = self._direct(chart, self.loops, 0.0) if minimal else None
+        if calm and (first := self._inflated(calm, volume)):
+            return first
         for start in self._from_drawn(0.0, volume):
             return First(start, self.steps, True)
+        if minimal and not calm:
+            calm = self._minimal(chart)
+            if calm and (first := self._inflated(calm, volume)):
+                return first
         raise SearchError(tuple(self.reasons), self.fold, self.steps)
+
+    def _inflated(self, calm: Equilibrium, volume: float) -> First | None:
+        try:
+            reached = to_volume(calm, volume, self.progress)
+        except NoFilmError as error:
+            self._tell(f"followed from the film without pressure: {error}")
+            return None
+        return First(reached.equilibrium, self.steps + reached.steps, True)
 
     def exists(self, mean_curvature: float) -> bool:
         """Whether a short search finds a film of a mean curvature (1/m)."""
@@ -226,9 +241,9 @@ class FirstFilm:
 
     def _from_drawn(self, mean_curvature: float, volume: float | None = None) -> Iterator[Equilibrium]:
         """Films in the given loops, followed from the same loops drawn together."""
-        if len(self.loops) == 1:
-            return
         path, paths = drawn_together(self.loops), 0
+        if len(self.loops) == 1 or not is_moved(path(0.0), self.loops):
+            return
         for share in SHARES:
             near = path(share)
             if not are_apart(near):

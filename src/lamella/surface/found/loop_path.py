@@ -26,7 +26,7 @@ from lamella.surface.points import Floats
 # of the whole way: first step, and the least one; Newton steps of a film, and after which a path that fails ends
 FIRST_STEP, LEAST_STEP = 1 / 8, 1 / 256
 MANY, MOST_NEWTON = 15, 150
-# drawn loops keep this far apart, over the size of the largest
+# loops drawn together keep this far apart, and move by this much at least, over the size of the largest
 APART = 0.05
 
 
@@ -98,8 +98,7 @@ Path = Callable[[float], Loops]
 
 def drawn_together(loops: Loops) -> Path:
     """Loops moved towards their common middle, as they are: at 0 their centroids are one, at 1 they are as given."""
-    t = np.arange(SAMPLES_OF_A_LOOP) / SAMPLES_OF_A_LOOP
-    middles = np.array([loop.at(t).mean(0) for loop in loops])
+    middles = np.array([_points(loop).mean(0) for loop in loops])
     shifts = middles.mean(0) - middles
 
     def begin(loop: Loop, shift: Floats) -> Begin:
@@ -109,10 +108,19 @@ def drawn_together(loops: Loops) -> Path:
     return lambda share: tuple(Moving(loop, first, share) for loop, first in zip(loops, starts, strict=True))
 
 
+def is_moved(begin: Loops, end: Loops) -> bool:
+    """Whether a path moves its loops by more than a little."""
+    size = max(float(np.linalg.norm(np.ptp(_points(loop), axis=0))) for loop in end)
+    return any(np.abs(_points(a) - _points(b)).max() > APART * size for a, b in zip(begin, end, strict=True))
+
+
+def _points(loop: Loop) -> Floats:
+    return loop.at(np.arange(SAMPLES_OF_A_LOOP) / SAMPLES_OF_A_LOOP)
+
+
 def are_apart(loops: Loops) -> bool:
     """Whether loops keep clear of each other."""
-    t = np.arange(SAMPLES_OF_A_LOOP) / SAMPLES_OF_A_LOOP
-    points = [loop.at(t) for loop in loops]
+    points = [_points(loop) for loop in loops]
     size = max(float(np.linalg.norm(np.ptp(p, axis=0))) for p in points)
     return all(cKDTree(p).query(q)[0].min() > APART * size for k, p in enumerate(points) for q in points[k + 1 :])
 
