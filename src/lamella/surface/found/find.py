@@ -6,6 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
 from lamella.errors import InputError
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.enclosed import enclosed_volume
@@ -17,6 +19,7 @@ from lamella.surface.found.newton import Equilibrium, find_equilibrium
 from lamella.surface.found.not_found import not_found
 from lamella.surface.found.progress import patient
 from lamella.surface.found.refinement import adapted
+from lamella.surface.found.self_crossing import self_crossing
 
 if TYPE_CHECKING:
     from lamella.project import FormFoundTable
@@ -73,6 +76,13 @@ def notes_on(found: Found) -> tuple[str, ...]:
         notes.append(
             f"the surface is at the fold of its family (lowest Jacobi eigenvalue {verdict.lowest:.2g} 1/m2): a "
             "slightly different boundary may have no surface at all"
+        )
+    crossing = self_crossing(found.equilibrium.film)
+    if crossing is not None:
+        x, y, z = crossing[np.linalg.norm(crossing - crossing.mean(0), axis=1).argmin()]
+        notes.append(
+            f"the surface passes through itself, as near ({x:.4g}, {y:.4g}, {z:.4g}) m: it is a surface of this "
+            "boundary, but cannot be built"
         )
     return tuple(notes)
 
