@@ -10,7 +10,7 @@ import pytest
 from lamella.errors import InputError
 from lamella.surface.boundary import make_loop
 from lamella.surface.boundary.splines import closed_spline
-from lamella.surface.found.family import FoldError, to_curvature
+from lamella.surface.found.along_family import FoldError, to_curvature
 from lamella.surface.found.find import find_film
 from lamella.surface.found.newton import find_equilibrium
 from lamella.surface.found.progress import LONG, patient

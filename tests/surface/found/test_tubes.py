@@ -12,8 +12,8 @@ from scipy.optimize import brentq, fsolve
 
 from lamella.errors import InputError
 from lamella.surface.delaunay import Delaunay
+from lamella.surface.found.along_family import to_curvature
 from lamella.surface.found.enclosed import enclosed_volume
-from lamella.surface.found.family import to_curvature
 from lamella.surface.found.find import find_film
 from lamella.surface.found.newton import find_equilibrium
 from surface.found.exact_patches import ring

@@ -135,7 +135,7 @@ def find_film(
     try:
         first = search.of_curvature(mean_curvature, unstable=unstable) if volume is None else search.of_volume(volume)
     except SearchError as error:
-        raise not_found(loops, order, error, mean_curvature, volume, unstable) from None
+        raise not_found(search, error, mean_curvature, volume, unstable) from None
     told = f"  {'path' if first.followed else 'Newton'}: {first.steps} steps"
     progress(told + (" on the whole path" if first.followed else " from the harmonic start"))
 

@@ -12,8 +12,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 from lamella.errors import InputError
+from lamella.surface.found.along_family import FoldError, Reached, to_curvature, to_volume
 from lamella.surface.found.chart import Chart, make_chart
-from lamella.surface.found.family import FoldError, Reached, to_curvature, to_volume
 from lamella.surface.found.film import Film, Loop, harmonic_over_itself
 from lamella.surface.found.limits import refuse_apart
 from lamella.surface.found.loop_path import BreakError, along_flat, along_loops, are_apart, drawn_together, is_moved

@@ -17,7 +17,7 @@ RINGS = 1.3254868387
 CONE = 1.5088795615
 SAMPLES = 2000
 # height of a flat loop over its length
-FLAT = 1e-9
+FLAT = 1e-6
 
 
 def refuse_impossible(loops: Sequence[Curve], mean_curvature: float) -> None:

@@ -15,9 +15,9 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from lamella.surface.element.remesh import TriangleMesh
+from lamella.surface.found.along_family import Reached
 from lamella.surface.found.chart import Chart
 from lamella.surface.found.enclosed import enclosed_volume
-from lamella.surface.found.family import Reached
 from lamella.surface.found.film import Film, Loop, Slide, moved_with_rim
 from lamella.surface.found.meshing import SAMPLES_OF_A_LOOP, is_worn, on_surface, renewed
 from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError, find_equilibrium

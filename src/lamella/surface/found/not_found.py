@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from lamella.errors import InputError
-from lamella.surface.found.film import Loop
 from lamella.surface.found.first_film import FirstFilm, SearchError
 
 # no bound says that there is no such surface: the search alone ended
@@ -11,8 +10,7 @@ MAY_EXIST = "no bound is broken, so that there may be one"
 
 
 def not_found(
-    loops: tuple[Loop, ...],
-    order: int,
+    search: FirstFilm,
     error: SearchError,
     mean_curvature: float,
     volume: float | None,
@@ -22,7 +20,7 @@ def not_found(
     how = "; ".join(error.reasons) or "Newton's method did not arrive from any start"
     went = f"{how} ({error.steps} Newton steps)"
     if volume is not None:
-        return _no_volume(loops, order, went, volume)
+        return _no_volume(search, went, volume)
     wanted = f"mean_curvature = {mean_curvature:.6g} 1/m"
     if unstable:
         return InputError(
@@ -34,11 +32,11 @@ def not_found(
         return InputError(
             f"the search did not arrive at a surface in this boundary; {MAY_EXIST}. {went}",
             "hold the sliding parts, or begin with a shape nearer to the film"
-            if any(loop.slides for loop in loops)
+            if any(loop.slides for loop in search.loops)
             else "bring the loops closer together, or make them less bent",
             "surface.boundary",
         )
-    if _search(loops, order).exists(-mean_curvature):
+    if _again(search).exists(-mean_curvature):
         return InputError(
             f"{wanted}: the search did not arrive at a surface, but there is one of {-mean_curvature:.6g} 1/m. The "
             "surface bends towards its normal where H is above 0, and the normal follows the first loop by the "
@@ -59,15 +57,16 @@ def not_found(
     )
 
 
-def _search(loops: tuple[Loop, ...], order: int) -> FirstFilm:
-    return FirstFilm(loops, order, lambda message: None)
+def _again(search: FirstFilm) -> FirstFilm:
+    search.progress("    the other sign is tried")
+    return FirstFilm(search.loops, search.order, search.progress)
 
 
-def _no_volume(loops: tuple[Loop, ...], order: int, went: str, volume: float) -> InputError:
+def _no_volume(search: FirstFilm, went: str, volume: float) -> InputError:
     wanted = f"volume = {volume:.6g} m3"
-    if len(loops) > 1:
+    if len(search.loops) > 1:
         try:
-            _search(loops, order).of_volume(-volume)
+            _again(search).of_volume(-volume)
         except SearchError:
             pass
         else:
