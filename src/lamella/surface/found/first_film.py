@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 from lamella.errors import InputError
 from lamella.surface.found.along_family import FoldError, Reached, to_curvature, to_volume
-from lamella.surface.found.chart import Chart, make_chart
+from lamella.surface.found.chart import make_chart
 from lamella.surface.found.film import Film, Loop, harmonic_over_itself
 from lamella.surface.found.limits import refuse_apart
 from lamella.surface.found.loop_path import BreakError, along_flat, along_loops, are_apart, drawn_together, is_moved
@@ -89,7 +89,7 @@ class FirstFilm:
         ------
         SearchError
         """
-        here = self._direct(make_chart(self.loops), self.loops, mean_curvature)
+        here = self._direct(self.loops, mean_curvature)
         if here and not unstable:
             return First(here, here.steps, False)
         starts = iter([here]) if here else self._starts(mean_curvature)
@@ -103,16 +103,15 @@ class FirstFilm:
 
     def _starts(self, mean_curvature: float) -> Iterator[Equilibrium]:
         """Films in the given loops, of the wanted mean curvature or without pressure, the shorter ways first."""
-        chart = make_chart(self.loops)
         minimal = not self._no_minimal()
         if mean_curvature and minimal:
-            calm = self._direct(chart, self.loops, 0.0)
+            calm = self._direct(self.loops, 0.0)
             if calm:
                 minimal = False
                 yield calm
         yield from self._from_drawn(mean_curvature)
         if minimal:
-            calm = self._minimal(chart)
+            calm = self._minimal()
             if calm:
                 yield calm
 
@@ -123,15 +122,14 @@ class FirstFilm:
         ------
         SearchError
         """
-        chart = make_chart(self.loops)
         minimal = not self._no_minimal()
-        calm = self._direct(chart, self.loops, 0.0) if minimal else None
+        calm = self._direct(self.loops, 0.0) if minimal else None
         if calm and (first := self._inflated(calm, volume)):
             return first
         for start in self._from_drawn(0.0, volume):
             return First(start, self.steps, True)
         if minimal and not calm:
-            calm = self._minimal(chart)
+            calm = self._minimal()
             if calm and (first := self._inflated(calm, volume)):
                 return first
         raise SearchError(tuple(self.reasons), self.fold, self.steps)
@@ -146,9 +144,10 @@ class FirstFilm:
 
     def exists(self, mean_curvature: float) -> bool:
         """Whether a short search finds a film of a mean curvature (1/m)."""
-        if self._direct(make_chart(self.loops), self.loops, mean_curvature):
+        if self._direct(self.loops, mean_curvature):
             return True
-        return next(self._from_drawn(mean_curvature), None) is not None
+        # where there is a film without pressure, it is from there that one is missing, not for the sign
+        return self._no_minimal() and next(self._from_drawn(mean_curvature), None) is not None
 
     def _followed(self, start: Equilibrium, mean_curvature: float, unstable: bool) -> First:
         """From any film along its family."""
@@ -180,9 +179,14 @@ class FirstFilm:
             return True
         return False
 
-    def _direct(self, chart: Chart, loops: tuple[Loop, ...], mean_curvature: float) -> Equilibrium | None:
+    def _direct(self, loops: tuple[Loop, ...], mean_curvature: float) -> Equilibrium | None:
         """Newton from the harmonic surface."""
+        film = self._harmonic(loops)
+        return self._from_harmonic(film, mean_curvature) if film else None
+
+    def _harmonic(self, loops: tuple[Loop, ...]) -> Film | None:
         try:
+            chart = make_chart(loops)
             film = harmonic_over_itself(start_film(chart, loops, self.order))
         except NoFilmError as error:
             self.progress(f"    no harmonic start: {error}")
@@ -190,6 +194,9 @@ class FirstFilm:
         self.progress(
             f"    start: harmonic over a {chart.kind}, {film.connectivity.node_count:,} nodes of order {self.order}"
         )
+        return film
+
+    def _from_harmonic(self, film: Film, mean_curvature: float) -> Equilibrium | None:
         here = self._newton(film, mean_curvature, "the harmonic start")
         if here or not mean_curvature:
             return here
@@ -211,8 +218,9 @@ class FirstFilm:
         self.steps += here.steps
         return here
 
-    def _minimal(self, chart: Chart) -> Equilibrium | None:
+    def _minimal(self) -> Equilibrium | None:
         """A minimal film: with elements made anew on the way, by lowering the area first, or from flat loops."""
+        chart = make_chart(self.loops)
         for rounds in (0, 20):
             try:
                 film = harmonic_over_itself(start_film(chart, self.loops, self.order, rounds, 0.7))
@@ -246,9 +254,14 @@ class FirstFilm:
             return
         for share in SHARES:
             near = path(share)
-            if not are_apart(near):
-                continue
-            here = self._near(near, mean_curvature)
+            film = None
+            if are_apart(near):
+                with suppress(InputError):
+                    film = self._harmonic(near)
+            if not film:
+                # loops drawn together further would have to pass through each other
+                return
+            here = self._from_harmonic(film, mean_curvature)
             if not here:
                 continue
             try:
@@ -265,14 +278,6 @@ class FirstFilm:
                 self.steps += reached.steps
                 yield reached.equilibrium
             paths += 1
-            if paths == MOST_PATHS:
+            # behind a fold there may be another film, but more seldom than beyond a broken path
+            if paths == MOST_PATHS or self.fold is not None:
                 return
-
-    def _near(self, loops: tuple[Loop, ...], mean_curvature: float) -> Equilibrium | None:
-        """A film in loops drawn together."""
-        try:
-            chart = make_chart(loops)
-        except InputError as error:
-            self.progress(f"    {error}")
-            return None
-        return self._direct(chart, loops, mean_curvature)
