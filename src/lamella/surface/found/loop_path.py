@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from lamella.surface.element.remesh import TriangleMesh
 from lamella.surface.found.along_family import Reached
-from lamella.surface.found.chart import Chart
+from lamella.surface.found.chart import Chart, vector_area
 from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.film import Film, Loop, Slide, moved_with_rim
 from lamella.surface.found.meshing import SAMPLES_OF_A_LOOP, is_worn, on_surface, renewed
@@ -97,20 +97,39 @@ Path = Callable[[float], Loops]
 
 
 def drawn_together(loops: Loops) -> Path:
-    """Loops moved towards their common middle, as they are: at 0 their centroids are one, at 1 they are as given."""
+    """Loops moved towards their common middle and turned to face it: at 0 they are all there, at 1 all is as given.
+
+    Turned about the middle of a loop, so that its vector area points from the others' middles or to them: rings at the
+    ends of a bent tube become the ends of a straight one.
+    """
     middles = np.array([_points(loop).mean(0) for loop in loops])
-    shifts = middles.mean(0) - middles
+    size = _size(loops)
 
-    def begin(loop: Loop, shift: Floats) -> Begin:
-        return lambda t: loop.at(t) + shift
+    def begin(k: int) -> Begin:
+        axis = middles[k] - np.delete(middles, k, 0).mean(0) if len(loops) > 1 else np.zeros(3)
+        turn = np.eye(3) if np.linalg.norm(axis) < APART * size else _turn(vector_area(_points(loops[k])), axis)
+        return lambda t: (loops[k].at(t) - middles[k]) @ turn.T + middles.mean(0)
 
-    starts = [begin(loop, shift) for loop, shift in zip(loops, shifts, strict=True)]
+    starts = [begin(k) for k in range(len(loops))]
     return lambda share: tuple(Moving(loop, first, share) for loop, first in zip(loops, starts, strict=True))
+
+
+def _turn(first: Floats, second: Floats) -> Floats:
+    """Least rotation (3, 3) that brings one direction onto a line along another."""
+    a, b = first / max(float(np.linalg.norm(first)), 1e-300), second / np.linalg.norm(second)
+    b = b if a @ b >= 0 else -b
+    cross, cosine = np.cross(a, b), float(a @ b)
+    across = np.cross(np.eye(3), cross)
+    return np.asarray(np.eye(3) + across + across @ across / (1 + cosine))
+
+
+def _size(loops: Loops) -> float:
+    return max(float(np.linalg.norm(np.ptp(_points(loop), axis=0))) for loop in loops)
 
 
 def is_moved(begin: Loops, end: Loops) -> bool:
     """Whether a path moves its loops by more than a little."""
-    size = max(float(np.linalg.norm(np.ptp(_points(loop), axis=0))) for loop in end)
+    size = _size(end)
     return any(np.abs(_points(a) - _points(b)).max() > APART * size for a, b in zip(begin, end, strict=True))
 
 
@@ -121,7 +140,7 @@ def _points(loop: Loop) -> Floats:
 def are_apart(loops: Loops) -> bool:
     """Whether loops keep clear of each other."""
     points = [_points(loop) for loop in loops]
-    size = max(float(np.linalg.norm(np.ptp(p, axis=0))) for p in points)
+    size = _size(loops)
     return all(cKDTree(p).query(q)[0].min() > APART * size for k, p in enumerate(points) for q in points[k + 1 :])
 
 
