@@ -17,7 +17,7 @@ from lamella.surface.points import Floats
 # the loop) left out there
 CORNER_PART = 0.03
 # of the tolerance that a new mesh aims at, and the rings of neighbours that share their largest error
-AIM, RINGS = 0.75, 1
+AIM, RINGS = 0.6, 2
 # most an element's edge shrinks or grows at once, and how it goes on where that alone did not do
 SHRINK, GROW, SETTLE = 0.3, 1.6, 0.9
 
