@@ -7,8 +7,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from lamella.surface.found.find import enclosed_volume
-from lamella.surface.found.newton import NoFilmError, find_equilibrium
+from lamella.surface.found.enclosed import enclosed_volume
+from lamella.surface.found.family import member_of
+from lamella.surface.found.newton import NoFilmError, Way, find_equilibrium
 from surface.found.exact_patches import CatenoidPatch, SphereCap, UnduloidPatch, catenoid_neck, ring
 from surface.found.films import disc_film, on_sizes, random_places, start, surface, tube
 
@@ -83,6 +84,35 @@ def test_unstable_film_is_kept_when_stability_is_not_asked_for() -> None:
     assert kept.steps <= 3
     x = kept.film.nodes
     assert np.abs(np.hypot(x[:, 0], x[:, 1]) - neck * np.cosh(x[:, 2] / neck)).max() < 1e-4
+
+
+def test_a_way_along_the_family_passes_the_fold() -> None:
+    """Caps over the unit circle, H = 2 h / (1 + h^2): steps along the family go through h = 1, where H is largest."""
+    here = find_equilibrium(disc_film(4, 5), 0.6)
+    film, curvature, heights = here.film, here.mean_curvature, []
+    for _ in range(6):
+        member = member_of(film, curvature)
+        ahead = member if member.growth < 0 else member.backwards()
+        step = find_equilibrium(film, curvature, way=Way(ahead.weights, 0.25), stable=False)
+        moves = np.array(step.moves)
+        assert all(b < 30 * a**2 for a, b in pairwise(moves) if a < 0.02 and b > 1e-9), moves
+        assert ((step.film.nodes - film.nodes) * ahead.weights).sum() == pytest.approx(0.25, rel=1e-9)
+        film, curvature = step.film, step.mean_curvature
+        height = -film.nodes[:, 2].min()
+        assert curvature == pytest.approx(2 * height / (1 + height**2), rel=5e-3)
+        heights.append(height)
+    assert heights[0] < 1 < heights[-1]
+    assert np.all(np.diff(heights) > 0)
+
+
+def test_direction_of_a_family_is_that_of_its_closed_form() -> None:
+    """Caps of height h: dH/dh = 2 (1 - h^2) / (1 + h^2)^2 and dV/dh = pi (1 + h^2) / 2."""
+    h = 0.6
+    found = find_equilibrium(disc_film(4, 8), 2 * h / (1 + h**2))
+    member = member_of(found.film, found.mean_curvature)
+    # the volume is below 0 in a bowl
+    wanted = -(2 * (1 - h**2) / (1 + h**2) ** 2) / (np.pi * (1 + h**2) / 2)
+    assert member.rise / member.growth == pytest.approx(wanted, rel=1e-4)
 
 
 def test_no_film_is_an_error_and_not_a_shape() -> None:

@@ -17,6 +17,8 @@ from surface.found.random_loops import draw_case
 
 TOLERANCE, MOST_NODES = 2e-2, 20_000
 LONGEST = 180  # s, of one case on one busy core
+# drawn in every run of the suite; all 200 by CI
+FEW = [6, 18, 26, 44, 48, 82]
 
 
 def judged(seed: int) -> str:
@@ -39,8 +41,7 @@ def judged(seed: int) -> str:
         # curvature at places that form finding itself did not look at
         measured = surface.measured(random_places(film, 20_000, seed))
         off = np.abs(measured.mean_curvature - case.mean_curvature)[away_from_corners(film, measured.position)]
-        assert np.sqrt(np.mean(off**2)) <= TOLERANCE * found.scale, (seed, "silently wrong")
-        assert off.max() <= 6 * TOLERANCE * found.scale, (seed, "silently wrong")
+        assert off.max() <= TOLERANCE * found.scale, (seed, "silently wrong", off.max() / found.scale)
         # no element is turned over against its neighbours
         mesh = film.connectivity
         middles = np.array([[0.5, 0], [0.5, 0.5], [0, 0.5]])
@@ -78,12 +79,12 @@ def test_draw_is_varied_and_the_same_every_time() -> None:
     assert all(np.array_equal(a.at(t), b.at(t)) for a, b in zip(cases[7].loops, again.loops, strict=True))
 
 
-@pytest.mark.parametrize("seed", [6, 18, 26, 44, 48, 82])
+@pytest.mark.parametrize("seed", FEW)
 def test_film_or_reason(seed) -> None:
     judged(seed)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(16))
+@pytest.mark.parametrize("seed", sorted(set(range(200)) - set(FEW)))
 def test_film_or_reason_of_more(seed) -> None:
     print(judged(seed))

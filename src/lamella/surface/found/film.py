@@ -178,6 +178,14 @@ class Film:
         return np.asarray(directions / np.linalg.norm(directions, axis=1)[:, None])
 
 
+def moved_with_rim(film: Film, nodes: Floats) -> Film:
+    """The film with its rim at given places, rows of (n, 3), its inside shifted harmonically with it."""
+    shift = np.zeros_like(film.nodes)
+    rim = film.connectivity.rim_nodes
+    shift[rim] = nodes[rim] - film.nodes[rim]
+    return film.at(film.nodes + _harmonic(film, shift))
+
+
 def harmonic_over_itself(film: Film, mean_curvature: float = 0.0) -> Film:
     """The film whose coordinates solve Laplace x = 2 H n over the given one: smoother, and nearer to that H.
 

@@ -9,12 +9,15 @@ from scipy.optimize import minimize_scalar
 
 from lamella.errors import InputError
 from lamella.surface.found.chart import Curve, vector_area
+from lamella.surface.found.film import Loop
 
 # two equal coaxial rings: largest distance over their radius, the maximum of 2 acosh(x) / x
 RINGS = 1.3254868387
 # half opening of the double cone no connected minimal surface leaves through both of: sinh of coth(x) = x
 CONE = 1.5088795615
 SAMPLES = 2000
+# height of a flat loop over its length
+FLAT = 1e-6
 
 
 def refuse_impossible(loops: Sequence[Curve], mean_curvature: float) -> None:
@@ -30,6 +33,31 @@ def refuse_impossible(loops: Sequence[Curve], mean_curvature: float) -> None:
     refuse_flux(loops, mean_curvature)
     if mean_curvature == 0 and len(loops) == 2:
         refuse_apart(loops)
+
+
+def refuse_afloat(loops: Sequence[Loop]) -> None:
+    """Loops all of which slide, all of them: nothing holds the film, which can move away and shrink."""
+    if all(any(slide.end - slide.start >= 1 for slide in loop.slides) for loop in loops):
+        names = " and ".join(f"{loop.name!r}" for loop in loops)
+        raise InputError(
+            f"nothing holds the surface: {names} {'slides' if len(loops) == 1 else 'slide'} as a whole",
+            "hold one loop, or a part of one ([[surface.boundary.part]] tables without slide)",
+            "surface.boundary",
+        )
+
+
+def refuse_single(loops: Sequence[Curve], mean_curvature: float) -> None:
+    """A flat loop without pressure has one film, itself: no film leaves the convex hull of its loop."""
+    if len(loops) > 1 or mean_curvature:
+        return
+    points = loops[0].at(np.arange(SAMPLES) / SAMPLES)
+    length, _, height = np.linalg.svd(points - points.mean(0), compute_uv=False)
+    if height <= FLAT * length:
+        raise InputError(
+            "there is no unstable surface: the boundary is flat, and without pressure its only surface is the plane",
+            "leave branch out, or give a mean_curvature other than 0",
+            "surface.branch",
+        )
 
 
 def refuse_flux(loops: Sequence[Curve], mean_curvature: float) -> None:

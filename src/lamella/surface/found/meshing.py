@@ -31,6 +31,8 @@ ARC_OVER_CHORD = 3
 MOST_COARSE = 1500
 
 
+# elements are made anew below this angle, deg, or where their normals turn by this many times what they should
+SLENDER, BENT = 18.0, 1.7
 # flat triangles along the edge of a curved one that new elements start from
 FACETS = 2
 
@@ -183,3 +185,18 @@ def least_angle(film: Film) -> NDArray[np.float64]:
     sides /= np.linalg.norm(sides, axis=2)[..., None]
     cosines = -(sides * np.roll(sides, 1, 1)).sum(2)
     return np.asarray(np.degrees(np.arccos(np.clip(cosines.max(1), -1, 1))))
+
+
+def is_worn(film: Film) -> bool:
+    """Whether a film has outgrown its elements: slender ones, or such that its normal turns too much in them."""
+    if least_angle(film).min() < SLENDER:
+        return True
+    corners = film.nodes[film.connectivity.faces]
+    edges = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).max(1)
+    return bool((edges > BENT * np.maximum(bend_sizes(film)[1], film.size / 150)).any())
+
+
+def renewed(film: Film, share: float = 1.0) -> Film:
+    """The film with elements made anew, as small as its loops and its bend ask for."""
+    film = settled_rims(film)
+    return straightened(with_sizes(film, start_sizes(film, film.loops, share)))

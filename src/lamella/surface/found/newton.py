@@ -1,4 +1,14 @@
-"""Newton's method for films of a given mean curvature, or of a given volume."""
+"""Newton's method for films of a given mean curvature, of a given volume, or a given way along a family.
+
+With the second variation K of A + 2 H V, its gradient g and that of the volume v, one step solves
+
+    K s = -g                             H given
+    K s + 2 v dH = -g,  v . s = dV       volume given: one symmetric bordered system
+    K s + 2 v dH = -g,  w . s = ds       way along a family given (Keller, in: Applications of Bifurcation Theory, 1977)
+
+The last one is not symmetric. With the symmetric border w it takes two right-hand sides: the multiplier of w has to
+vanish. It is regular at folds of H and of the volume alike.
+"""
 
 from __future__ import annotations
 
@@ -44,6 +54,21 @@ class Equilibrium:
     moves: tuple[float, ...]
 
 
+@dataclass(frozen=True)
+class Way:
+    """A way to go along a family of films: the sum of weights . (x - x0) is to be an amount.
+
+    Attributes
+    ----------
+    weights : (n, 3)
+        Of the nodes' shifts.
+    amount : float
+    """
+
+    weights: Floats
+    amount: float
+
+
 Detail = Callable[[str], None]
 
 
@@ -56,6 +81,7 @@ def find_equilibrium(
     mean_curvature: float = 0.0,
     *,
     volume: float | None = None,
+    way: Way | None = None,
     stable: bool = True,
     most_steps: int = 30,
     detail: Detail = _silent,
@@ -70,6 +96,8 @@ def find_equilibrium(
         H, 1/m; with `volume` where the search for it starts.
     volume : float, optional
         Volume to sweep from the start along its normals, m^3; H follows.
+    way : Way, optional
+        How far to go along a family; H follows.
     stable : bool
         Look for a minimum of area + 2 H volume (shift the second variation while it has negative eigenvalues).
     most_steps : int
@@ -86,6 +114,7 @@ def find_equilibrium(
     size = film.size
     moves: list[float] = []
     swept = 0.0
+    begin = film.nodes
     directions = film.directions()
     variation = Variation(film.connectivity, directions)
     first = variation.first(film.nodes)
@@ -97,7 +126,11 @@ def find_equilibrium(
             first = variation.first(film.nodes)
         gradient = (first.area_gradient + 2 * mean_curvature * first.volume_gradient)[free]
         blocks = variation.second(film.nodes, first, mean_curvature)
-        if volume is None:
+        if way is not None:
+            left = way.amount - float((way.weights * (film.nodes - begin)).sum())
+            row = (way.weights * directions).sum(1)[free]
+            shift_of, change, negative = _step_along(film, blocks, gradient, first.volume_gradient[free], row, left)
+        elif volume is None:
             shift_of, negative = _newton_step(film, variation, first, blocks, gradient, stable)
             change = 0.0
         else:
@@ -114,7 +147,8 @@ def find_equilibrium(
         shift = np.zeros(len(free))
         shift[free] = shift_of
         slope = float(gradient @ shift_of)
-        film, first, share = _search(film, variation, first, shift, slope, mean_curvature + change, volume is None)
+        free_to_rise = volume is not None or way is not None
+        film, first, share = _search(film, variation, first, shift, slope, mean_curvature + change, not free_to_rise)
         mean_curvature += share * change
         if volume is not None:
             swept += _swept(film, variation, shift, share)
@@ -157,6 +191,24 @@ def _newton_step(
     raise NoFilmError("the second variation is singular", film)
 
 
+def _step_along(
+    film: Film, blocks: Floats, gradient: Floats, sweep: Floats, row: Floats, amount: float
+) -> tuple[Floats, float, int]:
+    """Shift with row . shift = amount, the change of H that goes with it, and negative eigenvalues across the way."""
+    pattern = film.bordered_pattern
+    right = np.zeros((len(gradient) + 1, 2))
+    right[:-1, 0], right[-1, 0], right[:-1, 1] = -gradient, amount, -2 * sweep
+    try:
+        factor = pattern.factor(pattern.assemble(blocks, np.append(row, 0.0)[None]))
+    except SingularError as error:
+        raise NoFilmError(str(error), film) from None
+    one, other = factor.solve(right).T
+    if not other[-1]:
+        raise NoFilmError("the family of films has no direction here", film)
+    change = -float(one[-1] / other[-1])
+    return one[:-1] + change * other[:-1], change, factor.negative - 1
+
+
 def _turned(film: Film, directions: Floats, first: FirstVariation) -> float:
     """Least cosine between a normal and the directions of its element."""
     middle = directions[film.connectivity.faces].mean(1)
@@ -195,4 +247,4 @@ def _swept(film: Film, variation: Variation, shift: Floats, share: float) -> flo
     return total
 
 
-__all__ = ["Equilibrium", "NoFilmError", "find_equilibrium"]
+__all__ = ["Equilibrium", "NoFilmError", "Way", "find_equilibrium"]

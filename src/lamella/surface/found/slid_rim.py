@@ -62,7 +62,7 @@ class SlidRim:
         points = self.loop.at(t)
         sliding = np.zeros(len(t), bool)
         for slide in self.slides:
-            sliding |= _inside(t, slide)
+            sliding |= within(t, slide)
         edge = np.searchsorted(self._starts, t[sliding], side="right") - 1
         arc = np.clip(((t[sliding] - self._starts[edge]) % 1) / self._spans[edge], 0, 1)
         share = (arc[:, None] ** np.arange(PIECES + 1) * self._shares[edge]).sum(1)
@@ -71,7 +71,8 @@ class SlidRim:
         return points
 
 
-def _inside(t: Floats, slide: Slide) -> NDArray[np.bool_]:
+def within(t: Floats, slide: Slide) -> NDArray[np.bool_]:
+    """Which parameters (n,) are inside a sliding part, its held ends left out."""
     along, span = (t - slide.start) % 1, slide.end - slide.start
     return np.asarray((along > 1e-9) & (along < span - 1e-9)) if span < 1 else np.ones(len(t), bool)
 
@@ -102,7 +103,7 @@ def _slid(film: Film, index: int, parameter: Floats) -> SlidRim:
     basis: Floats = np.asarray(np.linalg.inv(np.vander(np.linspace(0, 1, p + 1), increasing=True)), np.float64)
     length, shares = _arc_lengths(nodes, basis)
     for slide in loop.slides:
-        moves = np.flatnonzero(_inside((start + span / 2) % 1, slide))
+        moves = np.flatnonzero(within((start + span / 2) % 1, slide))
         moves = moves[np.argsort((start[moves] - slide.start) % 1)]
         whole = slide.end - slide.start
         even = length[moves] / length[moves].sum() * whole

@@ -1,0 +1,84 @@
+"""What a search that found no film tells: how far it went, and what may be tried."""
+
+from __future__ import annotations
+
+from lamella.errors import InputError
+from lamella.surface.found.first_film import FirstFilm, SearchError
+
+# no bound says that there is no such surface: the search alone ended
+MAY_EXIST = "no bound is broken, so that there may be one"
+
+
+def not_found(
+    search: FirstFilm,
+    error: SearchError,
+    mean_curvature: float,
+    volume: float | None,
+    unstable: bool,
+) -> InputError:
+    """The error of a search for a mean curvature (1/m), or for a volume (m^3), that ended without a film."""
+    how = "; ".join(error.reasons) or "Newton's method did not arrive from any start"
+    went = f"{how} ({error.steps} Newton steps)"
+    if volume is not None:
+        return _no_volume(search, went, volume)
+    wanted = f"mean_curvature = {mean_curvature:.6g} 1/m"
+    if unstable:
+        return InputError(
+            f"{wanted}: the search did not arrive at an unstable surface; {MAY_EXIST}. {went}",
+            'leave branch out, or write branch = "stable"',
+            "surface.branch",
+        )
+    if not mean_curvature:
+        return InputError(
+            f"the search did not arrive at a surface in this boundary; {MAY_EXIST}. {went}",
+            "hold the sliding parts, or begin with a shape nearer to the film"
+            if any(loop.slides for loop in search.loops)
+            else "bring the loops closer together, or make them less bent",
+            "surface.boundary",
+        )
+    if _again(search).exists(-mean_curvature):
+        return InputError(
+            f"{wanted}: the search did not arrive at a surface, but there is one of {-mean_curvature:.6g} 1/m. The "
+            "surface bends towards its normal where H is above 0, and the normal follows the first loop by the "
+            "right-hand rule",
+            f"write mean_curvature = {-mean_curvature:.6g}, or reverse the first loop",
+            "surface.mean_curvature",
+        )
+    if error.fold is not None:
+        return InputError(
+            f"{wanted}: the search did not arrive at a stable surface that bends that much; {MAY_EXIST}. {went}",
+            f"choose a mean_curvature below {abs(error.fold):.4g} 1/m in size, or give a volume instead",
+            "surface.mean_curvature",
+        )
+    return InputError(
+        f"{wanted}: the search did not arrive at a surface; {MAY_EXIST}. {went}",
+        "choose a smaller mean_curvature, or give a volume instead",
+        "surface.mean_curvature",
+    )
+
+
+def _again(search: FirstFilm) -> FirstFilm:
+    search.progress("    the other sign is tried")
+    return FirstFilm(search.loops, search.order, search.progress)
+
+
+def _no_volume(search: FirstFilm, went: str, volume: float) -> InputError:
+    wanted = f"volume = {volume:.6g} m3"
+    if len(search.loops) > 1:
+        try:
+            _again(search).of_volume(-volume)
+        except SearchError:
+            pass
+        else:
+            return InputError(
+                f"{wanted}: the search did not arrive at a surface, but there is one of {-volume:.6g} m3. It is "
+                "above 0 where the normal points out of it, and the normal follows the first loop by the right-hand "
+                "rule",
+                f"write volume = {-volume:.6g}, or reverse the first loop",
+                "surface.volume",
+            )
+    return InputError(
+        f"{wanted}: the search did not arrive at a surface; {MAY_EXIST}. {went}",
+        "choose a volume nearer to that of the film without pressure, or bring the loops closer together",
+        "surface.volume",
+    )

@@ -1,0 +1,124 @@
+"""A found surface on elements as small as a tolerance asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from lamella.errors import InputError
+from lamella.surface.found.adapting import deviation_of, refined_sizes
+from lamella.surface.found.film import Film
+from lamella.surface.found.found_film import Found
+from lamella.surface.found.meshing import renewed, straightened, with_sizes
+from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError
+from lamella.surface.found.stability import stability_of
+from lamella.surface.points import Floats
+
+MOST_ROUNDS = 8
+# at the limit of nodes another round is worth its time while it lowers the deviation by more than this
+SLOW = 0.7
+# of the curvature scale: a film that is off by more is none to speak of
+WRONG = 0.1
+
+
+def adapted(
+    first: Equilibrium,
+    settled: Callable[[Film], Equilibrium],
+    tolerance: float,
+    most_nodes: int,
+    steps: int,
+    followed: bool,
+    progress: Detail,
+) -> Found:
+    """The same surface on elements as small as a tolerance asks for.
+
+    Parameters
+    ----------
+    first : Equilibrium
+        On coarse elements.
+    settled : callable
+        Newton's method on new elements.
+    tolerance, most_nodes
+        See `find_film`.
+    steps, followed
+        How the first one was found.
+    progress : callable
+
+    Raises
+    ------
+    InputError
+        The surface is not there on finer elements.
+    """
+    here = first
+    shortfall = f"it was not reached in {MOST_ROUNDS} rounds of refinement"
+    best: tuple[float, Equilibrium] | None = None
+    for round_ in range(MOST_ROUNDS):
+        try:
+            here = settled(straightened(here.film))
+        except NoFilmError as error:
+            shortfall = f"on finer elements Newton's method fails ({error})"
+            if best is None:
+                raise InputError(
+                    f"the surface found on coarse elements breaks on finer ones: {error}",
+                    "make the boundary less bent, or allow a larger tolerance",
+                    "surface",
+                ) from None
+            break
+        deviation = deviation_of(here.film, here.mean_curvature)
+        progress(
+            f"  {here.film.connectivity.node_count:,} nodes: |H - H0| up to {deviation.largest:.1e} of the curvature "
+            f"scale {deviation.scale:.3g} 1/m"
+        )
+        gain = deviation.largest / best[0] if best else 0.0
+        if best is None or deviation.largest < best[0]:
+            best = (deviation.largest, here)
+        if deviation.largest <= tolerance:
+            shortfall = ""
+            break
+        size, allowed = refined_sizes(here.film, deviation, tolerance, most_nodes, coarsen=round_ < 2)
+        if not allowed and here.film.connectivity.node_count > 0.7 * most_nodes and gain > SLOW:
+            shortfall = f"elements as small as that asks for would need more than most_nodes = {most_nodes:,} nodes"
+            break
+        try:
+            here = settled(with_sizes(here.film, size))
+        except NoFilmError as error:
+            progress(f"    on finer elements: {error}")
+            try:
+                here = settled(straightened(renewed(here.film, 0.6)))
+            except NoFilmError as again:
+                shortfall = f"on finer elements Newton's method fails ({again})"
+                break
+    assert best is not None
+    here = best[1]
+    deviation = deviation_of(here.film, here.mean_curvature)
+    if shortfall:
+        raise InputError(
+            f"H is off by up to {deviation.largest:.2g} of the curvature scale {deviation.scale:.3g} 1/m, more than "
+            f"tolerance = {tolerance:g}, {_place(here.film, deviation.of_element)}: {shortfall}",
+            f"write tolerance = {_rounded_up(deviation.largest):g}, raise most_nodes, or make the boundary smoother "
+            "there"
+            if deviation.largest < WRONG
+            else "make the boundary less bent or less narrow there, or raise most_nodes",
+            "surface.tolerance",
+        )
+    return Found(
+        here,
+        stability_of(here.film, here.mean_curvature),
+        deviation.largest,
+        deviation.scale,
+        steps,
+        followed,
+    )
+
+
+def _place(film: Film, off: Floats) -> str:
+    """Where the worst element is."""
+    x, y, z = film.nodes[film.connectivity.faces[off.argmax()]].mean(0)
+    return f"near ({x:.4g}, {y:.4g}, {z:.4g}) m"
+
+
+def _rounded_up(value: float) -> float:
+    """The next number of one digit that leaves some room."""
+    power = 10.0 ** np.floor(np.log10(1.2 * value))
+    return float(np.ceil(1.2 * value / power) * power)

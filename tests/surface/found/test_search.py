@@ -1,0 +1,79 @@
+"""What a search tells: while it runs, and where it ends."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from lamella.errors import InputError
+from lamella.surface.boundary import make_loop
+from lamella.surface.boundary.splines import closed_spline
+from lamella.surface.found.along_family import FoldError, to_curvature
+from lamella.surface.found.find import find_film
+from lamella.surface.found.newton import find_equilibrium
+from lamella.surface.found.progress import LONG, patient
+from surface.found.exact_patches import ring
+from surface.found.films import disc_film
+
+TAU = 2 * np.pi
+
+
+def waving(height: float):
+    """A rim that rises and falls three times."""
+    t = TAU * np.arange(48) / 48
+    return make_loop("rim", closed_spline(np.column_stack([np.cos(t), np.sin(t), height * np.cos(3 * t)])))
+
+
+def test_details_become_lines_after_two_seconds(monkeypatch) -> None:
+    now = [0.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    told: list[str] = []
+    tell = patient(told.append)
+    tell("    a")
+    now[0] = LONG + 0.1
+    tell("    b")
+    tell("    c")
+    now[0] += LONG - 0.2
+    tell("  line")
+    now[0] += LONG - 0.2
+    tell("    d")
+    now[0] += LONG
+    tell("    e")
+    assert told == ["    a", "  b", "    c", "  line", "    d", "  e"]
+
+
+def test_fold_is_an_estimate_and_no_proof() -> None:
+    """Caps of a waving rim have their largest H at a fold, which no bound knows."""
+    with pytest.raises(InputError, match="the search did not arrive at a stable surface") as error:
+        find_film((waving(0.3),), 1.15)
+    message = str(error.value)
+    assert "no bound is broken" in message
+    assert "turn back at about H = " in message
+    assert "estimate" in message
+    fold = float(message.split("turn back at about H = ")[1].split()[0])
+    # below it there is a film, and the remedy says so
+    assert find_film((waving(0.3),), 0.99 * fold, tolerance=0.05).stability.lowest > 0
+
+
+def test_fold_of_caps_is_the_hemisphere() -> None:
+    """At H R = 1; the estimate, by cubics along the family, is good to a thousandth from coarse steps."""
+    with pytest.raises(FoldError) as error:
+        to_curvature(find_equilibrium(disc_film(4, 5), 0.2), 1.5, lambda message: None)
+    assert error.value.mean_curvature == pytest.approx(1, rel=2e-3)
+
+
+def test_broken_bound_is_named_before_any_search() -> None:
+    told: list[str] = []
+    with pytest.raises(InputError, match=r"\|H\| <= length"):
+        find_film((ring(1.0, 0.0),), 1.2, progress=told.append)
+    assert not told
+
+
+def test_unstable_film_that_the_search_does_not_find() -> None:
+    with pytest.raises(
+        InputError, match="the search did not arrive at an unstable surface; no bound is broken"
+    ) as error:
+        find_film((waving(0.2),), branch="unstable")
+    assert error.value.where == "surface.branch"

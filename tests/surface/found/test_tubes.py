@@ -1,0 +1,154 @@
+"""Tubes between coaxial rings that no film without pressure spans: cylinders and unduloids, by H and by volume.
+
+Unduloids in closed form: `lamella.surface.delaunay`. A cylinder of radius R and length L has the lowest Jacobi
+eigenvalue (pi / L)^2 - 1 / R^2 at fixed H (DESIGN section 9).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq, fsolve
+
+from lamella.errors import InputError
+from lamella.surface.delaunay import Delaunay
+from lamella.surface.found.along_family import to_curvature
+from lamella.surface.found.enclosed import enclosed_volume
+from lamella.surface.found.find import find_film
+from lamella.surface.found.newton import find_equilibrium
+from surface.found.exact_patches import ring
+from surface.found.films import random_places, start
+
+
+def between(radius: float, length: float):
+    """The upper ring first, counter-clockwise from above: the normal points towards the axis, and H > 0."""
+    return (ring(radius, length), ring(radius, 0.0))
+
+
+def profile(found, length: float):
+    """Radius and height over the middle at random places."""
+    x = found.surface("x").at(random_places(found.equilibrium.film, 20_000)).position
+    return np.hypot(x[:, 0], x[:, 1]), x[:, 2] - length / 2
+
+
+class Piece:
+    """Of an unduloid, symmetric about its neck or its bulge, between rings of a radius."""
+
+    def __init__(self, neck: float, bulge: float, radius: float, *, about_bulge: bool) -> None:
+        self.surface = Delaunay(neck, bulge, 1)
+        self.middle = self.surface.period / 2 if about_bulge else 0.0
+        lift = self._at(self.middle)[1]
+        self._lift = lift
+        self.end = brentq(lambda u: self._at(self.middle + u)[0] - radius, 1e-9, self.surface.period / 2)
+        u = np.polynomial.legendre.leggauss(60)
+        s = self.end * (u[0] + 1) / 2
+        p = self.surface.profile(self.middle + s)
+        # half of it: integral of pi r^2 dz, with z_U as given by the profile
+        self.volume = float(2 * np.pi * (p.r**2 * p.z_u * u[1]).sum() * self.end / 2)
+        self.length = 2 * (self._at(self.middle + self.end)[1] - lift)
+
+    def _at(self, u: float):
+        p = self.surface.profile(np.array([u]))
+        return float(p.r[0]), float(p.z[0])
+
+    def radius_at(self, height):
+        """By interpolation of the exact meridian."""
+        s = np.linspace(0, self.end, 4001)
+        p = self.surface.profile(self.middle + s)
+        return np.interp(np.abs(height), p.z - self._lift, p.r)
+
+
+def unduloid_of_volume(radius: float, length: float, volume: float, *, about_bulge: bool) -> Piece:
+    def off(x):
+        piece = Piece(float(x[0]), float(x[1]), radius, about_bulge=about_bulge)
+        return [piece.length / length - 1, piece.volume / volume - 1]
+
+    part = volume / (np.pi * radius**2 * length)
+    guess = (radius * 0.999, radius * part**0.7) if about_bulge else (radius * part**0.7, radius * (2 - part**0.7))
+    return Piece(*fsolve(off, guess, xtol=1e-12), radius, about_bulge=about_bulge)
+
+
+@pytest.mark.parametrize(("radius", "length"), [(3.0, 8.0), (1.0, 3.0)])
+def test_cylinder_where_no_catenoid_is(radius, length) -> None:
+    """Beyond 1.3255 radii, below pi radii."""
+    found = find_film(between(radius, length), 0.5 / radius)
+    r, _ = profile(found, length)
+    assert np.abs(r - radius).max() < 1e-3 * radius
+    assert found.stability.verdict == "stable"
+    assert found.stability.lowest == pytest.approx((np.pi / length) ** 2 - 1 / radius**2, rel=1e-3)
+
+
+def test_reversed_rings_want_the_other_sign() -> None:
+    """The lower ring first: the normal points away from the axis."""
+    found = find_film(between(3.0, 8.0)[::-1], -1 / 6)
+    assert np.abs(profile(found, 8.0)[0] - 3).max() < 3e-3
+
+
+def test_wrong_sign_is_told() -> None:
+    with pytest.raises(InputError, match=r"there is one of 0\.166667 1/m") as error:
+        find_film(between(3.0, 8.0), -1 / 6)
+    assert "mean_curvature = 0.166667, or reverse the first loop" in error.value.remedy
+
+
+class TestCylinderAtPi:
+    """At fixed H the lowest eigenvalue changes sign within 0.5 % of the length pi R."""
+
+    def test_stable_before(self) -> None:
+        length = 0.995 * np.pi
+        found = find_film(between(1.0, length), 0.5)
+        assert np.abs(profile(found, length)[0] - 1).max() < 1e-3
+        assert found.stability.verdict == "stable"
+        assert found.stability.lowest == pytest.approx((np.pi / length) ** 2 - 1, rel=0.02)
+
+    def test_unstable_behind(self) -> None:
+        length = 1.005 * np.pi
+        found = find_film(between(1.0, length), 0.5, branch="unstable")
+        assert np.abs(profile(found, length)[0] - 1).max() < 1e-3
+        assert found.stability.verdict == "unstable"
+        assert found.stability.negative == 1
+        assert found.stability.lowest == pytest.approx((np.pi / length) ** 2 - 1, rel=0.02)
+
+    def test_an_unduloid_takes_over(self) -> None:
+        """Behind pi R the stable film of the same H bulges: neck + bulge = 1 / H, as long as the rings are apart."""
+        length = 1.005 * np.pi
+        found = find_film(between(1.0, length), 0.5)
+        assert found.stability.verdict == "stable"
+        bulge = brentq(lambda b: Piece(2 - b, b, 1.0, about_bulge=True).length - length, 1.001, 1.2)
+        r, z = profile(found, length)
+        assert np.abs(r - Piece(2 - bulge, bulge, 1.0, about_bulge=True).radius_at(z)).max() < 1e-3
+        assert r.max() > 1.01
+
+
+@pytest.mark.parametrize(
+    ("radius", "length", "part"),
+    [(3.0, 4.0, 100 / (36 * np.pi)), (1.0, 2.0, 0.97), (1.0, 2.0, 1.04), (1.0, 0.8, 1.05), (1.0, 5.0, 1.01)],
+)
+def test_tube_of_given_volume(radius, length, part) -> None:
+    """A part of the cylinder's volume: an unduloid about its neck below it, about its bulge above; also unstable at
+    its own pressure (beyond pi radii), where it is stable at fixed volume."""
+    volume = part * np.pi * radius**2 * length
+    found = find_film(between(radius, length), volume=-volume)
+    exact = unduloid_of_volume(radius, length, volume, about_bulge=part > 1)
+    assert exact.volume == pytest.approx(volume, rel=1e-9)
+    assert found.equilibrium.mean_curvature == pytest.approx(exact.surface.mean_curvature, rel=2e-4)
+    assert enclosed_volume(found.equilibrium.film) == pytest.approx(-volume, rel=1e-9)
+    r, z = profile(found, length)
+    assert np.abs(r - exact.radius_at(z)).max() < 2e-3 * radius
+
+
+@pytest.mark.slow
+def test_volume_of_the_wrong_sign_is_told() -> None:
+    with pytest.raises(InputError, match=r"there is one of 100 m3") as error:
+        find_film(between(3.0, 4.0)[::-1], volume=-100)
+    assert error.value.where == "surface.volume"
+
+
+def test_family_runs_through_a_fold_of_its_volume() -> None:
+    """Between near rings the volume of the nodoids falls and grows again on the way to the thin-necked catenoid."""
+    told: list[str] = []
+    loops = between(1.0, 0.8)
+    thick = find_equilibrium(start(loops, 3))
+    reached = to_curvature(thick, 0.0, told.append, unstable=True)
+    volumes = [abs(float(line.split("volume ")[1].split()[0])) for line in told if "volume" in line]
+    assert min(volumes) < abs(enclosed_volume(reached.equilibrium.film)) - 0.005
+    assert reached.equilibrium.negative == 1
