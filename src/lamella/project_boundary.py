@@ -95,6 +95,22 @@ class PartTable(Table):
         return self
 
 
+class AdjustTable(Table):
+    """How far a loop may be changed for a net that closes (network.closing = "adjust"); what is not given is held."""
+
+    move: float = number("Shift in each of x, y and z, at most.", "m", ge=0, le=1000, default=0.0, examples=[0.3])
+    scale: float = number("Change of size, as a share of it, at most.", "", ge=0, le=0.5, default=0.0, examples=[0.05])
+    tilt: float = number("Turn about each of x, y and z, at most.", "degrees", ge=0, le=45, default=0.0, examples=[5.0])
+    points: float = number(
+        "Shift of the points in x, y and z, in waves along the loop, at most; goes with points.",
+        "m",
+        ge=0,
+        le=1000,
+        default=0.0,
+        examples=[0.3],
+    )
+
+
 _SHAPES = ("points", "circle", "file", "part")
 
 
@@ -139,6 +155,9 @@ class BoundaryTable(Table):
         json_schema_extra={"minItems": 1, "maxItems": MOST_PARTS},
     )
     slide: SlideTable | None = Field(default=None, description="Where the loop may slide; fixed when not given.")
+    adjust: AdjustTable | None = Field(
+        default=None, description='How far the loop may be changed where network.closing = "adjust".'
+    )
 
     _default = model_validator(mode="before")(_with_interpolation)
 
@@ -170,6 +189,11 @@ class BoundaryTable(Table):
             if getattr(self, key) is not None and self.file is None:
                 remedy = "lengths here are in metres" if key == "unit" else f"leave {key} out"
                 raise Refusal(f"{key} goes with file", remedy, key)
+        if self.adjust is not None and (self.slide is not None or (self.points is None and self.circle is None)):
+            told = "a loop that slides" if self.slide is not None else f"a loop given by {given[0]}"
+            raise Refusal(f"{told} cannot be adjusted", "give it by points or as a circle, held", "adjust")
+        if self.adjust is not None and self.adjust.points and self.points is None:
+            raise Refusal("a circle has no points to shift", "write move, scale or tilt", "adjust.points")
         if self.slide is not None and self.part is not None:
             raise Refusal("a loop of parts slides by its parts", "move slide into the parts that slide", "slide")
         return self

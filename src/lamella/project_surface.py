@@ -231,6 +231,9 @@ class FormFoundTable(Table):
         default="stable", description="Which surface, where there are two: the stable film or the unstable one."
     )
     most_nodes: int = _most_nodes()
+    adjust_mean_curvature: float = number(
+        'How far mean_curvature may be changed where network.closing = "adjust".', "1/m", ge=0, le=1e6, default=0.0
+    )
     boundary: Annotated[tuple[BoundaryTable, ...], Field(strict=False)] = Field(
         description="Tables [[surface.boundary]]: the outer loop, then the holes.",
         json_schema_extra={"minItems": 1, "maxItems": MOST_LOOPS},
@@ -267,6 +270,12 @@ class FormFoundTable(Table):
                 f"mean_curvature = {self.mean_curvature:g} 1/m and volume = {self.volume:g} m3 are both given",
                 "keep one of them",
                 "volume",
+            )
+        if self.volume is not None and self.adjust_mean_curvature:
+            raise Refusal(
+                "adjust_mean_curvature is given with a volume: H follows from the volume",
+                "leave adjust_mean_curvature out, or give mean_curvature instead of volume",
+                "adjust_mean_curvature",
             )
         if self.volume is not None and self.branch == "unstable":
             raise Refusal(

@@ -40,16 +40,15 @@ def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
     """
     sign, cut, turns = root_signs(mesh, cut_edges(mesh, odd))
     pieces, across = cut_pieces(mesh, cut, turns, odd)
-    system = Poisson.of(mesh, sign)
+    plain = Poisson.of(mesh, sign)
+    system = plain.weighted()
     sector = sectors(mesh.connectivity, cut)
-    base, moves = system.solve(sector, *_links(mesh, pieces, sector))
+    base, moves = system.solve(sector, *links(mesh, pieces, sector))
     gram, right = system.quadratic(base, moves)
     relations = vertex_relations(mesh, pieces, across, odd)
-    shifts = _best(gram, right, list(relations.values()), np.zeros(len(relations), complex))
+    shifts = best_shifts(gram, right, list(relations.values()), np.zeros(len(relations), complex))
     value = base + np.einsum("t,tek->ek", shifts, moves)
-    return Isothermic(
-        mesh, odd, sign, cut, value, _shifted(pieces, shifts), across, moves, gram, system.residual(value)
-    )
+    return Isothermic(mesh, odd, sign, cut, value, _shifted(pieces, shifts), across, moves, gram, plain.residual(value))
 
 
 def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
@@ -74,7 +73,7 @@ def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
     relations = vertex_relations(mesh, iso.transitions, iso.across, iso.odd)
     rows = [*relations.values(), *np.eye(len(before), dtype=np.int64)[given]]
     goal = np.concatenate([np.zeros(len(relations), complex), shifts[given] - before[given]])
-    change = _best(iso.gram, np.zeros(len(before), complex), rows, goal)
+    change = best_shifts(iso.gram, np.zeros(len(before), complex), rows, goal)
     change[given] = shifts[given] - before[given]
     value = iso.value + np.einsum("t,tek->ek", change, iso.moves)
     system = Poisson.of(mesh, iso.sign)
@@ -90,7 +89,7 @@ def _shifted(pieces: tuple[Transition, ...], shifts: Complexes) -> tuple[Transit
     return tuple(replace(piece, shift=shift) for piece, shift in zip(pieces, shifts.tolist(), strict=True))
 
 
-def _best(gram: Floats, right: Complexes, rows: list[Integers], goal: Complexes) -> Complexes:
+def best_shifts(gram: Floats, right: Complexes, rows: list[Integers], goal: Complexes) -> Complexes:
     """Least squares of shifts (t,) under conditions rows . shifts = goal, which may repeat each other."""
     count = len(gram)
     if not count:
@@ -104,7 +103,7 @@ def _best(gram: Floats, right: Complexes, rows: list[Integers], goal: Complexes)
     return np.asarray(fixed + loose.T @ rest, np.complex128)
 
 
-def _links(
+def links(
     mesh: NetMesh, pieces: tuple[Transition, ...], sector: Integers
 ) -> tuple[Integers, Floats, Floats, dict[int, Floats]]:
     """Sectors joined across the cut: unknown of each, sign, offset per shift (s, t), and unknowns held by shifts."""

@@ -72,21 +72,23 @@ def vertex_relations(
     for vertex, meeting in ends.items():
         if vertex in umbilics or mesh.loop[vertex] >= 0 or len(meeting) < 2:
             continue
-        sign, factors = 1, np.zeros(len(tips), np.int64)
-        for number, leaves in _around(mesh.connectivity, across, vertex):
-            s = pieces[number].sign
-            # a piece that leaves the vertex is crossed from its right side to its left
-            if leaves:
-                factors = s * factors
-                factors[number] -= s
-            else:
-                factors = s * factors
-                factors[number] += 1
-            sign *= s
+        sign, factors = around_vertex(mesh, pieces, across, vertex)
         if sign != 1:
             raise ValueError("the signs around an ordinary vertex of the cut do not agree")
         result[vertex] = factors
     return result
+
+
+def around_vertex(mesh: NetMesh, pieces: tuple[Transition, ...], across: Integers, vertex: int) -> tuple[int, Integers]:
+    """Once around a vertex, counter-clockwise, w comes back as sign w + factors (t,) . shifts."""
+    sign, factors = 1, np.zeros(len(pieces), np.int64)
+    for number, leaves in _around(mesh.connectivity, across, vertex):
+        s = pieces[number].sign
+        # a piece that leaves the vertex is crossed from its right side to its left
+        factors = s * factors
+        factors[number] += -s if leaves else 1
+        sign *= s
+    return sign, factors
 
 
 def _around(connectivity: Connectivity, across: Integers, vertex: int) -> list[tuple[int, bool]]:

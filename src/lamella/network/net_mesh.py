@@ -55,6 +55,8 @@ class NetMesh:
     connectivity : Connectivity
     nodes : (n, 3)
         m, on the surface.
+    places : Places
+        Of the nodes on the surface.
     shape : (n, 6)
         Shape operator of the surface at the nodes, 1/m: entries xx, xy, xz, yy, yz, zz.
     normals : (n, 3)
@@ -69,6 +71,7 @@ class NetMesh:
 
     connectivity: Connectivity
     nodes: Floats
+    places: Places
     shape: Floats
     normals: Floats
     loop: Integers
@@ -168,8 +171,13 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         places, there = plane.up(z, surface)
         positions[names], element[names], local[names] = there, places.element, places.local
     every = Places(element, local)
-    operator = surface.at(every).shape_operator[:, ROWS, COLUMNS]
-    return NetMesh(new, positions, operator, surface.smooth_normal(every), loop, at, radii)
+    operator = shape_entries(surface, every)
+    return NetMesh(new, positions, every, operator, surface.smooth_normal(every), loop, at, radii)
+
+
+def shape_entries(surface: ElementSurface, where: Places) -> Floats:
+    """Shape operator at n places, 1/m, (n, 6): entries xx, xy, xz, yy, yz, zz."""
+    return np.asarray(surface.at(where).shape_operator[:, ROWS, COLUMNS])
 
 
 def _positions(parts: Parts, surface: ElementSurface) -> Floats:

@@ -31,7 +31,7 @@ class Poisson:
 
     @classmethod
     def of(cls, mesh: NetMesh, sign: Integers) -> Poisson:
-        """The problem on a mesh with signs (m,) of the roots."""
+        """The problem on a mesh with signs (m,) of the roots, not weighted."""
         basis = mesh.connectivity.basis
         points, weights = triangle_rule(2 * basis.order)
         form_a, form_b, (e, f, g) = _forms(mesh, points)
@@ -40,7 +40,7 @@ class Poisson:
         corners = mesh.nodes[mesh.connectivity.elements]
         blocks, _, area = dirichlet_blocks(x, y, *tangents(x, y, corners), weights)
         pull = ((g * form_a - f * form_b) / area) @ x + ((e * form_b - f * form_a) / area) @ y
-        return cls(blocks, pull, form_a, form_b, (e, f, g), area, x, y).weighted()
+        return cls(blocks, pull, form_a, form_b, (e, f, g), area, x, y)
 
     def weighted(self) -> Poisson:
         """The same fit with the weight 1 / |D|^2: what the forms are not closed by stays away from umbilics.
@@ -55,9 +55,13 @@ class Poisson:
         # |sqrt(D) dz|^2 is 2 |D|
         area = self.area * (square / square.mean()) ** 2
         blocks = weighted_dirichlet_blocks(self.x, self.y, self.metric, area)
-        pull = ((g * self.form_a - f * self.form_b) / area) @ self.x
-        pull = pull + ((e * self.form_b - f * self.form_a) / area) @ self.y
-        return replace(self, blocks=blocks, pull=pull)
+        return replace(self, blocks=blocks, pull=replace(self, area=area).pull_of(self.form_a, self.form_b))
+
+    def pull_of(self, form_a: Complexes, form_b: Complexes) -> Complexes:
+        """Right sides (m, k) of other forms, (m, q) along both local coordinates."""
+        e, f, g = self.metric
+        first, second = (g * form_a - f * form_b) / self.area, (e * form_b - f * form_a) / self.area
+        return np.asarray(first @ self.x + second @ self.y)
 
     def solve(
         self, sector: Integers, home: Integers, sign: Floats, offset: Floats, held: dict[int, Floats]

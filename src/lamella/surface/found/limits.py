@@ -83,9 +83,8 @@ def refuse_flux(loops: Sequence[Curve], mean_curvature: float) -> None:
 def refuse_apart(loops: Sequence[Curve]) -> None:
     """Two loops too far apart for one film: coaxial circles exactly, others by the cone of Hildebrandt.
 
-    Sources: catenaries through two points; U. Dierkes, S. Hildebrandt, F. Sauvigny, Minimal
-    Surfaces (2010), section 4.1: loops in the two nappes of a cone of half opening arctan 1.5089 bound no connected
-    minimal surface.
+    Loops in the two nappes of a cone of half opening arctan 1.5089 bound no connected minimal surface: docs/theory.md
+    has the proof.
     """
     first, second = (loop.at(np.arange(SAMPLES) / SAMPLES) for loop in loops)
     middles = [points.mean(0) for points in (first, second)]

@@ -1,0 +1,111 @@
+"""How the shifts of isothermic coordinates change when the boundary of a film or its H changes.
+
+To first order a film moves along its normals by a Jacobi field: one linear system for all changes at once. The
+coordinates' forms change with it, and the shifts follow by testing this change with the harmonic functions that jump by
+1 across one piece of the cut: no coordinates have to be found anew.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from lamella.network.gluing import best_shifts, links
+from lamella.network.holonomy import vertex_relations
+from lamella.network.isothermic import Isothermic, sectors
+from lamella.network.net_mesh import shape_entries
+from lamella.network.poisson import Poisson
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.found.film import Film
+from lamella.surface.found.variation import Variation
+from lamella.surface.points import Complexes, Floats
+
+# of the film's size: how far it is moved for a difference quotient
+STEP = 1e-4
+
+
+def jacobi_fields(film: Film, mean_curvature: float, rim_shifts: Floats, curvature_rates: Floats) -> Floats:
+    """Shifts of the nodes along the film's directions that keep it in equilibrium, to first order.
+
+    Parameters
+    ----------
+    film : Film
+        In equilibrium, no loop sliding.
+    mean_curvature : float
+        H, 1/m.
+    rim_shifts : (p, n, 3)
+        How nodes of the boundary move with each of p parameters, m; 0 inside.
+    curvature_rates : (p,)
+        How H changes, 1/m.
+
+    Returns
+    -------
+    (p, n)
+        m.
+    """
+    directions = film.directions()
+    variation = Variation(film.connectivity, directions)
+    first = variation.first(film.nodes)
+    blocks = variation.second(film.nodes, first, mean_curvature)
+    elements = film.connectivity.elements
+    i, j = np.tril_indices(elements.shape[1])
+    full = np.empty((len(elements), elements.shape[1], elements.shape[1]))
+    full[:, i, j] = full[:, j, i] = blocks
+    fields = (rim_shifts * directions).sum(2)
+    free = film.unknowns >= 0
+    flat = elements.ravel()
+    right = [
+        -np.bincount(flat, np.matmul(full, field[elements][..., None]).ravel(), len(free))
+        - 2 * rate * first.volume_gradient
+        for field, rate in zip(fields, curvature_rates, strict=True)
+    ]
+    pattern = film.pattern
+    solved = pattern.factor(pattern.assemble(blocks)).solve(np.stack(right, 1)[free])
+    fields[:, free] = solved.T
+    return np.asarray(fields)
+
+
+def shift_rates(
+    surface: ElementSurface, film: Film, iso: Isothermic, fields: Floats, curvature_rates: Floats
+) -> Complexes:
+    """Change of every shift, sqrt(m), with each of p parameters, (t, p).
+
+    Parameters
+    ----------
+    surface : ElementSurface
+        The film.
+    film : Film
+    iso : Isothermic
+        On the surface.
+    fields : (p, n)
+        See `jacobi_fields`.
+    curvature_rates : (p,)
+        1/m.
+    """
+    mesh = iso.mesh
+    system = Poisson.of(mesh, iso.sign)
+    sector = sectors(mesh.connectivity, iso.cut)
+    base, moves = system.solve(sector, *links(mesh, iso.transitions, sector))
+    gram, _ = system.quadratic(base, moves)
+    relations = list(vertex_relations(mesh, iso.transitions, iso.across, iso.odd).values())
+    directions = film.directions()
+    rates = np.zeros((len(iso.transitions), len(fields)), complex)
+    for number, (field, rate) in enumerate(zip(fields, curvature_rates, strict=True)):
+        step = STEP * film.size / max(float(np.abs(field).max()), 1e-12 * film.size)
+        moved = ElementSurface(
+            surface.kind,
+            surface.mean_curvature + step * rate,
+            surface.connectivity,
+            surface.nodes + step * field[:, None] * directions,
+            surface.rim_loop,
+        )
+        there = replace(mesh, nodes=moved.measured(mesh.places).position, shape=shape_entries(moved, mesh.places))
+        other = Poisson.of(there, iso.sign)
+        # the root's branch is that of each element's own middle: the same one on both surfaces
+        same = (other.form_a * system.form_a.conj() + other.form_b * system.form_b.conj()).real.sum(1)
+        turn = np.where(same < 0, -1, 1)[:, None]
+        pull = system.pull_of(turn * other.form_a - system.form_a, turn * other.form_b - system.form_b)
+        right = np.einsum("tek,ek->t", moves, pull) / step
+        rates[:, number] = best_shifts(gram, right, relations, np.zeros(len(relations), complex))
+    return rates

@@ -1,0 +1,167 @@
+"""How the boundary of a film may be changed: shifts, sizes and tilts of loops, waves of their points, H."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from lamella.surface.boundary.pieces import Floats
+
+if TYPE_CHECKING:
+    from lamella.project import FormFoundTable
+    from lamella.project_boundary import BoundaryTable
+
+# waves of a loop's points: full turns along the loop, at most, and points for each
+MOST_WAVES, POINTS_A_WAVE = 4, 3
+# where a project names no freedom: of a loop's size
+USUAL = 0.05
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Some of the parameters: what they are, and how the table follows from their values."""
+
+    name: str
+    ranges: Floats
+    apply: Callable[[FormFoundTable, Floats], FormFoundTable]
+
+
+class Freedom:
+    """The parameters of a boundary that may change, each within +-1 of its range.
+
+    Parameters
+    ----------
+    table : FormFoundTable
+        Loops with their `adjust`. Where no loop has one and H is held, all loops given by points and all circles may
+        change by a twentieth of their size.
+
+    Attributes
+    ----------
+    table : FormFoundTable
+        As it was given.
+    names : tuple of str
+        What may change.
+    count : int
+    """
+
+    def __init__(self, table: FormFoundTable) -> None:
+        self.table = table
+        parts: list[_Part] = []
+        given = table.adjust_mean_curvature > 0 or any(loop.adjust is not None for loop in table.boundary)
+        for index, loop in enumerate(table.boundary):
+            parts += _of_loop(index, loop, usual=not given)
+        if table.adjust_mean_curvature:
+            parts.append(_Part("mean curvature", np.array([table.adjust_mean_curvature]), _with_curvature))
+        self._parts = parts
+        self.names = tuple(part.name for part in parts)
+        self.count = sum(len(part.ranges) for part in parts)
+
+    def changed(self, shares: Floats) -> FormFoundTable:
+        """The table with parameters at shares (count,) of their ranges."""
+        table, first = self.table, 0
+        for part in self._parts:
+            table = part.apply(table, part.ranges * shares[first : first + len(part.ranges)])
+            first += len(part.ranges)
+        return table
+
+    def curvature_rates(self) -> Floats:
+        """Change of H, 1/m, per share of each parameter, (count,)."""
+        rates = [part.ranges if part.apply is _with_curvature else np.zeros(len(part.ranges)) for part in self._parts]
+        return np.concatenate([np.zeros(0), *rates])
+
+
+def _of_loop(index: int, loop: BoundaryTable, usual: bool) -> list[_Part]:
+    """Parameters of one loop; waves first, so that shifts, sizes and tilts are those of the waved loop."""
+    if loop.slide is not None or (loop.points is None and loop.circle is None):
+        return []
+    if loop.points is not None:
+        size = float(np.linalg.norm(np.ptp(np.array(loop.points), axis=0)))
+    else:
+        assert loop.circle is not None
+        size = 2 * loop.circle.radius
+    move = scale = tilt = points = 0.0
+    if loop.adjust is not None:
+        move, scale, tilt, points = loop.adjust.move, loop.adjust.scale, loop.adjust.tilt, loop.adjust.points
+    elif usual:
+        move, scale, points = USUAL * size, USUAL, USUAL * size if loop.points is not None else 0.0
+    parts = []
+    if points and loop.points is not None:
+        waves = _waves(len(loop.points))
+        first = 1 if move else 0
+        ranges = np.full(3 * (len(waves) - first), points)
+        parts.append(_Part(f"points of {loop.name!r}", ranges, _waved(index, waves[first:])))
+    if move:
+        parts.append(_Part(f"place of {loop.name!r}", np.full(3, move), _placed(index)))
+    if scale:
+        parts.append(_Part(f"size of {loop.name!r}", np.array([scale]), _sized(index)))
+    if tilt:
+        parts.append(_Part(f"tilt of {loop.name!r}", np.full(3, np.radians(tilt)), _tilted(index)))
+    return parts
+
+
+def _waves(points: int) -> Floats:
+    """Even, and one to four full waves along a loop of points, (waves, points), each 1 at most."""
+    angle = 2 * np.pi * np.arange(points) / points
+    most = min(MOST_WAVES, points // POINTS_A_WAVE)
+    rows = [np.ones(points)]
+    for turns in range(1, most + 1):
+        rows += [np.cos(turns * angle), np.sin(turns * angle)]
+    return np.array(rows)
+
+
+def _replaced(table: FormFoundTable, index: int, loop: BoundaryTable) -> FormFoundTable:
+    loops = list(table.boundary)
+    loops[index] = loop
+    return table.model_copy(update={"boundary": tuple(loops)})
+
+
+def _mapped(table: FormFoundTable, index: int, turn: Floats, factor: float, shift: Floats) -> FormFoundTable:
+    """One loop turned and scaled about its middle, then shifted."""
+    loop = table.boundary[index]
+    if loop.points is not None:
+        points = np.array(loop.points)
+        middle = points.mean(0)
+        there = (points - middle) @ turn.T * factor + middle + shift
+        return _replaced(table, index, loop.model_copy(update={"points": _tuples(there)}))
+    assert loop.circle is not None
+    ring = {
+        "center": tuple((np.array(loop.circle.center) + shift).tolist()),
+        "radius": loop.circle.radius * factor,
+        "normal": tuple((turn @ np.array(loop.circle.normal)).tolist()),
+    }
+    circle = loop.circle.model_copy(update=ring)
+    return _replaced(table, index, loop.model_copy(update={"circle": circle}))
+
+
+def _tuples(points: Floats) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(point) for point in points.tolist())
+
+
+def _placed(index: int) -> Callable[[FormFoundTable, Floats], FormFoundTable]:
+    return lambda table, values: _mapped(table, index, np.eye(3), 1.0, values)
+
+
+def _sized(index: int) -> Callable[[FormFoundTable, Floats], FormFoundTable]:
+    return lambda table, values: _mapped(table, index, np.eye(3), 1.0 + float(values[0]), np.zeros(3))
+
+
+def _tilted(index: int) -> Callable[[FormFoundTable, Floats], FormFoundTable]:
+    return lambda table, values: _mapped(table, index, Rotation.from_rotvec(values).as_matrix(), 1.0, np.zeros(3))
+
+
+def _waved(index: int, waves: Floats) -> Callable[[FormFoundTable, Floats], FormFoundTable]:
+    def apply(table: FormFoundTable, values: Floats) -> FormFoundTable:
+        loop = table.boundary[index]
+        points = np.array(loop.points) + waves.T @ values.reshape(len(waves), 3)
+        return _replaced(table, index, loop.model_copy(update={"points": _tuples(points)}))
+
+    return apply
+
+
+def _with_curvature(table: FormFoundTable, values: Floats) -> FormFoundTable:
+    curvature = (table.mean_curvature or 0.0) + float(values[0])
+    return table.model_copy(update={"mean_curvature": curvature})
