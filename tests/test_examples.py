@@ -266,7 +266,8 @@ def _vault(results):
     assert np.degrees(np.abs(there.normal[ground, 2])).max() < 0.01
     x, y = there.position[ground, 0] - 2.4, there.position[ground, 1]
     assert np.abs(y) == pytest.approx(neck * np.cosh(x / neck), abs=1e-4)
-    return np.abs(y).min(), neck
+    # where x = 0, whether a sample lies there or not
+    return np.polyfit(x**2, np.abs(y), 5)[-1], neck
 
 
 def _hall(results):
@@ -322,7 +323,7 @@ WARNINGS = {
     "09_thin_neck": [r"the surface is unstable as a film .*a soap film would leave it; a stiff lamella net does not"],
     "11_cap": [r"the run ends with the surface: it is a piece of a sphere of radius .*, and has no net of lamellas"],
     "12_cushion": [SEAMS, MISSED, LEFT_OUT, BEYOND],
-    "14_three_columns": [SEAMS, MISSED, LEFT_OUT],
+    "14_three_columns": [SEAMS, MISSED, LEFT_OUT, BEYOND],
     "16_hall": [LEFT_OUT, SPLIT],
 }
 # three umbilics of the cushion and six of the canopy lie anywhere: their nets have seams

@@ -11,6 +11,8 @@ import pytest
 from scipy.optimize import brentq, fsolve
 
 from lamella.errors import InputError
+from lamella.surface.boundary import make_loop
+from lamella.surface.boundary.arcs import circle
 from lamella.surface.delaunay import Delaunay
 from lamella.surface.found.along_family import to_curvature
 from lamella.surface.found.enclosed import enclosed_volume
@@ -134,6 +136,23 @@ def test_tube_of_given_volume(radius, length, part) -> None:
     assert enclosed_volume(found.equilibrium.film) == pytest.approx(-volume, rel=1e-9)
     r, z = profile(found, length)
     assert np.abs(r - exact.radius_at(z)).max() < 2e-3 * radius
+
+
+def test_bent_tube_of_given_volume() -> None:
+    """Between rings at a right angle no soap film is; turned to face each other they have one to begin with."""
+    rings = (
+        make_loop("low", circle(np.zeros(3), 1.0, np.array([0, 0, 1.0]))),
+        make_loop("side", circle(np.array([2.0, 0, 2.0]), 1.0, np.array([1.0, 0, 0]))),
+    )
+    found = find_film(rings, volume=9.0, tolerance=0.03)
+    assert enclosed_volume(found.equilibrium.film) == pytest.approx(9, rel=1e-9)
+    measured = found.surface("x").measured(random_places(found.equilibrium.film, 20_000))
+    off = np.abs(measured.mean_curvature - found.equilibrium.mean_curvature)
+    assert off.max() < 0.03 * found.scale
+    # the mirror plane of both rings, x + z = 2 with x and z exchanged, is that of the film
+    x = found.equilibrium.film.nodes
+    mirrored = np.column_stack([2 - x[:, 2], x[:, 1], 2 - x[:, 0]])
+    assert np.linalg.norm(found.surface("x").closest(mirrored)[1] - mirrored, axis=1).max() < 5e-3
 
 
 @pytest.mark.slow
