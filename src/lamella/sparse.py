@@ -40,6 +40,13 @@ def packed(blocks: Floats) -> Floats:
     return np.asarray(blocks[:, i, j])
 
 
+def _order(numbers: Integers, size: int) -> Integers:
+    """Stable order of numbers below `size`: a counting sort, linear in their count."""
+    count = len(numbers)
+    each = sp.csr_matrix((np.zeros(count, bool), numbers, np.arange(count + 1)), (count, size))
+    return np.asarray(each.tocsc().indices, np.int64)
+
+
 class SingularError(ArithmeticError):
     """The matrix has no inverse to working precision."""
 
@@ -107,7 +114,7 @@ class SymmetricPattern:
     border: int
     backend: Backend
     _target: Integers = field(repr=False)  # entry of each kept block value
-    _kept: Integers = field(repr=False)  # flat index of each kept block value
+    _kept: Integers = field(repr=False)  # flat index of each kept block value, ascending
     _border_target: Integers = field(repr=False)  # (border, size) entries of the border's rows
     _symbolic: dict[str, Any] = field(default_factory=dict, repr=False)
 
@@ -130,42 +137,69 @@ class SymmetricPattern:
         """
         first, second = np.tril_indices(unknowns.shape[1])
         one, other = unknowns[:, first].ravel(), unknowns[:, second].ravel()
+        return cls.from_pairs(one, other, count, border=border, backend=backend)
+
+    @classmethod
+    def from_pairs(
+        cls, one: Integers, other: Integers, count: int, *, border: int = 0, backend: Backend | None = None
+    ) -> SymmetricPattern:
+        """Pattern of single entries, each given once for (i, j) and (j, i), as often as values are added to it.
+
+        Parameters
+        ----------
+        one, other : (p,) int
+            The two unknowns of each; -1: held, left out. `assemble` takes the values in this order.
+        count, border, backend
+            As `from_elements`.
+        """
         kept = np.flatnonzero((one >= 0) & (other >= 0))
         size = count + border
         low, high = np.minimum(one, other)[kept], np.maximum(one, other)[kept]
-        keys = low * size + high
         rows = np.arange(count, size)
-        border_keys = np.arange(size) * size + rows[:, None]
         below = rows[:, None] >= np.arange(size)
-        # the whole diagonal is there, whatever the elements
-        unique, inverse = np.unique(
-            np.concatenate([np.arange(size) * (size + 1), keys, border_keys[below]]), return_inverse=True
-        )
-        columns = np.searchsorted(unique, np.arange(size + 1) * size)
+        border_high, border_low = np.nonzero(below)
+        # the whole diagonal is there, whatever the entries
+        diagonal = np.arange(size)
+        low = np.concatenate([diagonal, low, border_low])
+        high = np.concatenate([diagonal, high, border_high + count])
+        by_high = _order(high, size)
+        order = by_high[_order(low[by_high], size)]
+        low, high = low[order], high[order]
+        new = np.concatenate([[True], (low[1:] != low[:-1]) | (high[1:] != high[:-1])])
+        entry = np.empty(len(order), np.int64)
+        entry[order] = np.cumsum(new) - 1
+        columns = np.searchsorted(low[new], np.arange(size + 1))
         border_target = np.full((border, size), -1)
-        border_target[below] = inverse[size + len(keys) :]
+        border_target[below] = entry[size + len(kept) :]
         return cls(
             size,
             columns,
-            unique % size,
+            high[new],
             border,
             backend or default_backend(),
-            inverse[size : size + len(keys)],
+            entry[size : size + len(kept)],
             kept,
             border_target,
         )
 
-    def assemble(self, blocks: Floats, border: Floats | None = None) -> Floats:
+    def assemble(self, blocks: Floats, border: Floats | None = None, *, first: int = 0) -> Floats:
         """Entries of the lower triangle, (nnz,).
 
         Parameters
         ----------
-        blocks : (e, k (k + 1) / 2)
-            Lower triangles of the element blocks, see `packed`.
+        blocks : (e, k (k + 1) / 2) or (p,)
+            Lower triangles of the element blocks, see `packed`; or the values of the pairs.
         border : (border, size), optional
             Rows of the border.
+        first : int
+            The values are those of the pairs from this one on; pairs without a value add nothing.
         """
-        values = np.bincount(self._target, blocks.ravel()[self._kept], len(self.rows)).astype(np.float64)
+        given = blocks.ravel()
+        part = slice(*np.searchsorted(self._kept, (first, first + given.size)))
+        kept = self._kept[part]
+        if len(kept) < given.size:
+            given = given[kept - first]
+        values = np.bincount(self._target[part], given, len(self.rows)).astype(np.float64, copy=False)
         if border is not None:
             inside = self._border_target >= 0
             values[self._border_target[inside]] += border[inside]
