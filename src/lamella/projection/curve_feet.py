@@ -7,10 +7,13 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial import cKDTree
 
-from lamella.projection.unknowns import Floats
+from lamella.projection.unknowns import Floats, dot
+from lamella.surface.boundary.curve import Loop
 
-# samples along a curve among which the search starts; Newton's steps
-SAMPLES, MOST_STEPS = 2000, 20
+# samples along a curve among which the search starts; Newton's steps, the longest and the last, in loops
+SAMPLES, MOST_STEPS, MOST, FINE = 2000, 30, 0.01, 1e-14
+# half the difference by which the tangent's turning is measured, in loops
+TURN = 1e-5
 
 
 class FootCurve(Protocol):
@@ -20,41 +23,24 @@ class FootCurve(Protocol):
         """Foot points of (n, 3) and unit tangents there."""
 
 
-class ArcLengthCurve(Protocol):
-    """A closed curve by arc length, such as `lamella.surface.boundary.curve.Loop`."""
-
-    @property
-    def length(self) -> float:
-        """m."""
-
-    def at(self, t: Floats) -> Floats:
-        """Points (n, 3) at arc lengths; the curve is closed."""
-
-    def tangent(self, t: Floats) -> Floats:
-        """Unit tangents."""
-
-    def curvature(self, t: Floats) -> Floats:
-        """Curvature vectors, 1/m."""
-
-
 class LoopFeet:
-    """Foot points on a closed curve by Newton's method in arc length."""
+    """Foot points on a closed boundary curve, by Newton's method in its arc length."""
 
-    def __init__(self, curve: ArcLengthCurve) -> None:
-        self._curve = curve
-        self._t = np.arange(SAMPLES) * (curve.length / SAMPLES)
-        self._tree = cKDTree(curve.at(self._t))
+    def __init__(self, loop: Loop) -> None:
+        self._loop = loop
+        self._t = np.arange(SAMPLES) / SAMPLES
+        self._tree = cKDTree(loop.at(self._t))
 
     def foot(self, points: Floats) -> tuple[Floats, Floats]:
         t = self._t[self._tree.query(points)[1]]
         for _ in range(MOST_STEPS):
-            off, tangent = points - self._curve.at(t), self._curve.tangent(t)
-            slope = np.maximum(1 - (off * self._curve.curvature(t)).sum(1), 0.2)
-            step = (off * tangent).sum(1) / slope
-            t = (t + np.clip(step, -0.01 * self._curve.length, 0.01 * self._curve.length)) % self._curve.length
-            if np.abs(step).max(initial=0) < 1e-14 * self._curve.length:
+            off, tangent = points - self._loop.at(t), self._loop.tangent(t)
+            bend = (self._loop.tangent(t + TURN) - self._loop.tangent(t - TURN)) / (2 * TURN * self._loop.length)
+            step = dot(off, tangent)[:, 0] / np.maximum(1 - dot(off, bend)[:, 0], 0.2) / self._loop.length
+            t = t + np.clip(step, -MOST, MOST)
+            if np.abs(step).max(initial=0.0) < FINE:
                 break
-        return self._curve.at(t), self._curve.tangent(t)
+        return self._loop.at(t), self._loop.tangent(t)
 
 
 class LineFeet:

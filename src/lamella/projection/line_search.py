@@ -37,10 +37,9 @@ def best_length(
         if weight == 0 or not f.size:
             continue
         q = end - f - change
-        c += weight**2 * np.array(
-            [np.vdot(q, q), 2 * np.vdot(change, q), np.vdot(change, change) + 2 * np.vdot(f, q), 2 * np.vdot(f, change)]
-            + [np.vdot(f, f)]
-        )
+        quadratic = np.vdot(change, change) + 2 * np.vdot(f, q)
+        quartic = [np.vdot(q, q), 2 * np.vdot(change, q), quadratic, 2 * np.vdot(f, change), np.vdot(f, f)]
+        c += weight**2 * np.array(quartic)
     if not np.isfinite(c).all():
         return 1.0
     roots = np.roots(np.polyder(c))

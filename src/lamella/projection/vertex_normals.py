@@ -6,7 +6,7 @@ import numpy as np
 
 from lamella.errors import InputError
 from lamella.projection.quad_mesh import QuadMesh
-from lamella.projection.unknowns import Floats
+from lamella.projection.unknowns import Floats, Integers
 
 
 def smoothed_normals(mesh: QuadMesh, rounds: int = 4) -> Floats:
@@ -39,7 +39,7 @@ def smoothed_normals(mesh: QuadMesh, rounds: int = 4) -> Floats:
     return _unit(normals)
 
 
-def _sum(index: np.ndarray, vectors: Floats, count: int) -> Floats:  # type: ignore[type-arg]
+def _sum(index: Integers, vectors: Floats, count: int) -> Floats:
     return np.stack([np.bincount(index, vectors[:, c], count) for c in range(3)], 1)
 
 
