@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella import Enneper
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.surface.closed_form import ClosedForm
 
@@ -48,3 +49,18 @@ def spider(valence: int, rings: int = 3) -> tuple[np.ndarray, np.ndarray]:
     flat = np.concatenate(points)
     unique, index = np.unique(np.round(flat, 9), axis=0, return_inverse=True)
     return np.column_stack([unique, np.zeros(len(unique))]), index.ravel()[np.concatenate(faces)]
+
+
+def hexagonal_net(surface: Enneper, rings: int, reach: float) -> QuadMesh:
+    """Lamellas of Enneper's surface of order 3 around its hexagonal node: six sectors of rings x rings cells.
+
+    A cell of the isothermic lattice w at 45 degrees to (u, v) has its place at zeta = w^(2/3), turned by sectors.
+    """
+    n = rings + 1
+    i, j = (x.ravel() for x in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
+    w = (i + 1j * j) * np.exp(0.25j * np.pi) * reach / rings
+    where = np.concatenate([np.abs(w) ** (2 / 3) * np.exp(1j * (2 * np.angle(w) + s * np.pi) / 3) for s in range(6)])
+    faces = np.concatenate([grid_faces(n, n) + s * n * n for s in range(6)])
+    key = np.round(np.column_stack([where.real, where.imag]), 9)
+    _, first, index = np.unique(key, axis=0, return_index=True, return_inverse=True)
+    return quad_mesh(surface.at(where[first]).position, index.ravel()[faces])

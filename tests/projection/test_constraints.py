@@ -17,6 +17,7 @@ import pytest
 from lamella import Unduloid, make_loop
 from lamella.projection import constraints as package
 from lamella.projection.constraint import Constraint
+from lamella.projection.constraints.circle_angle import CircleAngle
 from lamella.projection.constraints.closeness import Closeness
 from lamella.projection.constraints.conformal import Conformal
 from lamella.projection.constraints.curved_star import CurvedStar
@@ -43,6 +44,8 @@ from lamella.surface.boundary.arcs import circle
 
 EDGE = 0.7
 ROUNDING = 1e-13
+# constants that are renewed between iterations leave this share of the error, by their file's docstring
+CREEP = {"CircleAngle": 0.2}
 COUNT = 24
 
 
@@ -80,6 +83,13 @@ def draw(name: str, rng: np.random.Generator) -> tuple[list[Block], list[Constra
         of = np.zeros(4, int) if shared else np.arange(4)
         kinds = {"middles": middles, "neighbours": legs, "radius_of": of}
         return blocks, [SphericalStar(name=name, size=2.0, edge=EDGE, **kinds)]
+    if name == "CircleAngle":
+        # a net's stars: legs of about one length and near the directions of their circles
+        corners = np.array([[1.0, 0], [0, 1], [-1, 0], [0, -1]])
+        flat = np.zeros((4, 5, 3))
+        flat[:, 1:, :2] = corners
+        v[np.column_stack([middles, legs])] = EDGE * (flat + 0.15 * rng.normal(size=flat.shape))
+        return [Block("vertices", v, EDGE)], [CircleAngle(name=name, middles=middles, stars=legs, edge=EDGE)]
     if name == "RightAngle":
         return [points], [RightAngle(name=name, stars=legs, edge=EDGE)]
     if name == "NodeAngle":
@@ -129,9 +139,18 @@ def draw(name: str, rng: np.random.Generator) -> tuple[list[Block], list[Constra
 
 NAMES = [
     *("PlanarFace", "UnitLength", "CurvedStar", "planar CurvedStar", "SphericalStar", "shared SphericalStar"),
-    *("RightAngle", "NodeAngle", "EqualDiagonals", "LegDirections", "EdgeLength", "Conformal", "Fairness"),
-    *("DevelopableStrip", "Closeness", "Closeness at an offset", "EdgeAlignment", "Fixed", "Gliding", "InPlane"),
-    *("mirrored", "turned"),
+    *(
+        "CircleAngle",
+        "RightAngle",
+        "NodeAngle",
+        "EqualDiagonals",
+        "LegDirections",
+        "EdgeLength",
+        "Conformal",
+        "Fairness",
+    ),
+    *("Fairness", "DevelopableStrip", "Closeness", "Closeness at an offset", "EdgeAlignment", "Fixed", "Gliding"),
+    *("InPlane", "mirrored", "turned"),
 ]
 
 
@@ -195,7 +214,7 @@ def test_a_problem_that_can_be_solved_is_solved_with_order_two(name: str, seed: 
     assert near
     # b <= C a^2, but for what the least damping leaves (lambda a) and rounding
     for a, b in near:
-        assert b <= 10 * a**2 + 10 * LEAST_DAMPING * a + ROUNDING, errors
+        assert b <= 10 * a**2 + 10 * LEAST_DAMPING * a + ROUNDING + CREEP.get(name, 0) * a, errors
 
 
 def test_every_constraint_is_tested_here() -> None:

@@ -118,3 +118,20 @@ class TestRefused:
         other[other == 8] = 0
         with pytest.raises(InputError, match="at vertex 0"):
             quad_mesh(np.random.default_rng(0).normal(size=(16, 3)), np.vstack([cube, other]))
+
+
+def test_families_of_polylines() -> None:
+    """Opposite sides of quads belong to one family, adjacent sides to both; six neighbours keep them apart."""
+    for mesh in (grid(4, 5), grid(4, 6, True), quad_mesh(*spider(6))):
+        sides = mesh.families.reshape(-1, 4)
+        assert (sides[:, 0] == sides[:, 2]).all()
+        assert (sides[:, 0] + sides[:, 1] == 1).all()
+        inside = mesh.twin >= 0
+        assert (mesh.families[inside] == mesh.families[mesh.twin[inside]]).all()
+        assert mesh.families[0] == 0
+
+
+@pytest.mark.parametrize("valence", [3, 5])
+def test_families_swap_around_odd_valences(valence: int) -> None:
+    with pytest.raises(InputError, match=f"has {valence} neighbours"):
+        _ = quad_mesh(*spider(valence)).families

@@ -13,7 +13,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse.csgraph import connected_components
 
 from lamella.errors import InputError
 from lamella.projection.unknowns import Floats, Integers
@@ -103,12 +105,47 @@ class QuadMesh:
         count = self.face_count[vertices]
         assert not self.on_boundary[vertices].any()
         assert len(np.unique(count)) <= 1
-        half = self._leaving[vertices]
+        half = self.leaving(vertices)
         found = []
         for _ in range(int(count[0]) if len(count) else 4):
             found.append(self.head[half])
             half = self.twin[self._previous[half]]
         return np.stack(found, 1)
+
+    def leaving(self, vertices: Integers) -> Integers:
+        """Half edge to the first neighbour of each star."""
+        return np.asarray(self._leaving[vertices])
+
+    @cached_property
+    def families(self) -> Integers:
+        """Family, 0 or 1, of each half edge: opposite sides of a quad belong to one, adjacent sides to both.
+
+        Family 0 has the first half edge of each connected piece.
+
+        Raises
+        ------
+        InputError
+            There are no two families: around a vertex of odd valence they swap.
+        """
+        half = np.arange(len(self.twin))
+        edge = np.where(self.twin >= 0, np.minimum(half, self.twin), half)
+        # each edge as a member of either family; sides of a quad in turn change the family
+        one, other = edge, edge[self.next]
+        count = len(half)
+        links = (np.concatenate([one, one + count]), np.concatenate([other + count, other]))
+        graph = sp.coo_matrix((np.ones(2 * count, bool), links), (2 * count, 2 * count))
+        _, label = connected_components(graph, directed=False)
+        if (label[edge] == label[edge + count]).any():
+            odd = self.singular[self.face_count[self.singular] % 2 == 1]
+            where = (
+                f"vertex {odd[0]} has {self.face_count[odd[0]]} neighbours" if len(odd) else "around a hole they swap"
+            )
+            raise InputError(
+                f"the polylines do not form two families: {where}",
+                "only a right angle is the same for both orders of the families: leave the angle at 90 degrees",
+            )
+        # the lesser label came first
+        return np.asarray(label[edge] > label[edge + count], np.int64)
 
     @cached_property
     def _previous(self) -> Integers:

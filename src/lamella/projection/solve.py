@@ -146,7 +146,7 @@ class _Ending:
             return "solved"
         if any(weight and fading for weight, fading in zip(weights, self._fading, strict=True)):
             return None
-        if still:
+        if still and state.objective > before[-1].objective * (1 - DECREASE):
             return "settled"
         earlier = before[-IDLE].objective if len(before) >= IDLE else np.inf
         if state.objective > earlier * (1 - DECREASE) and all(i.length for i in before[-IDLE:]):
