@@ -26,8 +26,8 @@ DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-4, 1e-10, 1e6
 GOOD, POOR, LOWER, RAISE = 0.6, 0.3, 0.1, 10.0
 # a faded weight below this share of its first is dropped
 FAINT = 1e-4
-# iterations without this much decrease of the sum of squares are idle; so many of them are stagnation
-DECREASE, IDLE = 1e-3, 4
+# stagnation: over so many iterations the sum of squares falls by less than this and steps do not shrink to this share
+IDLE, DECREASE, SHRINK = 4, 1e-3, 0.5
 
 
 def solve(
@@ -148,9 +148,12 @@ class _Ending:
             return None
         if still and state.objective > before[-1].objective * (1 - DECREASE):
             return "settled"
-        earlier = before[-IDLE].objective if len(before) >= IDLE else np.inf
-        if state.objective > earlier * (1 - DECREASE) and all(i.length for i in before[-IDLE:]):
-            return "stagnated"
+        if len(before) > IDLE:
+            earlier, last = before[-1 - IDLE], before[-1]
+            idle = state.objective > earlier.objective * (1 - DECREASE)
+            # near a least sum that is not nought steps shrink slowly while the sum hardly changes
+            if idle and last.step > SHRINK * earlier.step:
+                return "stagnated"
         return None
 
 
