@@ -40,13 +40,6 @@ def packed(blocks: Floats) -> Floats:
     return np.asarray(blocks[:, i, j])
 
 
-def _order(numbers: Integers, size: int) -> Integers:
-    """Stable order of numbers below `size`: a counting sort, linear in their count."""
-    count = len(numbers)
-    each = sp.csr_matrix((np.zeros(count, bool), numbers, np.arange(count + 1)), (count, size))
-    return np.asarray(each.tocsc().indices, np.int64)
-
-
 class SingularError(ArithmeticError):
     """The matrix has no inverse to working precision."""
 
@@ -162,19 +155,20 @@ class SymmetricPattern:
         diagonal = np.arange(size)
         low = np.concatenate([diagonal, low, border_low])
         high = np.concatenate([diagonal, high, border_high + count])
-        by_high = _order(high, size)
-        order = by_high[_order(low[by_high], size)]
-        low, high = low[order], high[order]
-        new = np.concatenate([[True], (low[1:] != low[:-1]) | (high[1:] != high[:-1])])
+        keys = low * size + high
+        order = np.argsort(keys, kind="stable")  # merges the runs that element blocks come in
+        keys = keys[order]
+        new = np.concatenate([[True], keys[1:] != keys[:-1]])
         entry = np.empty(len(order), np.int64)
         entry[order] = np.cumsum(new) - 1
-        columns = np.searchsorted(low[new], np.arange(size + 1))
+        unique = keys[new]
+        columns = np.searchsorted(unique, np.arange(size + 1) * size)
         border_target = np.full((border, size), -1)
         border_target[below] = entry[size + len(kept) :]
         return cls(
             size,
             columns,
-            high[new],
+            unique % size,
             border,
             backend or default_backend(),
             entry[size : size + len(kept)],
