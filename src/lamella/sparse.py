@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+AnyIntegers = NDArray[np.int32] | NDArray[np.int64]
 Backend = Literal["rslab", "splu"]
 
 # minimum degree orders small systems faster, nested dissection larger ones better
@@ -107,7 +108,7 @@ class SymmetricPattern:
     border: int
     backend: Backend
     _target: Integers = field(repr=False)  # entry of each kept block value
-    _kept: Integers = field(repr=False)  # flat index of each kept block value, ascending
+    _kept: Integers | None = field(repr=False)  # flat index of each kept block value, ascending; None: all are
     _border_target: Integers = field(repr=False)  # (border, size) entries of the border's rows
     _symbolic: dict[str, Any] = field(default_factory=dict, repr=False)
 
@@ -134,7 +135,7 @@ class SymmetricPattern:
 
     @classmethod
     def from_pairs(
-        cls, one: Integers, other: Integers, count: int, *, border: int = 0, backend: Backend | None = None
+        cls, one: AnyIntegers, other: AnyIntegers, count: int, *, border: int = 0, backend: Backend | None = None
     ) -> SymmetricPattern:
         """Pattern of single entries, each given once for (i, j) and (j, i), as often as values are added to it.
 
@@ -145,33 +146,41 @@ class SymmetricPattern:
         count, border, backend
             As `from_elements`.
         """
-        kept = np.flatnonzero((one >= 0) & (other >= 0))
         size = count + border
-        low, high = np.minimum(one, other)[kept], np.maximum(one, other)[kept]
+        held = (one < 0) | (other < 0)
+        kept = np.flatnonzero(~held) if held.any() else None
+        if kept is not None:
+            one, other = one[kept], other[kept]
+        pairs = len(one)
         rows = np.arange(count, size)
         below = rows[:, None] >= np.arange(size)
         border_high, border_low = np.nonzero(below)
-        # the whole diagonal is there, whatever the entries
-        diagonal = np.arange(size)
-        low = np.concatenate([diagonal, low, border_low])
-        high = np.concatenate([diagonal, high, border_high + count])
-        keys = low * size + high
+        # the whole diagonal is there, whatever the entries; small arrays of 32 bits come in, keys need 64
+        keys = np.empty(size + pairs + len(border_low), np.int64)
+        keys[:size] = np.arange(size) * (size + 1)
+        inner = keys[size : size + pairs]
+        inner[:] = np.minimum(one, other)
+        inner *= size
+        inner += np.maximum(one, other)
+        keys[size + pairs :] = border_low * size + border_high + count
         order = np.argsort(keys, kind="stable")  # merges the runs that element blocks come in
         keys = keys[order]
         new = np.concatenate([[True], keys[1:] != keys[:-1]])
+        unique = keys[new]
+        del keys
         entry = np.empty(len(order), np.int64)
         entry[order] = np.cumsum(new) - 1
-        unique = keys[new]
-        columns = np.searchsorted(unique, np.arange(size + 1) * size)
+        del order
         border_target = np.full((border, size), -1)
-        border_target[below] = entry[size + len(kept) :]
+        border_target[below] = entry[size + pairs :]
+        columns = np.searchsorted(unique, np.arange(size + 1) * size)
         return cls(
             size,
             columns,
             unique % size,
             border,
             backend or default_backend(),
-            entry[size : size + len(kept)],
+            entry[size : size + pairs].copy(),
             kept,
             border_target,
         )
@@ -189,10 +198,10 @@ class SymmetricPattern:
             The values are those of the pairs from this one on; pairs without a value add nothing.
         """
         given = blocks.ravel()
-        part = slice(*np.searchsorted(self._kept, (first, first + given.size)))
-        kept = self._kept[part]
-        if len(kept) < given.size:
-            given = given[kept - first]
+        part = slice(first, first + given.size)
+        if self._kept is not None:
+            part = slice(*np.searchsorted(self._kept, (first, first + given.size)))
+            given = given[self._kept[part] - first]
         values = np.bincount(self._target[part], given, len(self.rows)).astype(np.float64, copy=False)
         if border is not None:
             inside = self._border_target >= 0

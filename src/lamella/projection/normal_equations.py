@@ -51,19 +51,22 @@ class NormalEquations:
     @classmethod
     def of(cls, layout: Layout, constraints: Sequence[Constraint], backend: Backend | None = None) -> NormalEquations:
         """Work out the pattern of constraints that will come in this order."""
-        parts, one, other, first = [], [], [], 0
+        parts, first = [], 0
         for constraint in constraints:
             local = [layout.unknowns(slot) for slot in constraint.slots()]
             unknowns = np.ascontiguousarray(np.concatenate(local, 1).T)
-            a, b = np.tril_indices(len(unknowns))
             parts.append(_Part(unknowns, first))
-            one.append(unknowns[a].ravel())
-            other.append(unknowns[b].ravel())
-            first += one[-1].size
-        none = [np.zeros(0, np.int64)]
-        pattern = SymmetricPattern.from_pairs(
-            np.concatenate(one or none), np.concatenate(other or none), layout.size, backend=backend
-        )
+            k, m = unknowns.shape
+            first += k * (k + 1) // 2 * m
+        # millions: 32 bits are enough and halve the memory
+        one, other = np.empty(first, np.int32), np.empty(first, np.int32)
+        for part in parts:
+            k, m = part.unknowns.shape
+            a, b = np.tril_indices(k)
+            here = slice(part.first, part.first + len(a) * m)
+            one[here].reshape(len(a), m)[:] = part.unknowns[a]
+            other[here].reshape(len(a), m)[:] = part.unknowns[b]
+        pattern = SymmetricPattern.from_pairs(one, other, layout.size, backend=backend)
         return cls(layout, pattern, tuple(parts))
 
     def arguments(self, part: int, constraint: Constraint, vector: Floats) -> list[Floats]:

@@ -102,6 +102,7 @@ def solve(
                 verdict = "broken off"
             else:
                 direction = -factor.solve(right)
+                factor = None  # before the next one takes its memory
                 ends = equations.residuals(current, vector + direction)
                 length = best_length(residuals, equations.change(linearised, direction), ends, weights)
                 vector = vector + length * direction
