@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from lamella import Enneper
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
@@ -64,3 +65,32 @@ def hexagonal_net(surface: Enneper, rings: int, reach: float) -> QuadMesh:
     key = np.round(np.column_stack([where.real, where.imag]), 9)
     _, first, index = np.unique(key, axis=0, return_index=True, return_inverse=True)
     return quad_mesh(surface.at(where[first]).position, index.ravel()[faces])
+
+
+def weingarten_patch(opening: float, bend: float, count: int, span: float) -> QuadMesh:
+    """Rotational net with constant node angle (DESIGN section 9), count x count nodes.
+
+    Lamellas at +-phi to the meridian, opening = 2 phi degrees, normal curvature `bend`: with A = cos^2 phi and rho the
+    radius,
+    k_par = bend + C rho^(-1/A) and sin psi = rho k_par, psi the meridian's slope; C such that the neck has rho = 1.
+    Along T = int ds / rho lamellas are V +- T tan phi = const.
+    """
+    phi = np.radians(opening / 2)
+    power = 1 / np.cos(phi) ** 2
+    c = 1 - bend
+
+    def along(_: float, state: np.ndarray) -> list[float]:
+        rho, _z, psi = state
+        turn = rho * bend + c * (1 - power) * rho ** (1 - power)
+        return [rho * np.cos(psi), rho * np.sin(psi), turn]
+
+    i, j = (x.ravel() for x in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
+    step = span / (count - 1)
+    levels = np.arange(-(count - 1), count) * step / 2 / np.tan(phi)
+    found = []
+    for side in (levels[levels >= 0], levels[levels <= 0][::-1]):
+        start = [1.0, 0.0, np.pi / 2]
+        found.append(solve_ivp(along, (0, side[-1]), start, "DOP853", side, rtol=1e-13, atol=1e-14).y)
+    rho, z, _ = np.concatenate([found[1][:, :0:-1], found[0]], 1)[:, i + j]
+    turn = (i - j) * step / 2
+    return quad_mesh(np.column_stack([rho * np.cos(turn), rho * np.sin(turn), z]), grid_faces(count, count))

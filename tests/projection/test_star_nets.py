@@ -3,20 +3,20 @@
 1. Catenoid with noise of 2 % of the edge: planar stars and right angles to 1e-9 of the edge within 25 iterations, the
 drift that of the noise. 2. Unduloid (H = 1/2): spheres of radius 2, right angles, all together. 3. A free radius is
 found, or the net is said not to determine it, with an uncertainty that draws confirm. 4. Exact samples move by O(e^2)
-only. 5. Singular vertices, input that cannot work. Figures are measured on the vertices alone.
+only. 5. Singular vertices, given angles, input that cannot work. Figures are measured on the vertices alone.
 """
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from nets import hexagonal_net, lamella_patch, noisy, spider
+from nets import hexagonal_net, lamella_patch, noisy, spider, weingarten_patch
 
 from lamella import Catenoid, Enneper, InputError, Unduloid
 from lamella.projection.foot_points import foot_surface
 from lamella.projection.problems.asymptotic import asymptotic
 from lamella.projection.problems.sphere_stars import sphere_stars
-from lamella.projection.problems.star_net import StarNet
+from lamella.projection.problems.star_net import StarNet, star_net
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.star_measures import chord_angles, circle_angles, face_angles, star_spheres
 from lamella.surface.closed_form import ClosedForm
@@ -159,6 +159,33 @@ def test_hexagonal_node(share: float) -> None:
     assert star_spheres(net.mesh, net.mesh.inner).planarity.max() < 1e-9 * mesh.mean_edge
     assert np.abs(circle_angles(net.mesh, net.mesh.inner) - 90).max() < 1e-4
     assert drift(net, mesh) <= 3 * NOISE
+
+
+@pytest.mark.parametrize("bend", [0.0, 0.4])
+@pytest.mark.parametrize("opening", [64.0, 110.0])
+class TestGivenAngle:
+    """Rotational linear Weingarten surfaces, A k1 + B k2 = 1 / r (paper section 2; DESIGN section 9)."""
+
+    def test_exact_samples_move_by_the_square_of_the_edge(self, opening: float, bend: float) -> None:
+        moved = []
+        for count in (15, 30):
+            mesh = weingarten_patch(opening, bend, count, 1.2)
+            net = star_net(mesh, 1 / bend if bend else np.inf, angle=opening)
+            assert net.solution.solved
+            moved.append(rms(net.mesh.vertices - mesh.vertices))
+        assert moved[1] < 0.02 * mesh.mean_edge
+        assert np.log2(moved[0] / moved[1]) > 1.7
+
+    def test_noise(self, opening: float, bend: float) -> None:
+        mesh = noisy(weingarten_patch(opening, bend, 24, 1.4), NOISE, 9)
+        net = star_net(mesh, 1 / bend if bend else np.inf, angle=opening)
+        assert net.solution.solved
+        angle = chord_angles(net.mesh, net.mesh.inner)
+        assert np.minimum(np.abs(angle - opening), np.abs(180 - angle - opening)).max() < 1e-4
+        stars = star_spheres(net.mesh, net.mesh.inner)
+        assert stars.deviation.max() < 1e-9 * mesh.mean_edge
+        assert np.abs(stars.curvature) == pytest.approx(bend, abs=1e-6)
+        assert drift(net, mesh) <= 3 * NOISE
 
 
 class TestRefused:

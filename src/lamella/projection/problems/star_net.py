@@ -96,7 +96,8 @@ def star_net(
     radius : float or None
         Of the spheres, m; infinite: planes; None: one for all stars, to be found.
     angle : float
-        Between the polylines of both families, degrees, see `QuadMesh.families`.
+        Between the polylines of both families (`QuadMesh.families`), degrees; it or its supplement, whichever is
+        nearer to the net.
     form : "circles", "chords" or "faces"
         How a right angle is measured, see `RightAngleForm`; other angles are between chords.
     iterations, tolerance, on_iteration, backend
@@ -146,6 +147,9 @@ def star_net(
         v = mesh.vertices[stars]
         chords = np.stack([np.linalg.norm(v[:, j] - v[:, j + 2], axis=1) for j in (0, 1)], 1)
         blocks.append(Block("chords", chords, edge))
+        # acute in one family is obtuse in the other: which of both the net has already
+        met = dot(v[:, 0] - v[:, 2], v[:, 1] - v[:, 3]).mean()
+        angle = angle if met * np.cos(np.radians(angle)) >= 0 else 180 - angle
         found.append(NodeAngle(name="angle", stars=stars, angle=angle, edge=edge))
     solution = solve(
         blocks,
