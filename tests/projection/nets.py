@@ -71,8 +71,7 @@ def weingarten_patch(opening: float, bend: float, count: int, span: float) -> Qu
     """Rotational net with constant node angle (DESIGN section 9), count x count nodes.
 
     Lamellas at +-phi to the meridian, opening = 2 phi degrees, normal curvature `bend`: with A = cos^2 phi and rho the
-    radius,
-    k_par = bend + C rho^(-1/A) and sin psi = rho k_par, psi the meridian's slope; C such that the neck has rho = 1.
+    radius, k_par = bend + C rho^(-1/A) and sin psi = rho k_par, psi the meridian's slope; C puts the neck at rho = 1.
     Along T = int ds / rho lamellas are V +- T tan phi = const.
     """
     phi = np.radians(opening / 2)
@@ -94,3 +93,16 @@ def weingarten_patch(opening: float, bend: float, count: int, span: float) -> Qu
     rho, z, _ = np.concatenate([found[1][:, :0:-1], found[0]], 1)[:, i + j]
     turn = (i - j) * step / 2
     return quad_mesh(np.column_stack([rho * np.cos(turn), rho * np.sin(turn), z]), grid_faces(count, count))
+
+
+def rotational_net(surface: ClosedForm, around: int, rows: int, start: float = 0.0) -> QuadMesh:
+    """Lamellas once around a surface of revolution: row k has `around` nodes, at U = start + k pi / around.
+
+    Rows follow one another at half a step, so quads stand on a corner and rows run along their diagonals.
+    """
+    k, j = (x.ravel() for x in np.meshgrid(np.arange(rows), np.arange(around), indexing="ij"))
+    where = start + k * np.pi / around + 1j * (2 * j + k % 2) * np.pi / around
+    k, j = (x.ravel() for x in np.meshgrid(np.arange(rows - 2), np.arange(around), indexing="ij"))
+    right, left = (j + k % 2) % around, (j - 1 + k % 2) % around
+    faces = np.column_stack([k * around + j, (k + 1) * around + right, (k + 2) * around + j, (k + 1) * around + left])
+    return quad_mesh(surface.at(where).position, faces)

@@ -120,6 +120,36 @@ class NormalEquations:
             right += weight**2 * np.bincount(plan.unknowns.ravel(), gradient.ravel(), self.layout.size)
         return values, right
 
+    def second_order(
+        self,
+        constraints: Sequence[Constraint],
+        linearised: Sequence[Linearised],
+        weights: Sequence[float],
+        vector: Floats,
+    ) -> Floats:
+        """Entries of the sum of w^2 f H, which Gauss and Newton leave out and Newton adds to J^T J.
+
+        H is the second derivative, constant for each item: column by column the change of J over a unit step.
+        """
+        values = np.zeros(len(self.pattern.rows))
+        for part, (constraint, at, weight) in enumerate(zip(constraints, linearised, weights, strict=True)):
+            if weight == 0 or constraint.linear or not at.residual.size:
+                continue
+            arguments = self.arguments(part, constraint, vector)
+            k, row = at.jacobian.shape[1], 0
+            blocks = np.empty((k * (k + 1) // 2, at.residual.shape[1]))
+            i = 0
+            for number, argument in enumerate(arguments):
+                for component in range(argument.shape[1]):
+                    moved = argument.copy()
+                    moved[:, component] += 1
+                    jacobian = constraint.jacobian(*arguments[:number], moved, *arguments[number + 1 :])
+                    there = np.concatenate([np.moveaxis(j, 0, 2) for j in jacobian], 1)[:, : i + 1]
+                    blocks[row : row + i + 1] = np.einsum("pm,pkm->km", at.residual, there - at.jacobian[:, : i + 1])
+                    row, i = row + i + 1, i + 1
+            values += self.pattern.assemble(weight**2 * blocks, first=self._parts[part].first)
+        return values
+
     def change(self, linearised: Sequence[Linearised], step: Floats) -> list[Floats]:
         """J d of all constraints, (p, m) each."""
         return [

@@ -35,7 +35,7 @@ class Iteration:
     residual, largest : name to float
         Root mean square and largest absolute residual of each constraint, without its weight: edges or radians.
     drift : name to float
-        Root mean square over a block's components of the change since the start, over its scale.
+        Root mean square over a block's components of the change since the start or `Block.origin`, over its scale.
     objective : float
         Weighted sum of squares.
     step : float

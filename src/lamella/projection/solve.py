@@ -1,8 +1,9 @@
 """Gauss-Newton's method with Levenberg and Marquardt's damping and an exact line search, on sparse constraints.
 
 Each iteration solves (sum w^2 J^T J + lambda D^-2) d = -sum w^2 J^T f, D the scales of the unknowns. What the
-constraints leave open is thereby settled by the least change. The pattern and its symbolic factorisation are worked
-out once.
+constraints leave open is thereby settled by the least change. Where constraints ask for too much and residuals stay,
+Newton's second-order term joins in while the matrix remains positive definite, so the least remainder is reached in a
+few steps too. The pattern and its symbolic factorisation are worked out once.
 """
 
 from __future__ import annotations
@@ -21,11 +22,13 @@ from lamella.projection.report import Iteration, Solution, Verdict
 from lamella.projection.unknowns import Block, Floats, Layout
 from lamella.sparse import Backend, Factor, SingularError
 
-DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-4, 1e-10, 1e6
+DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-6, 1e-10, 1e6
 # line search lengths that tell a good linearisation from a bad one, and what follows for the damping
 GOOD, POOR, LOWER, RAISE = 0.6, 0.3, 0.1, 10.0
 # a faded weight below this share of its first is dropped
 FAINT = 1e-4
+# a step that leaves more than this share of the sum of squares asks for second derivatives
+SLOW = 0.3
 # stagnation: over so many iterations the sum of squares falls by less than this and steps do not shrink to this share
 IDLE, DECREASE, SHRINK = 4, 1e-3, 0.5
 
@@ -73,8 +76,8 @@ def solve(
     """
     begin = time.perf_counter()
     _check(constraints, iterations, tolerance)
-    layout, start = Layout.of(blocks)
-    vector = start.copy()
+    layout, vector = Layout.of(blocks)
+    origin = np.concatenate([np.ravel(b.values if b.origin is None else b.origin) for b in blocks])
     current = [constraint.refreshed(layout.values(vector)) for constraint in constraints]
     equations = NormalEquations.of(layout, current, backend)
     ending = _Ending(constraints, tolerance, step_tolerance)
@@ -87,7 +90,7 @@ def solve(
             number,
             {c.name: _rms(f) for c, f in zip(constraints, residuals, strict=True)},
             {c.name: float(np.abs(f).max(initial=0.0)) for c, f in zip(constraints, residuals, strict=True)},
-            {name: _rms(moved) for name, moved in layout.values((vector - start) / layout.scale).items()},
+            {name: _rms(moved) for name, moved in layout.values((vector - origin) / layout.scale).items()},
             sum(w**2 * float(np.vdot(f, f)) for w, f in zip(weights, residuals, strict=True)),
             0.0,
             0.0,
@@ -97,6 +100,8 @@ def solve(
         verdict = ending.verdict(state, records, weights)
         if verdict is None and number < iterations:
             values, right = equations.assemble(current, linearised, weights)
+            if records and ending.slow(state, records[-1], weights):
+                values += equations.second_order(current, linearised, weights, vector)
             factor, damping = _factor(equations, values, damping)
             if factor is None:
                 verdict = "broken off"
@@ -137,6 +142,14 @@ class _Ending:
         missing = [name for name in self._hard if not state.residual[name] <= self._tolerance]
         return tuple(sorted(missing, key=lambda name: -state.residual[name]))
 
+    def _steady(self, weights: Sequence[float]) -> bool:
+        """Whether nothing fades any more."""
+        return not any(weight and fading for weight, fading in zip(weights, self._fading, strict=True))
+
+    def slow(self, state: Iteration, before: Iteration, weights: Sequence[float]) -> bool:
+        """Whether residuals stay that are too large for Gauss and Newton: their second order counts then."""
+        return self._steady(weights) and state.objective > SLOW * before.objective
+
     def verdict(self, state: Iteration, before: Sequence[Iteration], weights: Sequence[float]) -> Verdict | None:
         """How it ends here; None: it goes on."""
         if not np.isfinite(state.objective):
@@ -145,7 +158,7 @@ class _Ending:
         # a lasting wish (a driver, closeness) has its least only where the steps end
         if not self.unmet(state) and (still or not self._lasting):
             return "solved"
-        if any(weight and fading for weight, fading in zip(weights, self._fading, strict=True)):
+        if not self._steady(weights):
             return None
         if still and state.objective > before[-1].objective * (1 - DECREASE):
             return "settled"
@@ -166,18 +179,23 @@ def _weight(constraint: Constraint, number: int) -> float:
 
 def _factor(equations: NormalEquations, values: Floats, damping: float) -> tuple[Factor | None, float]:
     """A factor that is positive definite, and the damping it took."""
-    diagonal = equations.pattern.columns[:-1]
     while damping <= MOST_DAMPING:
-        damped = values.copy()
-        damped[diagonal] += damping / equations.layout.scale**2
-        try:
-            factor = equations.pattern.factor(damped)
-        except SingularError:
-            factor = None
-        if factor is not None and not factor.negative:
+        factor = _definite(equations, values, damping)
+        if factor is not None:
             return factor, damping
         damping = damping * RAISE
     return None, damping
+
+
+def _definite(equations: NormalEquations, values: Floats, damping: float) -> Factor | None:
+    """A factor of the damped matrix, if it is positive definite."""
+    damped = values.copy()
+    damped[equations.pattern.columns[:-1]] += damping / equations.layout.scale**2
+    try:
+        factor = equations.pattern.factor(damped)
+    except SingularError:
+        return None
+    return None if factor.negative else factor
 
 
 def _next_damping(damping: float, length: float) -> float:

@@ -28,11 +28,14 @@ class Block:
     scale : float
         A change that counts as one: the mean edge for points, 1 for unit vectors. Steps and damping are measured
         in it.
+    origin : (n, d), optional
+        What drift is measured from; default: the start.
     """
 
     name: str
     values: Floats
     scale: float = 1.0
+    origin: Floats | None = None
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.unknowns import Floats, Integers
 
 
-def smoothed_normals(mesh: QuadMesh, rounds: int = 4) -> Floats:
+def smoothed_normals(mesh: QuadMesh, rounds: int = 1) -> Floats:
     """Unit normals of all vertices, (n, 3), on the side from which faces are counter-clockwise.
 
-    Normals of faces averaged over vertices and neighbours: on a noisy mesh a vertex's own star says little.
+    Normals of faces averaged over vertices and neighbours.
 
     Parameters
     ----------

@@ -18,9 +18,9 @@ from lamella.projection.constraints.right_angle import RightAngle
 from lamella.projection.constraints.spherical_star import SphericalStar
 from lamella.projection.constraints.unit_length import UnitLength
 from lamella.projection.determination import uncertainty
-from lamella.projection.problems.guides import guides
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration, Solution
+from lamella.projection.smoothing import smoothed
 from lamella.projection.solve import solve
 from lamella.projection.unknowns import Block, Floats, Integers, dot
 from lamella.projection.vertex_normals import smoothed_normals
@@ -87,8 +87,9 @@ def star_net(
 ) -> StarNet:
     """Move a net's vertices as little as needed until stars are spherical and polylines cross at the angle.
 
-    Inside the net these are three conditions on the three coordinates of a vertex, at singular vertices none: with a
-    free boundary they hold together to rounding.
+    Noise is filtered out first (`smoothed`): stars fitted to noise would lead anywhere. Inside the net these are three
+    conditions on the three coordinates of a vertex, at singular vertices none: with a free boundary they hold together
+    to rounding.
 
     Parameters
     ----------
@@ -110,19 +111,20 @@ def star_net(
     """
     edge, inner = mesh.mean_edge, mesh.inner
     _check(mesh, radius, angle, form)
-    normals = smoothed_normals(mesh)[inner]
+    start = smoothed(mesh, backend=backend)
+    normals = smoothed_normals(start)[inner]
     neighbours = mesh.stars(inner)
-    bend = star_curvature(mesh.vertices, inner, neighbours, normals)
+    bend = star_curvature(start.vertices, inner, neighbours, normals)
     # towards the centres
     if bend < 0:
         normals, bend = -normals, -bend
-    blocks = [Block("vertices", mesh.vertices, edge)]
+    blocks = [Block("vertices", start.vertices, edge, mesh.vertices)]
     found: list[Constraint] = []
     if radius is None:
-        start = 1 / max(bend, 1e-3 / _size(mesh))
+        guess = 1 / max(bend, 1e-3 / _size(mesh))
         blocks += [
-            Block("centres", mesh.vertices[inner] + start * normals, start),
-            Block("radii", np.array([start]), start),
+            Block("centres", start.vertices[inner] + guess * normals, guess),
+            Block("radii", np.array([guess]), guess),
         ]
         found.append(
             SphericalStar(
@@ -130,7 +132,7 @@ def star_net(
                 middles=inner,
                 neighbours=neighbours,
                 radius_of=np.zeros(len(inner), np.int64),
-                size=start,
+                size=guess,
                 edge=edge,
             )
         )
@@ -144,7 +146,7 @@ def star_net(
         found.append(_right_angle(mesh, form))
     else:
         stars = ordered_stars(mesh)
-        v = mesh.vertices[stars]
+        v = start.vertices[stars]
         chords = np.stack([np.linalg.norm(v[:, j] - v[:, j + 2], axis=1) for j in (0, 1)], 1)
         blocks.append(Block("chords", chords, edge))
         # acute in one family is obtuse in the other: which of both the net has already
@@ -153,7 +155,7 @@ def star_net(
         found.append(NodeAngle(name="angle", stars=stars, angle=angle, edge=edge))
     solution = solve(
         blocks,
-        [*found, *guides(mesh)],
+        found,
         iterations=iterations,
         tolerance=tolerance,
         on_iteration=on_iteration,
