@@ -47,6 +47,7 @@ class Clock:
             begin = time.process_time()
             found = of(*arguments, **options)  # type: ignore[arg-type]
             self.setup += time.process_time() - begin
+            self.factor.clear()  # what came before was the filter
             return found
 
         sparse.SymmetricPattern.factor = timed  # type: ignore[method-assign]

@@ -77,9 +77,10 @@ def test_radius_is_that_of_the_net() -> None:
 
 def test_net_without_symmetry_tells_the_remainder() -> None:
     """Four conditions on three unknowns a vertex (DESIGN section 5)."""
-    states = deform(noisy(net(), 0.02, 0), RING, 0.98, radius=2.0)
+    states = deform(noisy(net(), 0.02, 0), RING, 0.96, radius=2.0)
     last = states[-1].solution
-    assert last.verdict == "settled"
+    assert len(states) == 3
+    assert last.verdict in ("settled", "stagnated")
     assert {"edges", "stars"} <= set(last.unmet)
     assert 1e-4 < last.last.residual["stars"] < 0.02
     assert 1e-4 < last.last.residual["edges"] < 0.02

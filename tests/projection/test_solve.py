@@ -27,7 +27,6 @@ from lamella.projection.normal_equations import NormalEquations
 from lamella.projection.problems.asymptotic import asymptotic
 from lamella.projection.solve import solve
 from lamella.projection.unknowns import Block, Layout, Slot
-from lamella.sparse import SymmetricPattern
 
 EDGES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
 
@@ -184,13 +183,13 @@ def test_arguments_are_left_alone() -> None:
 
 def test_back_ends_agree_and_analyse_once(monkeypatch: pytest.MonkeyPatch) -> None:
     built = []
-    make = SymmetricPattern.from_pairs
+    make = NormalEquations.of
 
     def counted(*arguments, **options):
         built.append(1)
         return make(*arguments, **options)
 
-    monkeypatch.setattr(SymmetricPattern, "from_pairs", counted)
+    monkeypatch.setattr(NormalEquations, "of", counted)
     mesh = noisy(lamella_patch(Catenoid(1.0, (-1, 1)), 12, 1.0), 0.02, 0)
     splu = asymptotic(mesh, backend="splu")
     assert len(built) == 1

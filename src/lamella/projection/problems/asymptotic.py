@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from lamella.projection.problems.star_net import RightAngleForm, StarNet, star_net
+from lamella.projection.problems.crossing import RightAngleForm
+from lamella.projection.problems.star_net import StarNet, star_net
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration
 from lamella.sparse import Backend

@@ -86,8 +86,8 @@ def deform(
     Returns
     -------
     tuple of DeformedState
-        From the start, share 1, to the end. The way ends early where a state cannot be solved and its remainder is no
-        longer the least one ("stagnated", "broken off", "iterations used up").
+        From the start, share 1, to the end. The way ends early at a state whose equations break off or that uses up
+        its iterations.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def deform(
         current, normals = solution.values["vertices"], solution.values["normals"]
         moved = mesh.at(current)
         states.append(DeformedState(float(now), moved, solution, circle_angles(moved, inner) - before))
-        if solution.verdict not in ("solved", "settled"):
+        if solution.verdict in ("broken off", "iterations used up"):
             break
     return tuple(states)
 

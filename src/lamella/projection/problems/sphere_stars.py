@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from lamella.projection.problems.star_net import RightAngleForm, StarNet, star_net
+from lamella.projection.problems.crossing import RightAngleForm
+from lamella.projection.problems.star_net import StarNet, star_net
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration
 from lamella.sparse import Backend

@@ -4,38 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import get_args
 
 import numpy as np
 
 from lamella.errors import InputError
-from lamella.projection.constraint import Constraint
-from lamella.projection.constraints.circle_angle import CircleAngle
 from lamella.projection.constraints.curved_star import CurvedStar
-from lamella.projection.constraints.equal_diagonals import EqualDiagonals
-from lamella.projection.constraints.node_angle import NodeAngle
-from lamella.projection.constraints.right_angle import RightAngle
-from lamella.projection.constraints.spherical_star import SphericalStar
 from lamella.projection.constraints.unit_length import UnitLength
-from lamella.projection.determination import uncertainty
+from lamella.projection.problems.crossing import RightAngleForm, crossing
+from lamella.projection.problems.star_radius import find_radius, star_curvature
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.smoothing import smoothed
 from lamella.projection.solve import solve
-from lamella.projection.unknowns import Block, Floats, Integers, dot
+from lamella.projection.unknowns import Block, Floats
 from lamella.projection.vertex_normals import smoothed_normals
 from lamella.sparse import Backend
-
-RightAngleForm = Literal["circles", "chords", "faces"]
-"""Where a right angle between polylines is measured: three answers that differ by O(e^2).
-
-circles
-    At the vertices, between the circles through previous, own and next vertex (`CircleAngle`).
-chords
-    At the vertices, between the chords of opposite neighbours (`RightAngle`).
-faces
-    In the faces, between the lines that join the middles of opposite sides (`EqualDiagonals`).
-"""
 
 # a radius known worse than this share of itself is ill-determined
 ACCURACY = 0.01
@@ -54,12 +38,11 @@ class StarNet:
     radius : float
         Of the spheres, m; infinite: planes.
     radius_uncertainty : float
-        Standard deviation of the radius, m, if the given vertices are as uncertain as they had to move; 0: it was
-        given.
+        Standard deviation of the radius, m, with the noise of the given vertices, see `find_radius`; 0: it was given.
     normals : (s, 3)
         Of the stars of `mesh.inner`, towards the centres.
     solution : Solution
-        How it was reached.
+        How it was reached, with the radius.
     """
 
     mesh: QuadMesh
@@ -112,99 +95,38 @@ def star_net(
     edge, inner = mesh.mean_edge, mesh.inner
     _check(mesh, radius, angle, form)
     start = smoothed(mesh, backend=backend)
-    normals = smoothed_normals(start)[inner]
-    neighbours = mesh.stars(inner)
-    bend = star_curvature(start.vertices, inner, neighbours, normals)
-    # towards the centres
-    if bend < 0:
-        normals, bend = -normals, -bend
-    blocks = [Block("vertices", start.vertices, edge, mesh.vertices)]
-    found: list[Constraint] = []
+    doubt = 0.0
     if radius is None:
-        guess = 1 / max(bend, 1e-3 / _size(mesh))
-        blocks += [
-            Block("centres", start.vertices[inner] + guess * normals, guess),
-            Block("radii", np.array([guess]), guess),
-        ]
-        found.append(
-            SphericalStar(
-                name="stars",
-                middles=inner,
-                neighbours=neighbours,
-                radius_of=np.zeros(len(inner), np.int64),
-                size=guess,
-                edge=edge,
-            )
+        found = find_radius(
+            mesh,
+            start,
+            angle,
+            form,
+            iterations=iterations,
+            tolerance=tolerance,
+            on_iteration=on_iteration,
+            backend=backend,
         )
-    else:
-        blocks.append(Block("normals", normals))
-        found += [
+        radius, doubt = max(found.radius, LEAST_RADIUS * edge), found.uncertainty
+    neighbours = mesh.stars(inner)
+    normals = smoothed_normals(start)[inner]
+    # towards the centres
+    if star_curvature(start.vertices, inner, neighbours, normals) < 0:
+        normals = -normals
+    more, angles = crossing(start, angle, form)
+    solution = solve(
+        [Block("vertices", start.vertices, edge, mesh.vertices), Block("normals", normals), *more],
+        [
             CurvedStar(name="stars", centres=inner, neighbours=neighbours, curvature=1 / radius, edge=edge),
             UnitLength(name="unit normals", block="normals", index=np.arange(len(inner))),
-        ]
-    if angle == 90:
-        found.append(_right_angle(mesh, form))
-    else:
-        stars = ordered_stars(mesh)
-        v = start.vertices[stars]
-        chords = np.stack([np.linalg.norm(v[:, j] - v[:, j + 2], axis=1) for j in (0, 1)], 1)
-        blocks.append(Block("chords", chords, edge))
-        # acute in one family is obtuse in the other: which of both the net has already
-        met = dot(v[:, 0] - v[:, 2], v[:, 1] - v[:, 3]).mean()
-        angle = angle if met * np.cos(np.radians(angle)) >= 0 else 180 - angle
-        found.append(NodeAngle(name="angle", stars=stars, angle=angle, edge=edge))
-    solution = solve(
-        blocks,
-        found,
+            *angles,
+        ],
         iterations=iterations,
         tolerance=tolerance,
         on_iteration=on_iteration,
         backend=backend,
     )
-    at = solution.values
-    doubt = 0.0
-    if radius is None:
-        radius = abs(float(at["radii"][0, 0]))
-        normals = (at["centres"] - at["vertices"][inner]) / radius
-        ended = [Block(b.name, at[b.name], b.scale) for b in blocks]
-        moved = solution.last.drift["vertices"]
-        known = solution.solved
-        doubt = uncertainty(ended, found, "radii", "vertices", moved, backend=backend) if known else np.inf
-    else:
-        normals = at["normals"]
-    return StarNet(mesh.at(at["vertices"]), radius, doubt, normals, solution)
-
-
-def _right_angle(mesh: QuadMesh, form: RightAngleForm) -> Constraint:
-    if form == "faces":
-        # around a singular vertex corners share a full turn in other parts than quarters
-        regular = ~np.isin(mesh.faces, mesh.singular).any(1)
-        return EqualDiagonals(name="right angle", faces=mesh.faces[regular], edge=mesh.mean_edge)
-    stars = mesh.stars(mesh.inner)
-    if form == "chords":
-        return RightAngle(name="right angle", stars=stars, edge=mesh.mean_edge)
-    return CircleAngle(name="right angle", middles=mesh.inner, stars=stars, edge=mesh.mean_edge)
-
-
-def star_curvature(vertices: Floats, middles: Integers, neighbours: Integers, normals: Floats) -> float:
-    """Curvature k that fits n . d = k |d|^2 / 2 best over all legs d of all stars, 1/m."""
-    count = neighbours.shape[1]
-    d = (vertices[neighbours] - vertices[middles][:, None]).reshape(-1, 3)
-    square = dot(d, d)[:, 0]
-    height = dot(d, np.repeat(normals, count, axis=0))[:, 0]
-    return float(2 * (height * square).sum() / (square * square).sum())
-
-
-def ordered_stars(mesh: QuadMesh) -> Integers:
-    """Stars of the regular inner vertices that begin with a neighbour along the first family."""
-    stars, families = mesh.stars(mesh.inner), mesh.families
-    second = families[mesh.leaving(mesh.inner)] == 1
-    return np.where(second[:, None], np.roll(stars, 1, axis=1), stars)
-
-
-def _size(mesh: QuadMesh) -> float:
-    """Diagonal of the bounding box, m."""
-    return float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    return StarNet(mesh.at(solution.values["vertices"]), radius, doubt, solution.values["normals"], solution)
 
 
 def _check(mesh: QuadMesh, radius: float | None, angle: float, form: str) -> None:
