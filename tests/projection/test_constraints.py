@@ -14,6 +14,7 @@ import pkgutil
 import numpy as np
 import pytest
 
+from conftest import KINDS, draw_places, draw_surface
 from lamella import Unduloid, make_loop
 from lamella.projection import constraints as package
 from lamella.projection.constraint import Constraint
@@ -36,8 +37,9 @@ from lamella.projection.constraints.right_angle import RightAngle
 from lamella.projection.constraints.spherical_star import SphericalStar
 from lamella.projection.constraints.symmetry import mirrored, turned
 from lamella.projection.constraints.unit_length import UnitLength
-from lamella.projection.curve_feet import LoopFeet
-from lamella.projection.foot_points import foot_surface
+from lamella.projection.constraints.upright import Upright
+from lamella.projection.curve_feet import LineFeet, LoopFeet, SplineFeet
+from lamella.projection.foot_points import MeshFeet, foot_surface
 from lamella.projection.solve import LEAST_DAMPING, solve
 from lamella.projection.unknowns import Block
 from lamella.surface.boundary.arcs import circle
@@ -123,6 +125,11 @@ def draw(name: str, rng: np.random.Generator) -> tuple[list[Block], list[Constra
         return [close], [Closeness(name=name, index=index, surface=surface, edge=EDGE, offset=offset)]
     if name == "EdgeAlignment":
         return [close], [EdgeAlignment(name=name, edges=pairs, surface=surface, edge=EDGE)]
+    if name == "Upright":
+        return [close, Block("normals", unit(rng.normal(size=(4, 3))))], [
+            Upright(name=name, edges=pairs[:4], surface=surface, normals="normals"),
+            units,
+        ]
     if name == "Fixed":
         return [points], [Fixed(name=name, index=index, points=rng.normal(size=v.shape), edge=EDGE)]
     if name == "Gliding":
@@ -149,7 +156,16 @@ NAMES = [
         "Conformal",
         "Fairness",
     ),
-    *("Fairness", "DevelopableStrip", "Closeness", "Closeness at an offset", "EdgeAlignment", "Fixed", "Gliding"),
+    *(
+        "Fairness",
+        "DevelopableStrip",
+        "Closeness",
+        "Closeness at an offset",
+        "EdgeAlignment",
+        "Upright",
+        "Fixed",
+        "Gliding",
+    ),
     *("InPlane", "mirrored", "turned"),
 ]
 
@@ -293,3 +309,52 @@ class TestFormulas:
         upper = at.position + 0.12 * at.normal
         close = Closeness(name="upper", index=np.arange(20), surface=foot_surface(surface), edge=1.0, offset=0.12)
         assert np.abs(close.refreshed({"vertices": upper}).residual(upper)).max() < 1e-12
+
+
+class TestFeet:
+    """Foot points: the way from foot to point is perpendicular, to rounding."""
+
+    def test_open_curves(self) -> None:
+        t = np.linspace(0, 2, 9)
+        helix = np.column_stack([np.cos(t), np.sin(t), 0.3 * t])
+        above = helix + np.array([0, 0, 5])
+        points = np.random.default_rng(0).normal(size=(14, 3)) * 0.1 + np.vstack([helix[2:9], above[:7]])
+        feet = SplineFeet([helix, above], [7, 7])
+        foot, tangent = feet.foot(points)
+        assert np.abs(((points - foot) * tangent).sum(1)).max() < 1e-12
+        assert np.linalg.norm(points - foot, axis=1).max() < 0.5
+
+    def test_line(self) -> None:
+        points = np.random.default_rng(1).normal(size=(9, 3))
+        foot, tangent = LineFeet(np.array([1.0, 2, 3]), np.array([0.0, 3, 4])).foot(points)
+        assert np.abs(((points - foot) * tangent).sum(1)).max() < 1e-13
+        assert np.cross(foot - [1, 2, 3], [0, 0.6, 0.8]) == pytest.approx(0, abs=1e-13)
+
+    @pytest.mark.parametrize("kind", KINDS)
+    def test_closed_forms(self, kind: str) -> None:
+        """Points at a known distance along the normal have known foot points."""
+        rng = np.random.default_rng(2)
+        surface = draw_surface(kind, rng)
+        at = surface.at(draw_places(surface, rng, 30))
+        bend = np.maximum(*np.abs(at.principal_curvatures))
+        points = at.position + (0.2 / bend * rng.uniform(-1, 1, len(bend)))[:, None] * at.normal
+        foot = foot_surface(surface).foot(points)
+        size = np.ptp(at.position, axis=0).max()
+        near = np.linalg.norm(foot.position - points, axis=1) <= np.linalg.norm(at.position - points, axis=1) + 1e-9
+        assert near.all()
+        assert np.abs(np.cross(points - foot.position, foot.normal)).max() < 1e-9 * size
+
+    def test_triangle_mesh(self) -> None:
+        """Foot points and normals come from the surface, up to the mesh."""
+        surface = Unduloid(0.6, 1.4, (-2.0, 2.0))
+        errors = []
+        for tolerance in (1e-3, 2.5e-4):
+            mesh = surface.mesh(tolerance)
+            triangles = np.concatenate([mesh.faces[:, [0, 1, 2]], mesh.faces[:, [0, 2, 3]]])
+            at = surface.at(np.random.default_rng(3).uniform(-0.5, 0.5, 50) + 1j * np.linspace(0, 6, 50))
+            foot = MeshFeet(mesh.points, triangles).foot(at.position + 0.05 * at.normal)
+            errors.append(np.abs(foot.position - at.position).max())
+            assert (foot.normal * at.normal).sum(1).min() > 0.999
+        # a foot shifts by the distance times the facets' angle: first order in their size, halved by a quarter of the sag
+        assert errors[0] / errors[1] == pytest.approx(2, rel=0.2)
+        assert errors[1] < 2e-3

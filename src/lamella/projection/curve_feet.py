@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from lamella.projection.unknowns import Floats, dot
@@ -41,6 +43,45 @@ class LoopFeet:
             if np.abs(step).max(initial=0.0) < FINE:
                 break
         return self._loop.at(t), self._loop.tangent(t)
+
+
+class SplineFeet:
+    """Foot points on open curves through points in order, each point asked for on a curve of its own.
+
+    Parameters
+    ----------
+    curves : sequence of (k, 3)
+        Points of cubic splines, m, k >= 4.
+    counts : sequence of int
+        How many of the points asked for belong to each curve, curve after curve.
+    """
+
+    def __init__(self, curves: Sequence[Floats], counts: Sequence[int]) -> None:
+        self._splines = []
+        for points in curves:
+            s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+            self._splines.append(CubicSpline(s, points))
+        self._ends = np.cumsum(counts)
+
+    def foot(self, points: Floats) -> tuple[Floats, Floats]:
+        parts = np.split(points, self._ends[:-1])
+        both = [self._on(spline, part) for spline, part in zip(self._splines, parts, strict=True)]
+        return np.concatenate([b[0] for b in both]), np.concatenate([b[1] for b in both])
+
+    @staticmethod
+    def _on(spline: CubicSpline, points: Floats) -> tuple[Floats, Floats]:
+        length = spline.x[-1]
+        sampled = np.linspace(0, length, 4 * len(spline.x))
+        t = sampled[cKDTree(spline(sampled)).query(points)[1]]
+        for _ in range(MOST_STEPS):
+            off, first, second = points - spline(t), spline(t, 1), spline(t, 2)
+            speed = dot(first, first)[:, 0]
+            step = dot(off, first)[:, 0] / np.maximum(speed - dot(off, second)[:, 0], 0.2 * speed)
+            t = t + np.clip(step, -MOST * length, MOST * length)
+            if np.abs(step).max(initial=0.0) < FINE * length:
+                break
+        tangent = spline(t, 1)
+        return spline(t), tangent / np.linalg.norm(tangent, axis=1)[:, None]
 
 
 class LineFeet:
