@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 from conftest import KINDS, draw_places, draw_surface
-from lamella import Unduloid, make_loop
+from exact_elements import catenoid_map, whole_catenoid
+from lamella import Catenoid, Unduloid, make_loop
 from lamella.projection import constraints as package
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.circle_angle import CircleAngle
@@ -344,6 +345,21 @@ class TestFeet:
         assert near.all()
         assert np.abs(np.cross(points - foot.position, foot.normal)).max() < 1e-9 * size
 
+    def test_curved_elements(self) -> None:
+        """Elements on a catenoid find what the closed form finds, to their own error."""
+        exact, elements = foot_surface(Catenoid(1.0, (-3.0, 3.0))), foot_surface(whole_catenoid(4))
+        rng = np.random.default_rng(4)
+        v, u = rng.uniform(-0.5, 0.5, 40), rng.uniform(0, 6, 40)
+        points = catenoid_map(np.column_stack([u, v])) * (1 + 0.05 * rng.uniform(-1, 1, 40))[:, None]
+        foot, found = exact.foot(points), elements.foot(points)
+        assert found.position == pytest.approx(foot.position, abs=1e-4)
+        # elements have their normal outwards
+        assert found.normal == pytest.approx(-foot.normal, abs=1e-2)
+        for one, other in zip(
+            exact.principal_directions(points), elements.principal_directions(points)[::-1], strict=True
+        ):
+            assert np.abs((one * other).sum(1)).min() > 0.999
+
     def test_triangle_mesh(self) -> None:
         """Foot points and normals come from the surface, up to the mesh."""
         surface = Unduloid(0.6, 1.4, (-2.0, 2.0))
@@ -355,6 +371,6 @@ class TestFeet:
             foot = MeshFeet(mesh.points, triangles).foot(at.position + 0.05 * at.normal)
             errors.append(np.abs(foot.position - at.position).max())
             assert (foot.normal * at.normal).sum(1).min() > 0.999
-        # a foot shifts by the distance times the facets' angle: first order in their size, halved by a quarter of the sag
+        # a foot shifts by the distance times the facets' angle: first order in their size, which goes with sag^(1/2)
         assert errors[0] / errors[1] == pytest.approx(2, rel=0.2)
         assert errors[1] < 2e-3
