@@ -30,6 +30,12 @@ def test_stars_of_a_grid() -> None:
     assert np.cross(legs[:, 0], legs[:, 1])[:, 2] == pytest.approx(1)
     assert mesh.mean_edge == pytest.approx(1)
     assert len(mesh.edges) == 4 * 7 + 5 * 6
+    spokes = mesh.spokes(mesh.inner)
+    assert (mesh.tail[spokes] == mesh.inner[:, None]).all()
+    # an edge runs from one of its ends to the other, as told
+    ends = mesh.edges[mesh.edge_of[spokes]]
+    ends = np.where(mesh.forward[spokes][..., None], ends, ends[..., ::-1])
+    assert np.array_equal(ends, np.stack([np.broadcast_to(mesh.inner[:, None], stars.shape), stars], -1))
 
 
 @pytest.mark.parametrize("length", [3, 4])

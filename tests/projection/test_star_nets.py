@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from nets import hexagonal_net, lamella_patch, noisy, spider, weingarten_patch
+from nets import hexagonal_net, lamella_patch, noisy, rotational_net, spider, weingarten_patch
 
 from lamella import Catenoid, Enneper, InputError, Unduloid
 from lamella.projection.foot_points import foot_surface
@@ -74,6 +74,20 @@ def test_noisy_catenoids(seed: int) -> None:
 @pytest.mark.parametrize("form", ["faces", "circles"])
 def test_noisy_catenoid_of_10000_vertices(form: str) -> None:
     check_noisy_catenoid(100, form, 1)
+
+
+def test_whole_ring() -> None:
+    """Once around a thin neck, coarsely: the net of H = 5/4 in the paper's section 2.3."""
+    surface = Unduloid(0.15, 0.65, (-4.0, 4.0))
+    mesh = noisy(rotational_net(surface, 24, 60, -3.9), NOISE, 2)
+    net = sphere_stars(mesh, radius=0.8, iterations=10)
+    assert net.solution.solved
+    assert star_spheres(net.mesh, net.mesh.inner).deviation.max() <= 1e-9 * mesh.mean_edge
+    assert np.abs(circle_angles(net.mesh, net.mesh.inner) - 90).max() <= 1e-4
+    assert drift(net, mesh) <= 3 * NOISE
+    free = sphere_stars(mesh)
+    assert not free.ill_determined
+    assert free.radius == pytest.approx(0.8, rel=0.01)
 
 
 @pytest.mark.parametrize(("centre", "span"), [(0.0, 2.0), (0.9, 3.0)])
@@ -176,11 +190,12 @@ class TestGivenAngle:
         assert moved[1] < 0.02 * mesh.mean_edge
         assert np.log2(moved[0] / moved[1]) > 1.7
 
-    def test_noise(self, opening: float, bend: float) -> None:
+    @pytest.mark.parametrize("form", ["circles", "chords"])
+    def test_noise(self, opening: float, bend: float, form: str) -> None:
         mesh = noisy(weingarten_patch(opening, bend, 24, 1.4), NOISE, 9)
-        net = star_net(mesh, 1 / bend if bend else np.inf, angle=opening)
+        net = star_net(mesh, 1 / bend if bend else np.inf, angle=opening, form=form)
         assert net.solution.solved
-        angle = chord_angles(net.mesh, net.mesh.inner)
+        angle = ANGLES[form](net.mesh)
         assert np.minimum(np.abs(angle - opening), np.abs(180 - angle - opening)).max() < 1e-4
         stars = star_spheres(net.mesh, net.mesh.inner)
         assert stars.deviation.max() < 1e-9 * mesh.mean_edge
@@ -207,8 +222,17 @@ class TestRefused:
         mesh = lamella_patch(UNDULOID, 8, 1.0)
         with pytest.raises(InputError, match="circles, chords, faces"):
             asymptotic(mesh, form="edges")  # type: ignore[arg-type]
+        with pytest.raises(InputError, match="right angles only"):
+            asymptotic(mesh, angle=80.0, form="faces")
         with pytest.raises(InputError, match="170"):
             asymptotic(mesh, angle=200.0)
+
+    def test_edge_without_length(self) -> None:
+        mesh = lamella_patch(UNDULOID, 8, 1.0)
+        points = mesh.vertices.copy()
+        points[9] = points[10]
+        with pytest.raises(InputError, match="in one place"):
+            asymptotic(mesh.at(points))
 
     def test_families_that_swap(self) -> None:
         points, faces = spider(5)

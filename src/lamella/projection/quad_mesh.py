@@ -59,9 +59,18 @@ class QuadMesh:
     @cached_property
     def edges(self) -> Integers:
         """Each edge once, (e, 2)."""
-        half = np.arange(len(self.twin))
-        once = (self.twin < 0) | (half < self.twin)
-        return np.column_stack([self.tail[once], self.head[once]])
+        return np.column_stack([self.tail[self.forward], self.head[self.forward]])
+
+    @cached_property
+    def edge_of(self) -> Integers:
+        """Which of `edges` each half edge is, (4 f,)."""
+        number = np.cumsum(self.forward) - 1
+        return np.where(self.forward, number, number[self.twin])
+
+    @cached_property
+    def forward(self) -> Booleans:
+        """Whether each half edge runs as its edge in `edges` does, (4 f,)."""
+        return np.asarray((self.twin < 0) | (np.arange(len(self.twin)) < self.twin))
 
     @cached_property
     def mean_edge(self) -> float:
@@ -102,19 +111,19 @@ class QuadMesh:
 
         On a regular vertex the first and third, and the second and fourth, are on one polyline.
         """
+        return np.asarray(self.head[self.spokes(vertices)])
+
+    def spokes(self, vertices: Integers) -> Integers:
+        """Half edges from vertices to their `stars`."""
         count = self.face_count[vertices]
         assert not self.on_boundary[vertices].any()
         assert len(np.unique(count)) <= 1
-        half = self.leaving(vertices)
+        half = self._leaving[vertices]
         found = []
         for _ in range(int(count[0]) if len(count) else 4):
-            found.append(self.head[half])
+            found.append(half)
             half = self.twin[self._previous[half]]
         return np.stack(found, 1)
-
-    def leaving(self, vertices: Integers) -> Integers:
-        """Half edge to the first neighbour of each star."""
-        return np.asarray(self._leaving[vertices])
 
     @cached_property
     def families(self) -> Integers:

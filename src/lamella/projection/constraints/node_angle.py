@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.projection.constraint import Constraint
+from lamella.projection.constraints.right_angle import chords, signed
 from lamella.projection.unknowns import Floats, Integers, Slot, dot
 
 
@@ -37,30 +38,33 @@ class NodeAngle(Constraint):
         w, degrees.
     edge : float
         e, m.
-    block, chords : str
+    block, lengths : str
         Names of the points' block and of the chord lengths', (s, 2).
+    signs : (s, 4), optional
+        +1 or -1, factors of the points; default: 1.
     """
 
     stars: Integers
     angle: float
     edge: float
     block: str = "vertices"
-    chords: str = "chords"
+    lengths: str = "chords"
+    signs: Floats | None = None
 
     def slots(self) -> tuple[Slot, ...]:
         points = tuple(Slot(self.block, self.stars[:, j]) for j in range(4))
-        return (*points, Slot(self.chords, np.arange(len(self.stars))))
+        return (*points, Slot(self.lengths, np.arange(len(self.stars))))
 
     def residual(self, *arguments: Floats) -> Floats:
-        x1, x2, x3, x4, length = arguments
-        p, q = x1 - x3, x2 - x4
+        *points, length = arguments
+        p, q = chords(tuple(points), self.signs)
         a, b = length[:, :1], length[:, 1:]
         met = dot(p, q) - np.cos(np.radians(self.angle)) * a * b
         return np.concatenate([met, dot(p, p) - a * a, dot(q, q) - b * b], 1) / (4 * self.edge**2)
 
     def jacobian(self, *arguments: Floats) -> tuple[Floats, ...]:
-        x1, x2, x3, x4, length = arguments
-        p, q = x1 - x3, x2 - x4
+        *points, length = arguments
+        p, q = chords(tuple(points), self.signs)
         a, b = length.T
         cosine = np.cos(np.radians(self.angle))
         none = np.zeros_like(p)
@@ -68,4 +72,4 @@ class NodeAngle(Constraint):
         by_q = np.stack([p, none, 2 * q], 1) / (4 * self.edge**2)
         zero = np.zeros_like(a)
         by_length = [np.stack(row, 1) for row in ((-cosine * b, -cosine * a), (-2 * a, zero), (zero, -2 * b))]
-        return by_p, by_q, -by_p, -by_q, np.stack(by_length, 1) / (4 * self.edge**2)
+        return *signed((by_p, by_q, -by_p, -by_q), self.signs), np.stack(by_length, 1) / (4 * self.edge**2)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from lamella.projection.problems.crossing import RightAngleForm
+from lamella.projection.problems.crossing import AngleForm
 from lamella.projection.problems.star_net import StarNet, star_net
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration
@@ -17,7 +17,7 @@ def asymptotic(
     mesh: QuadMesh,
     *,
     angle: float = 90.0,
-    form: RightAngleForm = "circles",
+    form: AngleForm = "circles",
     iterations: int = 50,
     tolerance: float = 1e-10,
     on_iteration: Callable[[Iteration], None] | None = None,
@@ -35,7 +35,7 @@ def asymptotic(
     angle : float
         Degrees.
     form : "circles", "chords" or "faces"
-        How a right angle is measured, see `RightAngleForm`.
+        How the angle is measured, see `AngleForm`.
     iterations, tolerance, on_iteration, backend
         See `lamella.projection.solve.solve`.
 

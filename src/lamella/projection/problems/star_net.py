@@ -11,7 +11,7 @@ import numpy as np
 from lamella.errors import InputError
 from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.unit_length import UnitLength
-from lamella.projection.problems.crossing import RightAngleForm, crossing
+from lamella.projection.problems.crossing import AngleForm, crossing
 from lamella.projection.problems.star_radius import find_radius, star_curvature
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration, Solution
@@ -62,7 +62,7 @@ def star_net(
     radius: float | None,
     *,
     angle: float = 90.0,
-    form: RightAngleForm = "circles",
+    form: AngleForm = "circles",
     iterations: int = 50,
     tolerance: float = 1e-10,
     on_iteration: Callable[[Iteration], None] | None = None,
@@ -83,7 +83,7 @@ def star_net(
         Between the polylines of both families (`QuadMesh.families`), degrees; it or its supplement, whichever is
         nearer to the net.
     form : "circles", "chords" or "faces"
-        How a right angle is measured, see `RightAngleForm`; other angles are between chords.
+        How the angle is measured, see `AngleForm`.
     iterations, tolerance, on_iteration, backend
         See `solve`.
 
@@ -141,5 +141,14 @@ def _check(mesh: QuadMesh, radius: float | None, angle: float, form: str) -> Non
         )
     if not 10 <= angle <= 170:
         raise InputError(f"angle = {angle:g} degrees", "between 10 and 170 degrees")
-    if form not in get_args(RightAngleForm):
-        raise InputError(f"form = {form!r}", f"one of {', '.join(get_args(RightAngleForm))}")
+    if form not in get_args(AngleForm):
+        raise InputError(f"form = {form!r}", f"one of {', '.join(get_args(AngleForm))}")
+    if form == "faces" and angle != 90:
+        raise InputError(
+            f'form = "faces" measures right angles only, angle = {angle:g} degrees', 'use "circles" or "chords"'
+        )
+    a, b = mesh.vertices[mesh.edges].swapaxes(0, 1)
+    flat = np.flatnonzero((a == b).all(1))
+    if len(flat):
+        i, j = mesh.edges[flat[0]]
+        raise InputError(f"vertices {i} and {j} of an edge are in one place", "merge them, or move one")

@@ -10,7 +10,7 @@ import numpy as np
 from lamella.projection.constraints.fixed import Fixed
 from lamella.projection.constraints.spherical_star import SphericalStar
 from lamella.projection.determination import uncertainty
-from lamella.projection.problems.crossing import RightAngleForm, crossing
+from lamella.projection.problems.crossing import AngleForm, crossing
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration
 from lamella.projection.solve import solve
@@ -36,7 +36,7 @@ def find_radius(
     mesh: QuadMesh,
     start: QuadMesh,
     angle: float,
-    form: RightAngleForm,
+    form: AngleForm,
     *,
     iterations: int,
     tolerance: float,

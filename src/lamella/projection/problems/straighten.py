@@ -17,7 +17,7 @@ from lamella.projection.foot_points import DirectedSurface
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.solve import solve
-from lamella.projection.unknowns import Block, Floats, Integers
+from lamella.projection.unknowns import Block, Floats
 from lamella.sparse import Backend
 
 # weight of third differences at the start and per iteration
@@ -112,20 +112,6 @@ def edge_middles(mesh: QuadMesh) -> QuadMesh:
 
     Around vertices of another valence the middles form another polygon, which is left open.
     """
-    edge, count = _edge_numbers(mesh)
-    vertices = np.empty((count, 3))
-    vertices[edge] = (mesh.vertices[mesh.tail] + mesh.vertices[mesh.head]) / 2
-    half, around = mesh.leaving(mesh.inner), []
-    for _ in range(4):
-        around.append(edge[half])
-        half = mesh.twin[np.where(half % 4 == 0, half + 3, half - 1)]
-    faces = np.concatenate([edge.reshape(-1, 4), np.stack(around, 1)])
-    return quad_mesh(vertices, faces)
-
-
-def _edge_numbers(mesh: QuadMesh) -> tuple[Integers, int]:
-    """Number of the edge of each half edge, and how many there are."""
-    half = np.arange(len(mesh.twin))
-    first = np.where(mesh.twin >= 0, np.minimum(half, mesh.twin), half)
-    unique, number = np.unique(first, return_inverse=True)
-    return number.ravel(), len(unique)
+    around = mesh.edge_of[mesh.spokes(mesh.inner)]
+    faces = np.concatenate([mesh.edge_of.reshape(-1, 4), around])
+    return quad_mesh(mesh.vertices[mesh.edges].mean(1), faces)
