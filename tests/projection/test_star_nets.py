@@ -13,12 +13,21 @@ import pytest
 from nets import hexagonal_net, lamella_patch, noisy, rotational_net, spider, weingarten_patch
 
 from lamella import Catenoid, Enneper, InputError, Unduloid
+from lamella.projection.constraints.curved_star import CurvedStar
+from lamella.projection.constraints.leg_directions import LegDirections
+from lamella.projection.constraints.right_angle import RightAngle
+from lamella.projection.constraints.unit_length import UnitLength
 from lamella.projection.foot_points import foot_surface
 from lamella.projection.problems.asymptotic import asymptotic
 from lamella.projection.problems.sphere_stars import sphere_stars
 from lamella.projection.problems.star_net import StarNet, star_net
+from lamella.projection.problems.star_radius import star_curvature
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
+from lamella.projection.smoothing import smoothed
+from lamella.projection.solve import solve
 from lamella.projection.star_measures import chord_angles, circle_angles, face_angles, star_spheres
+from lamella.projection.unknowns import Block
+from lamella.projection.vertex_normals import smoothed_normals
 from lamella.surface.closed_form import ClosedForm
 
 NOISE = 0.02
@@ -238,3 +247,39 @@ class TestRefused:
         points, faces = spider(5)
         with pytest.raises(InputError, match="has 5 neighbours"):
             asymptotic(quad_mesh(points, faces), angle=80.0)
+
+
+def test_sums_of_opposite_angles() -> None:
+    """Paper, Figure 5 right: with directions of legs as unknowns, w1 + w3 = w2 + w4 in each tangent plane."""
+    mesh = smoothed(noisy(lamella_patch(UNDULOID, 10, 1.2), 0.01, 1))
+    edge, inner, stars = mesh.mean_edge, mesh.inner, mesh.stars(mesh.inner)
+    normals = smoothed_normals(mesh)[inner]
+    if star_curvature(mesh.vertices, inner, stars, normals) < 0:
+        normals = -normals
+    leg = mesh.vertices[stars] - mesh.vertices[inner][:, None]
+    height = np.einsum("sjc,sc->sj", leg, normals)
+    level = leg - height[..., None] * normals[:, None]
+    reach = np.linalg.norm(level, axis=2)
+    blocks = [
+        Block("vertices", mesh.vertices, edge),
+        Block("normals", normals),
+        Block("directions", (level / reach[..., None]).reshape(-1, 3)),
+        Block("reaches", np.stack([reach / edge, height], 2).reshape(-1, 2)),
+    ]
+    legs = np.arange(4 * len(inner)).reshape(-1, 4)
+    constraints = [
+        CurvedStar(name="stars", centres=inner, neighbours=stars, curvature=0.5, edge=edge),
+        UnitLength(name="unit normals", block="normals", index=np.arange(len(inner))),
+        LegDirections(name="legs", middles=inner, neighbours=stars, edge=edge),
+        RightAngle(name="right angle", stars=legs, edge=0.5, block="directions"),
+    ]
+    solution = solve(blocks, constraints)
+    assert solution.solved
+    v, n = solution.values["vertices"], solution.values["normals"]
+    leg = v[stars] - v[inner][:, None]
+    level = leg - np.einsum("sjc,sc->sj", leg, n)[..., None] * n[:, None]
+    level /= np.linalg.norm(level, axis=2, keepdims=True)
+    w = np.arccos(np.einsum("sjc,sjc->sj", level, np.roll(level, -1, axis=1)))
+    assert w.sum(1) == pytest.approx(2 * np.pi, abs=1e-9)
+    assert w[:, 0] + w[:, 2] == pytest.approx(w[:, 1] + w[:, 3], abs=1e-8)
+    assert np.abs(w - np.pi / 2).max() > 1e-5
