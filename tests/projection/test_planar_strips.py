@@ -2,18 +2,21 @@
 
 1. Between neck and bulge of an unduloid: planar to rounding, upright, borders on the surface and on the parallel one;
 rulings lean as r = kg n + tg t says. 2. Across the neck no developable strip exists: the figures say so. 3. Curves on a
-mesh of triangles. 4. Bad input.
+mesh of triangles, on a surface that was found. 4. Bad input.
 """
 
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from lamella import InputError, Unduloid
+from lamella import InputError, Unduloid, find_film, make_loop
+from lamella.network.element_network import element_network
 from lamella.projection.foot_points import MeshFeet, foot_surface
 from lamella.projection.problems.planar_strips import PlanarStrips, planar_strips
 from lamella.strip.planarity import planarity_score
+from lamella.surface.boundary.splines import closed_spline
 
 UNDULOID = Unduloid(0.6, 1.4, (-8.0, 8.0))
 HALF = UNDULOID.period / 2
@@ -108,6 +111,26 @@ def test_surface_as_a_mesh_of_triangles() -> None:
     found = planar_strips([lamella(0.25, 0.75)], feet, HEIGHT, rounds=1, tolerance=1e-6)
     assert found.figures()["red after"] < 0.1
     assert found.figures()["median after"] < found.figures()["median before"] / 10
+
+
+def test_strips_of_a_found_surface() -> None:
+    """A free-form surface of H = 0.68, as in the paper's Figure 10: all its lamellas, as upright planar strips."""
+    t = np.arange(36) * 2 * np.pi / 36
+    loop = make_loop("rim", closed_spline(np.column_stack([np.cos(t), 0.8 * np.sin(t), 0.2 * np.cos(2 * t)])))
+    surface = find_film((loop,), 0.68).surface("form-found")
+    net = element_network(surface, cells=8, minimum_length=0.4).network
+    curves = []
+    for first, end in pairwise(net.sample_offsets):
+        s, points = net.sample_arclengths[first:end], net.sample_points[first:end]
+        even = np.linspace(0, s[-1], max(6, int(s[-1] / 0.08)))
+        curves.append(np.stack([np.interp(even, s, x) for x in points.T], 1))
+    found = planar_strips(curves, foot_surface(surface), HEIGHT)
+    figures = found.figures()
+    assert figures["largest after"] < 1e-6 < 1e-3 < figures["median before"]
+    assert figures["largest tilt"] < 2
+    assert figures["largest shift"] < HEIGHT
+    # lamellas whose geodesic curvature changes its sign are no developable strips there
+    assert 0 < figures["not developable"] < 0.3
 
 
 class TestRefused:
