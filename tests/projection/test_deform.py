@@ -54,6 +54,9 @@ def test_narrower_waist(share: float) -> None:
     # still rotational, row by row
     around = np.linalg.norm(state.mesh.vertices[:, :2], axis=1).reshape(ROWS, AROUND)
     assert np.ptp(around, axis=1).max() < 1e-6
+    # the rim goes on as the net does: its tips hang on two edges only
+    bends = np.diff(around.mean(1), 3)
+    assert np.abs(bends[[0, -1]]).max() < 0.05 * start.mean_edge
     # the scissors move: tens of degrees, in one sense for all
     change = circle_angles(state.mesh, start.inner) - circle_angles(start, start.inner)
     assert state.angle_change == pytest.approx(change)

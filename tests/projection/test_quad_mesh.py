@@ -56,6 +56,17 @@ def test_runs_are_those_of_walking_on_the_grid(length: int, closed: bool) -> Non
     assert canonical == {min(r, r[::-1]) for r in expected}
 
 
+def test_runs_pass_reentrant_corners() -> None:
+    """A grid without one corner face: lines through its inner corner go on to the rim, the boundary stops there."""
+    mesh = grid(5, 5)
+    left = quad_mesh(mesh.vertices, mesh.faces[1:])
+    corner = 6  # of the missing face
+    through = {tuple(r) for r in left.runs(3).tolist() if r[1] == corner}
+    assert {min(r, r[::-1]) for r in through} == {(1, 6, 11), (5, 6, 7)}
+    # polylines from the rim inwards are as long as before
+    assert sum(r[0] == 1 and r[1] == 6 for r in left.runs(4).tolist()) == 1
+
+
 @pytest.mark.parametrize("valence", [3, 5, 6])
 def test_singular_vertices(valence: int) -> None:
     points, faces = spider(valence)

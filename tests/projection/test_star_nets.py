@@ -283,3 +283,9 @@ def test_sums_of_opposite_angles() -> None:
     assert w.sum(1) == pytest.approx(2 * np.pi, abs=1e-9)
     assert w[:, 0] + w[:, 2] == pytest.approx(w[:, 1] + w[:, 3], abs=1e-8)
     assert np.abs(w - np.pi / 2).max() > 1e-5
+
+
+def test_loose_vertex_is_refused() -> None:
+    mesh = lamella_patch(CATENOID, 8, 1.0)
+    with pytest.raises(InputError, match="vertex 64 has no normal"):
+        asymptotic(quad_mesh(np.vstack([mesh.vertices, [[9.0, 9, 9]]]), mesh.faces))

@@ -172,12 +172,15 @@ class QuadMesh:
     def straight(self) -> Integers:
         """Half edge straight on beyond the head of each; -1: the polyline ends there.
 
-        The boundary is a polyline of its own, in the direction that has the mesh to its left.
+        The boundary is a polyline of its own, in the direction that has the mesh to its left; at a re-entrant corner
+        with four neighbours polylines go on across it, in the one direction in which half edges exist.
         """
         across = self.twin[self.next]
         on = np.where(across >= 0, self.next[across], -1)
-        faces = np.where(self.twin < 0, 2, 4)
-        return np.where((self.face_count[self.head] == faces) & (self.on_boundary[self.head] == (faces == 2)), on, -1)
+        count, rim = self.face_count[self.head], self.on_boundary[self.head]
+        # along the boundary past two faces; across it in a re-entrant corner with four neighbours
+        regular = np.where(rim, np.where(self.twin < 0, (count == 2) | (count == 3), count == 3), count == 4)
+        return np.where(regular, on, -1)
 
     def runs(self, length: int) -> Integers:
         """All sequences of so many consecutive vertices of polylines, each once, (m, length)."""
@@ -189,12 +192,15 @@ class QuadMesh:
             alive &= half >= 0
             half = np.maximum(half, 0)
             found.append(self.head[half])
-        both = self.twin[np.arange(len(half))] >= 0
-        runs = np.stack(found, 1)
-        # seen from either end, except along the boundary
-        ends = runs[:, [0, 1, -2, -1]]
-        forward = (ends[:, 0] < ends[:, 3]) | ((ends[:, 0] == ends[:, 3]) & (ends[:, 1] < ends[:, 2]))
-        return np.asarray(runs[alive & (forward | ~both)])
+        runs = np.stack(found, 1)[alive]
+        # most are seen from both ends: the first and the last edge tell which are the same
+        count = len(self.vertices)
+        ends = np.stack([runs[:, 0] * count + runs[:, 1], runs[:, -1] * count + runs[:, -2]])
+        runs = np.where((ends[0] > ends[1])[:, None], runs[:, ::-1], runs)
+        ends.sort(axis=0)
+        order = np.lexsort(ends[::-1])
+        new = np.concatenate([[True], (np.diff(ends[:, order]) != 0).any(0)])
+        return np.asarray(runs[order[new[: len(order)]]])
 
     def at(self, vertices: Floats) -> QuadMesh:
         """The same mesh with its vertices elsewhere."""

@@ -12,6 +12,7 @@ from lamella.errors import InputError
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.edge_length import EdgeLength
+from lamella.projection.constraints.fairness import fairness
 from lamella.projection.constraints.unit_length import UnitLength
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration, Solution
@@ -23,6 +24,8 @@ from lamella.sparse import Backend
 
 # change of the ring's size from one state to the next
 STEP = 0.02
+# weight of third differences and its fade: corners of the rim hang on two edges and would turn about them
+FAIR, FADE = 0.03, 0.1
 
 
 @dataclass(frozen=True)
@@ -105,6 +108,7 @@ def deform(
     curvature = bend if radius is None else 1 / radius
     before = circle_angles(mesh, inner)
     states: list[DeformedState] = []
+    fair = fairness(mesh, 3, weight=FAIR, fade=FADE)
     current = mesh.vertices
     for now in np.linspace(1.0, share, 1 + int(np.ceil(abs(share - 1) / step - 1e-9))):
         constraints: list[Constraint] = [
@@ -115,7 +119,7 @@ def deform(
         ]
         solution = solve(
             [Block("vertices", current, edge), Block("normals", normals)],
-            constraints,
+            [*constraints, *(fair if states else ())],  # nothing is to move at the start
             iterations=iterations,
             tolerance=tolerance,
             on_iteration=on_iteration,
