@@ -66,6 +66,16 @@ def test_library_example_of_getting_started_runs(capsys: pytest.CaptureFixture[s
     assert said.startswith("62.997 m2, stable, neck 2.2")
 
 
+def test_examples_of_guided_projection_run(capsys: pytest.CaptureFixture[str]) -> None:
+    net, constraint = blocks((DOCS / "projection.md").read_text(), "python")
+    exec(net, {})
+    said = capsys.readouterr().out
+    assert said.startswith("solved after")
+    assert float(re.search(r"moved by (\d+\.\d) mm", said).group(1)) == pytest.approx(2.0, abs=0.3)
+    exec(constraint, {})
+    assert capsys.readouterr().out == "solved 2.0\n"
+
+
 def test_project_in_getting_started_is_good() -> None:
     (project,) = blocks((DOCS / "getting-started.md").read_text(), "toml")
     assert lamella.parse_project(tomllib.loads(project)).name == "Pavilion"

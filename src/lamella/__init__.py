@@ -37,6 +37,14 @@ if TYPE_CHECKING:
     from lamella.project import Project as Project
     from lamella.project_file import parse_project as parse_project
     from lamella.project_file import read_project as read_project
+    from lamella.projection.foot_points import foot_surface as foot_surface
+    from lamella.projection.problems.asymptotic import asymptotic as asymptotic
+    from lamella.projection.problems.deform import deform as deform
+    from lamella.projection.problems.planar_strips import planar_strips as planar_strips
+    from lamella.projection.problems.sphere_stars import sphere_stars as sphere_stars
+    from lamella.projection.problems.straighten import straighten as straighten
+    from lamella.projection.quad_mesh import QuadMesh as QuadMesh
+    from lamella.projection.quad_mesh import quad_mesh as quad_mesh
     from lamella.strip.lamellas import Lamellas as Lamellas
     from lamella.strip.lamellas import Section as Section
     from lamella.strip.lamellas import make_lamellas as make_lamellas
@@ -70,6 +78,14 @@ _HOMES = {
     "Project": "project",
     "parse_project": "project_file",
     "read_project": "project_file",
+    "foot_surface": "projection.foot_points",
+    "asymptotic": "projection.problems.asymptotic",
+    "deform": "projection.problems.deform",
+    "planar_strips": "projection.problems.planar_strips",
+    "sphere_stars": "projection.problems.sphere_stars",
+    "straighten": "projection.problems.straighten",
+    "QuadMesh": "projection.quad_mesh",
+    "quad_mesh": "projection.quad_mesh",
     "Lamellas": "strip.lamellas",
     "Section": "strip.lamellas",
     "make_lamellas": "strip.lamellas",

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+AnyIntegers = NDArray[np.int32] | NDArray[np.int64]
 Backend = Literal["rslab", "splu"]
 
 # minimum degree orders small systems faster, nested dissection larger ones better
@@ -107,7 +108,7 @@ class SymmetricPattern:
     border: int
     backend: Backend
     _target: Integers = field(repr=False)  # entry of each kept block value
-    _kept: Integers = field(repr=False)  # flat index of each kept block value
+    _kept: Integers | None = field(repr=False)  # flat index of each kept block value, ascending; None: all are
     _border_target: Integers = field(repr=False)  # (border, size) entries of the border's rows
     _symbolic: dict[str, Any] = field(default_factory=dict, repr=False)
 
@@ -130,42 +131,78 @@ class SymmetricPattern:
         """
         first, second = np.tril_indices(unknowns.shape[1])
         one, other = unknowns[:, first].ravel(), unknowns[:, second].ravel()
-        kept = np.flatnonzero((one >= 0) & (other >= 0))
+        return cls.from_pairs(one, other, count, border=border, backend=backend)
+
+    @classmethod
+    def from_pairs(
+        cls, one: AnyIntegers, other: AnyIntegers, count: int, *, border: int = 0, backend: Backend | None = None
+    ) -> SymmetricPattern:
+        """Pattern of single entries, each given once for (i, j) and (j, i), as often as values are added to it.
+
+        Parameters
+        ----------
+        one, other : (p,) int
+            The two unknowns of each; -1: held, left out. `assemble` takes the values in this order.
+        count, border, backend
+            As `from_elements`.
+        """
         size = count + border
-        low, high = np.minimum(one, other)[kept], np.maximum(one, other)[kept]
-        keys = low * size + high
+        held = (one < 0) | (other < 0)
+        kept = np.flatnonzero(~held) if held.any() else None
+        if kept is not None:
+            one, other = one[kept], other[kept]
+        pairs = len(one)
         rows = np.arange(count, size)
-        border_keys = np.arange(size) * size + rows[:, None]
         below = rows[:, None] >= np.arange(size)
-        # the whole diagonal is there, whatever the elements
-        unique, inverse = np.unique(
-            np.concatenate([np.arange(size) * (size + 1), keys, border_keys[below]]), return_inverse=True
-        )
-        columns = np.searchsorted(unique, np.arange(size + 1) * size)
+        border_high, border_low = np.nonzero(below)
+        # the whole diagonal is there, whatever the entries; small arrays of 32 bits come in, keys need 64
+        keys = np.empty(size + pairs + len(border_low), np.int64)
+        keys[:size] = np.arange(size) * (size + 1)
+        inner = keys[size : size + pairs]
+        inner[:] = np.minimum(one, other)
+        inner *= size
+        inner += np.maximum(one, other)
+        keys[size + pairs :] = border_low * size + border_high + count
+        order = np.argsort(keys, kind="stable")  # merges the runs that element blocks come in
+        keys = keys[order]
+        new = np.concatenate([[True], keys[1:] != keys[:-1]])
+        unique = keys[new]
+        del keys
+        entry = np.empty(len(order), np.int64)
+        entry[order] = np.cumsum(new) - 1
+        del order
         border_target = np.full((border, size), -1)
-        border_target[below] = inverse[size + len(keys) :]
+        border_target[below] = entry[size + pairs :]
+        columns = np.searchsorted(unique, np.arange(size + 1) * size)
         return cls(
             size,
             columns,
             unique % size,
             border,
             backend or default_backend(),
-            inverse[size : size + len(keys)],
+            entry[size : size + pairs].copy(),
             kept,
             border_target,
         )
 
-    def assemble(self, blocks: Floats, border: Floats | None = None) -> Floats:
+    def assemble(self, blocks: Floats, border: Floats | None = None, *, first: int = 0) -> Floats:
         """Entries of the lower triangle, (nnz,).
 
         Parameters
         ----------
-        blocks : (e, k (k + 1) / 2)
-            Lower triangles of the element blocks, see `packed`.
+        blocks : (e, k (k + 1) / 2) or (p,)
+            Lower triangles of the element blocks, see `packed`; or the values of the pairs.
         border : (border, size), optional
             Rows of the border.
+        first : int
+            The values are those of the pairs from this one on; pairs without a value add nothing.
         """
-        values = np.bincount(self._target, blocks.ravel()[self._kept], len(self.rows)).astype(np.float64)
+        given = blocks.ravel()
+        part = slice(first, first + given.size)
+        if self._kept is not None:
+            part = slice(*np.searchsorted(self._kept, (first, first + given.size)))
+            given = given[self._kept[part] - first]
+        values = np.bincount(self._target[part], given, len(self.rows)).astype(np.float64, copy=False)
         if border is not None:
             inside = self._border_target >= 0
             values[self._border_target[inside]] += border[inside]

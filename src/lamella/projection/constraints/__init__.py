@@ -1,0 +1,1 @@
+"""One constraint a file; each docstring has the formula and a table variable / symbol / count."""

@@ -1,0 +1,1 @@
+"""Problems of the paper, each a function from a mesh to a mesh."""

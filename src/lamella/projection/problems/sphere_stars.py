@@ -1,0 +1,61 @@
+"""Nets with spherical vertex stars: the discrete constant-mean-curvature surfaces of paper section 2.1."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from lamella.projection.problems.crossing import AngleForm
+from lamella.projection.problems.star_net import StarNet, star_net
+from lamella.projection.quad_mesh import QuadMesh
+from lamella.projection.report import Iteration
+from lamella.sparse import Backend
+
+
+def sphere_stars(
+    mesh: QuadMesh,
+    *,
+    radius: float | None = None,
+    angle: float = 90.0,
+    form: AngleForm = "circles",
+    iterations: int = 50,
+    tolerance: float = 1e-10,
+    on_iteration: Callable[[Iteration], None] | None = None,
+    backend: Backend | None = None,
+) -> StarNet:
+    """Move a net's vertices as little as needed until each star lies on a sphere of one radius, at the angle.
+
+    Circular strips of that radius stand upright on such a net. At 90 degrees it is a discrete surface of constant
+    mean curvature H = 1 / radius; at another angle 2 phi a linear Weingarten surface (paper, section 2).
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+        See `lamella.projection.quad_mesh.quad_mesh`.
+    radius : float, optional
+        m. Without it the radius is found; ask `StarNet.ill_determined` whether the net says enough about it.
+    angle : float
+        Degrees.
+    form : "circles", "chords" or "faces"
+        How the angle is measured, see `AngleForm`.
+    iterations, tolerance, on_iteration, backend
+        See `lamella.projection.solve.solve`.
+
+    Returns
+    -------
+    StarNet
+
+    Raises
+    ------
+    InputError
+        See `star_net`.
+    """
+    return star_net(
+        mesh,
+        radius,
+        angle=angle,
+        form=form,
+        iterations=iterations,
+        tolerance=tolerance,
+        on_iteration=on_iteration,
+        backend=backend,
+    )

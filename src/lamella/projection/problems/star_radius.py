@@ -1,0 +1,113 @@
+"""The radius of spherical vertex stars that a net itself suggests, and how well it knows it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lamella.projection.constraints.fixed import Fixed
+from lamella.projection.constraints.spherical_star import SphericalStar
+from lamella.projection.determination import uncertainty
+from lamella.projection.problems.crossing import AngleForm, crossing
+from lamella.projection.quad_mesh import QuadMesh
+from lamella.projection.report import Iteration
+from lamella.projection.solve import solve
+from lamella.projection.unknowns import Block, Floats, Integers, dot
+from lamella.projection.vertex_normals import smoothed_normals
+from lamella.sparse import Backend
+
+# weight of the given vertices and its fade: while it lasts the radius follows the whole net
+STAY, FADE = 0.1, 0.1
+# largest radius to start from, in sizes of the mesh
+FLATTEST = 1e3
+
+
+@dataclass(frozen=True)
+class StarRadius:
+    """A radius with its standard deviation, m; infinite: the net does not determine it."""
+
+    radius: float
+    uncertainty: float
+
+
+def find_radius(
+    mesh: QuadMesh,
+    start: QuadMesh,
+    angle: float,
+    form: AngleForm,
+    *,
+    iterations: int,
+    tolerance: float,
+    on_iteration: Callable[[Iteration], None] | None = None,
+    backend: Backend | None = None,
+) -> StarRadius:
+    """Radius of the nearest net with spherical stars of one radius and the given angle.
+
+    Nearest to the vertices given: with noise of equal size on all coordinates that is the most likely radius. Its
+    uncertainty follows from the noise, the moves over the square root of what the constraints take away (3 conditions
+    a star, less the radius), and from how much a net has to move for another radius (`uncertainty`).
+
+    Parameters
+    ----------
+    mesh, start : QuadMesh
+        As given, and without its noise.
+    angle, form
+        See `crossing`.
+    iterations, tolerance, on_iteration, backend
+        See `solve`.
+    """
+    edge, inner, neighbours = mesh.mean_edge, mesh.inner, mesh.stars(mesh.inner)
+    normals = smoothed_normals(start)[inner]
+    bend = star_curvature(start.vertices, inner, neighbours, normals)
+    size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    radius = min(1 / max(abs(bend), 1e-300), FLATTEST * size)
+    more, angles = crossing(start, angle, form)
+    blocks = [
+        Block("vertices", start.vertices, edge, mesh.vertices),
+        Block("centres", start.vertices[inner] + np.copysign(radius, bend) * normals, radius),
+        Block("radii", np.array([radius]), radius),
+        *more,
+    ]
+    stars = SphericalStar(
+        name="stars",
+        middles=inner,
+        neighbours=neighbours,
+        radius_of=np.zeros(len(inner), np.int64),
+        size=radius,
+        edge=edge,
+    )
+    stay = Fixed(
+        name="given vertices",
+        index=np.arange(len(mesh.vertices)),
+        points=mesh.vertices,
+        edge=edge,
+        weight=STAY,
+        fade=FADE,
+        hard=False,
+    )
+    solution = solve(
+        blocks,
+        [stars, *angles, stay],
+        iterations=iterations,
+        tolerance=tolerance,
+        on_iteration=on_iteration,
+        backend=backend,
+    )
+    found = abs(float(solution.values["radii"][0, 0]))
+    if not solution.solved:
+        return StarRadius(found, np.inf)
+    taken = max(3 * len(inner) - 1, 1)
+    noise = solution.last.drift["vertices"] * np.sqrt(mesh.vertices.size / taken)
+    ended = [Block(block.name, solution.values[block.name], block.scale) for block in blocks]
+    return StarRadius(found, uncertainty(ended, [stars, *angles], "radii", "vertices", noise, backend=backend))
+
+
+def star_curvature(vertices: Floats, middles: Integers, neighbours: Integers, normals: Floats) -> float:
+    """Curvature k that fits n . d = k |d|^2 / 2 best over all legs d of all stars, 1/m."""
+    count = neighbours.shape[1]
+    d = (vertices[neighbours] - vertices[middles][:, None]).reshape(-1, 3)
+    square = dot(d, d)[:, 0]
+    height = dot(d, np.repeat(normals, count, axis=0))[:, 0]
+    return float(2 * (height * square).sum() / (square * square).sum())

@@ -1,0 +1,117 @@
+"""Straightening: from a principal mesh to an isothermic one to a net of lamellas (paper, Figure 6)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lamella.errors import InputError
+from lamella.projection.constraint import Constraint
+from lamella.projection.constraints.closeness import Closeness
+from lamella.projection.constraints.conformal import Conformal
+from lamella.projection.constraints.edge_alignment import EdgeAlignment
+from lamella.projection.constraints.fairness import fairness
+from lamella.projection.foot_points import DirectedSurface
+from lamella.projection.quad_mesh import QuadMesh, quad_mesh
+from lamella.projection.report import Iteration, Solution
+from lamella.projection.solve import solve
+from lamella.projection.unknowns import Block, Floats
+from lamella.sparse import Backend
+
+# weight of third differences at the start and per iteration
+FAIR, FADE = 0.1, 0.3
+
+
+@dataclass(frozen=True)
+class Straightened:
+    """The three meshes of the paper's Figure 6 but the first, which was given.
+
+    Attributes
+    ----------
+    isothermic : QuadMesh
+        M1: faces as square as they can be, edges along principal directions, vertices on the surface.
+    lamellas : QuadMesh
+        M2: its vertices are the middles of M1's edges, moved onto the surface; its polylines have constant normal
+        curvature.
+    circles : (n,)
+        Radii l_i of the circles about M1's vertices, m.
+    solution : Solution
+        The remainder by constraint: "on the surface", "principal directions", "square faces".
+    """
+
+    isothermic: QuadMesh
+    lamellas: QuadMesh
+    circles: Floats
+    solution: Solution
+
+
+def straighten(
+    mesh: QuadMesh,
+    surface: DirectedSurface,
+    *,
+    iterations: int = 100,
+    tolerance: float = 1e-8,
+    on_iteration: Callable[[Iteration], None] | None = None,
+    backend: Backend | None = None,
+) -> Straightened:
+    """Let a principal mesh slide along principal directions until its faces are squares; join their middles.
+
+    Closeness (1), alignment (2) and conformality (2, less the circle) are four conditions on the three coordinates of
+    a vertex. Symmetric meshes meet them all; on others a remainder stays, small where the edges are, told by
+    constraint.
+
+    Parameters
+    ----------
+    mesh : QuadMesh
+        M0, about along principal directions. Its boundary is free to slide over the surface, which therefore should
+        go on beyond it.
+    surface : DirectedSurface
+        Of constant mean curvature, see `lamella.projection.foot_points.foot_surface`.
+    iterations, tolerance, on_iteration, backend
+        See `solve`.
+
+    Raises
+    ------
+    InputError
+        A mesh of a single face.
+    """
+    if len(mesh.faces) < 2:
+        raise InputError("the mesh has a single face: its middles make no net", "use a larger mesh")
+    edge, everywhere = mesh.mean_edge, np.arange(len(mesh.vertices))
+    hard: list[Constraint] = [
+        Closeness(name="on the surface", index=everywhere, surface=surface, edge=edge),
+        EdgeAlignment(name="principal directions", edges=mesh.edges, surface=surface, edge=edge),
+        Conformal(name="square faces", edges=mesh.edges, edge=edge),
+    ]
+    # half the mean of the edges at each vertex
+    length = np.linalg.norm(np.diff(mesh.vertices[mesh.edges], axis=1)[:, 0], axis=1)
+    total = np.bincount(mesh.edges.ravel(), np.repeat(length, 2), len(mesh.vertices))
+    circles = total / np.maximum(2 * mesh.valence, 1)
+    solution = solve(
+        [Block("vertices", mesh.vertices, edge), Block("circles", circles, edge)],
+        [*hard, *fairness(mesh, 3, weight=FAIR, fade=FADE)],
+        iterations=iterations,
+        tolerance=tolerance,
+        on_iteration=on_iteration,
+        backend=backend,
+    )
+    isothermic = mesh.at(solution.values["vertices"])
+    middles = edge_middles(isothermic)
+    return Straightened(
+        isothermic,
+        middles.at(surface.foot(middles.vertices).position),
+        solution.values["circles"][:, 0],
+        solution,
+    )
+
+
+def edge_middles(mesh: QuadMesh) -> QuadMesh:
+    """The mesh of the middles of all edges: a quad in each face and one around each inner vertex of valence 4.
+
+    Around vertices of another valence the middles form another polygon, which is left open.
+    """
+    around = mesh.edge_of[mesh.spokes(mesh.inner)]
+    faces = np.concatenate([mesh.edge_of.reshape(-1, 4), around])
+    return quad_mesh(mesh.vertices[mesh.edges].mean(1), faces)
