@@ -50,6 +50,10 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
 
     heading = f"# {one_line(project.name)}, all defaults filled in by lamella {__version__}\n"
     put("project.toml", write_whole, (heading + moved(project, results.folder, folder).to_toml()).encode())
+    if results.adjusted:
+        told = f"# {one_line(project.name)}, with the boundary as lamella {__version__} has adjusted it\n"
+        own = project.model_copy(update={"surface": results.adjusted.table})
+        put("adjusted.toml", write_whole, (told + moved(own, results.folder, folder).to_toml()).encode())
     put("surface.obj", write_surface_obj, results.mesh, **signed)
     put("surface.ply", write_surface_ply, results.mesh, **signed)
     if isinstance(results.surface, ElementSurface):
@@ -128,6 +132,8 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
         add("Network", "Cell edge, median", n["cell_edge_median"], "m")
         add("Network", "Cell edge, largest", n["cell_edge_max"], "m")
         add("Network", "Node angle off 90°, largest", n["node_angle_deviation_max_deg"], "°", form=".2g")
+        if "adjustment" in n:
+            add("Network", "Boundary adjusted by, at most", n["adjustment"]["moved_max"], "mm", 1e3, ".3g")
         add("Network", "Normal curvature off H, largest", n["normal_curvature_deviation_max"], "1/m", form=".2g")
     if m:
         add("Lamellas", "Length, one layer", m["total_length"], "m")

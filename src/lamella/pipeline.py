@@ -26,6 +26,7 @@ from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
 
 if TYPE_CHECKING:
+    from lamella.network.adjust import Adjusted
     from lamella.network.element_network import ElementNetwork
 
 STAGES = ("surface", "network", "lamellas", "fabrication", "structure")
@@ -59,6 +60,8 @@ class Results:
         The content of summary.json, without the time spent on files.
     folder : Path
         Where the files the project names were looked for.
+    adjusted : Adjusted or None
+        The boundary as it was changed for a net that closes.
     """
 
     project: Project
@@ -70,6 +73,7 @@ class Results:
     nesting: Nesting | None
     summary: dict[str, Any] = field(repr=False)
     folder: Path = Path()
+    adjusted: Adjusted | None = None
 
 
 class _Clock:
@@ -144,18 +148,52 @@ def plan(
     InputError
     """
     depth = _depth(LAST_STAGE if until is None else until)
-    if depth and project.network.closing == "adjust" and project.surface.kind not in CLOSED_FORMS:
-        raise InputError(
-            f'closing = "adjust" is not part of version {__version__} yet',
-            'write closing = "open" or "round"',
-            "network.closing",
-        )
+    if depth:
+        _refuse_adjusting(project)
     surface = make_surface(project, folder, progress)
     if depth >= STAGES.index("fabrication"):
         _check_fabrication(fill_in(project, surface), surface.mean_curvature)
     if not isinstance(surface, ClosedForm):
         return surface, None
     return surface, choose_density(surface, cells=project.network.cells, spacing=project.network.spacing)
+
+
+def _refuse_adjusting(project: Project) -> None:
+    """Say where `closing = "adjust"` cannot work, before anything is looked for."""
+    if project.network.closing != "adjust":
+        return
+    if project.surface.kind == "mesh":
+        raise InputError(
+            'closing = "adjust" changes boundary curves, and a mesh has none',
+            'write closing = "open" or "round", or find the surface from curves (kind = "form-found")',
+            "network.closing",
+        )
+    if project.surface.kind == "form-found" and project.surface.volume is not None:
+        raise InputError(
+            'closing = "adjust" looks among surfaces of given mean curvature, and a volume is given',
+            "give mean_curvature instead of volume (an earlier run's summary.json tells it)",
+            "surface.volume",
+        )
+
+
+def _planned(
+    project: Project, until: str | None, folder: Path, progress: Progress
+) -> tuple[Surface[Any], Density | None, Adjusted | None]:
+    """`plan`, with the boundary adjusted where the project asks for it."""
+    table = project.surface
+    depth = _depth(LAST_STAGE if until is None else until)
+    if not depth or project.network.closing != "adjust" or table.kind != "form-found":
+        return *plan(project, until=until, folder=folder, progress=progress), None
+    from lamella.network.adjust import adjust_boundary
+
+    _refuse_adjusting(project)
+    adjusted = adjust_boundary(
+        table, folder, cells=project.network.cells, spacing=project.network.spacing, progress=progress
+    )
+    surface = adjusted.surface
+    if depth >= STAGES.index("fabrication"):
+        _check_fabrication(fill_in(project, surface), surface.mean_curvature)
+    return surface, None, adjusted
 
 
 def fill_in(project: Project, surface: Surface[Any]) -> Project:
@@ -213,7 +251,7 @@ def compute(
     warnings: list[str] = []
 
     clock.start(f"surface: {project.surface.kind}")
-    surface, density = plan(project, until=until, folder=folder, progress=progress)
+    surface, density, adjusted = _planned(project, until, folder, progress)
     project = fill_in(project, surface)
     progress("    sampling the surface for files and pictures")
     mesh = surface.mesh()
@@ -238,9 +276,11 @@ def compute(
             figures["network"] = f = summary.network_summary(network, density.requested)
         else:
             clock.start("network: umbilics, isothermic coordinates, lamellas")
-            woven = _weave(surface, project, progress)
+            woven = _weave(surface, project, adjusted, progress)
             network = woven.network
             figures["network"] = f = summary.network_summary(network, woven.lattice.requested) | woven.describe()
+            if adjusted:
+                figures["network"]["adjustment"] = adjusted.figures
             warnings += woven.warnings()
         clock.stop(
             "network",
@@ -268,23 +308,24 @@ def compute(
     content: dict[str, Any] = {"schema": "lamella/summary/1", "version": __version__, "name": project.name}
     content |= {stage: figures.get(stage) for stage in STAGES}
     content |= {"warnings": warnings, "seconds": clock.seconds}
-    return Results(project, surface, mesh, network, lamellas, parts, nesting, content, folder)
+    return Results(project, surface, mesh, network, lamellas, parts, nesting, content, folder, adjusted)
 
 
-def _weave(surface: Surface[Any], project: Project, progress: Progress) -> ElementNetwork:
+def _weave(surface: Surface[Any], project: Project, adjusted: Adjusted | None, progress: Progress) -> ElementNetwork:
     """The network of a surface of elements."""
     from lamella.network.element_network import element_network
     from lamella.surface.element.surface import ElementSurface
 
     assert isinstance(surface, ElementSurface)
     table = project.network
-    assert table.closing != "adjust"
     boundary = getattr(project.surface, "boundary", ())
     return element_network(
         surface,
         cells=table.cells,
         spacing=table.spacing,
-        closing=table.closing,
+        # what is left of an adjusted net's misses is far below what counts as closed
+        closing="round" if table.closing == "round" else "open",
+        step=adjusted.step if adjusted else None,
         minimum_length=table.minimum_length,
         loop_names=tuple(loop.name for loop in boundary),
         progress=progress,

@@ -333,7 +333,7 @@ class _Search:
     def _tell(self, state: _State, step: float) -> None:
         _, misses = state.misses(step)
         self.progress(
-            f"    {self.steps} steps: misses up to {_worst(misses):.2e} cells, parameters up to "
+            f"  {self.steps} steps: misses up to {_worst(misses):.2e} cells, parameters up to "
             f"{100 * np.abs(state.shares).max(initial=0.0):.0f} % of what they may change"
         )
 

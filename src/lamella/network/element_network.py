@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -147,6 +147,7 @@ def element_network(
     cells: int | None = None,
     spacing: float | None = None,
     closing: Closing = "open",
+    step: float | None = None,
     minimum_length: float = 0.5,
     loop_names: tuple[str, ...] = (),
     progress: Progress = _silent,
@@ -161,6 +162,8 @@ def element_network(
     closing : "open" or "round"
         What is done where shifts are not whole: a seam, or the nearest whole numbers by the smallest change of the
         coordinates.
+    step : float, optional
+        Spacing l0 of the lattice, sqrt(m), instead of the one that follows from cells or spacing.
     loop_names : tuple of str
         Of the boundary loops.
     progress : callable
@@ -181,6 +184,8 @@ def element_network(
     names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
     around = holonomies(iso)
     lattice = choose_lattice(iso, around, umbilics, cells, spacing)
+    if step is not None:
+        lattice = replace(lattice, step=step)
     raw = CellMap.of(iso, lattice.origin, lattice.step)
     near = nearest_whole(iso, raw.shifts, singular_nodes=closing == "round")
     off = np.maximum(np.abs((raw.shifts - near).real), np.abs((raw.shifts - near).imag))
