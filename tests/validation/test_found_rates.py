@@ -82,16 +82,21 @@ def test_orders_of_position_curvature_and_direction(name: str, order: int) -> No
 
 
 def test_catenoid_of_three_thousand_nodes() -> None:
-    """Issue 3: order 4 on a patch 2 x 2 about the neck, at most 3,000 nodes; the curvature scale there is 0.5 to 1."""
+    """Issue 3: order 4 on a patch 2 x 2 about the neck, at most 3,000 nodes. H is that of files and pictures, from the
+    elements' own second derivatives by projection; inside single elements these are up to three times as far off.
+    """
     patch = CatenoidPatch()
-    film = on_sizes(find_equilibrium(start([patch.rim()], 4)).film, 0.195).film
+    film = on_sizes(find_equilibrium(start([patch.rim()], 4)).film, 0.19).film
     assert film.connectivity.node_count <= 3000
     found = surface(film)
     everywhere = found.at(random_places(film, 20_000))
     assert patch.distance(everywhere.position).max() < 1e-6
     m = len(film.connectivity.elements)
     middles = Places(np.arange(m), np.full((m, 2), 1 / 3))
-    assert np.abs(found.measured_mean_curvature(middles)).max() < 1e-3
+    k1, k2 = everywhere.principal_curvatures
+    scale = np.sqrt(np.mean((k1**2 + k2**2) / 2))
+    assert np.abs(found.smoothed_mean_curvature(random_places(film, 20_000))).max() < 1e-3 * scale
+    assert np.abs(found.measured_mean_curvature(middles)).max() < 1e-3 * scale
     for where in (middles, random_places(film, 20_000)):
         at = found.at(where)
         _, d1, _ = patch.curvatures(*patch.parameters(at.position))

@@ -141,6 +141,12 @@ class ElementSurface:
         """H at n places from positions alone, 1/m, (n,)."""
         return self.measured(where).mean_curvature
 
+    def smoothed_mean_curvature(self, where: Places) -> Floats:
+        """`measured_mean_curvature` as continuous polynomials (L2 projection), 1/m, (n,): the H of files and pictures."""
+        space, values = self._smoothed
+        local = values[space.elements[where.element]][..., 7]
+        return np.asarray(np.einsum("nk,nk->n", space.basis.basis(where.local), local))
+
     def check_places(self) -> Places:
         """Twelve places inside every element."""
         points, _ = triangle_rule(6)
@@ -204,9 +210,8 @@ class ElementSurface:
     def subdivided(self, parts: int, rim_sag: float = np.inf) -> SurfaceMesh:
         """Every element's edges cut into `parts`, those on the rim finer where their sag (m) asks for it."""
         place, faces = sampled_places(self.connectivity, self.nodes, parts, rim_sag)
-        space, values = self._smoothed
         at = self.at(place)
-        measured = np.einsum("nk,nk->n", space.basis.basis(place.local), values[space.elements[place.element]][..., 7])
+        measured = self.smoothed_mean_curvature(place)
         k1, k2 = at.principal_curvatures
         return SurfaceMesh(
             at.position,
