@@ -11,6 +11,10 @@ from scipy.special import ellipk
 from conftest import EXAMPLES, run_of_example
 from lamella import Places, Unduloid
 from lamella.files.network_json import network_bytes
+from lamella.network.gluing import integrate
+from lamella.network.holonomy import around_vertex, holonomies
+from lamella.network.net_mesh import make_net_mesh
+from lamella.network.network import SINGULAR
 from lamella.surface.boundary import boundary_loops
 from lamella.surface.element.geometry import normal_and_area, tangents
 from lamella.surface.element.quadrature import triangle_rule
@@ -281,6 +285,36 @@ def _hall(results):
     return results.surface.mean_curvature, 1 / 8
 
 
+def _gridshell(results):
+    """Both hexagonal nodes lie on one principal line, half the period around the oculus apart (DESIGN section 4).
+
+    The boundary moved by less than it was allowed, by the distance of the curves themselves.
+    """
+    umbilics = results.surface.umbilics
+    assert umbilics.orders.tolist() == [1, 1]
+    mesh = make_net_mesh(results.surface, umbilics)
+    iso = integrate(mesh, mesh.umbilics)
+    shifts = np.array([piece.shift for piece in iso.transitions])
+    places = [around_vertex(mesh, iso.transitions, iso.across, zero)[1] @ shifts / 2 for zero in mesh.umbilics]
+    (around,) = holonomies(iso)
+    along = around.shift / abs(around.shift)
+    apart = (places[1] - places[0]) / along
+    cell = abs(around.shift) / results.network.cells
+    assert abs(apart.imag) < 1e-3 * cell
+    assert (results.network.node_kinds == SINGULAR).sum() == 2
+    figures = results.summary["network"]["adjustment"]
+    assert figures["missed_before"] > 0.1
+    assert figures["missed_after"] < 1e-3
+    before = boundary_loops(results.project.surface, EXAMPLES)
+    after = boundary_loops(results.adjusted.table, EXAMPLES)
+    t = np.arange(1500) / 1500
+    for old, new in zip(before, after, strict=True):
+        far = np.linalg.norm(old.at(t)[:, None] - new.at(t)[None, ::10], axis=2).min(0).max()
+        assert far == pytest.approx(figures["moved"][old.name], rel=0.02)
+        assert 0.001 < far < 0.3
+    return 2 * abs(apart.real) / cell, results.network.cells
+
+
 NUMBERS = {
     "01_unduloid": (_delaunay, 1e-12),
     "02_nodoid": (_nodoid, 1e-9),
@@ -300,6 +334,7 @@ NUMBERS = {
     "15_vault": (_vault, 1e-5),
     # a coarse mesh whose vertices are off by a millimetre
     "16_hall": (_hall, 0.005),
+    "17_gridshell": (_gridshell, 1e-4),
 }
 
 
@@ -322,9 +357,10 @@ WARNINGS = {
     "06_scherk": [SPLIT],
     "09_thin_neck": [r"the surface is unstable as a film .*a soap film would leave it; a stiff lamella net does not"],
     "11_cap": [r"the run ends with the surface: it is a piece of a sphere of radius .*, and has no net of lamellas"],
-    "12_cushion": [SEAMS, MISSED, LEFT_OUT, BEYOND],
+    "12_cushion": [SEAMS, MISSED, LEFT_OUT, BEYOND, SPLIT],
     "14_three_columns": [SEAMS, MISSED, LEFT_OUT, BEYOND],
     "16_hall": [LEFT_OUT, SPLIT],
+    "17_gridshell": [BEYOND],
 }
 # three umbilics of the cushion and six of the canopy lie anywhere: their nets have seams
 OPEN = {"12_cushion", "14_three_columns"}

@@ -385,21 +385,28 @@ def test_without_until_spheres_and_planes_end_with_the_surface_and_say_why(
     assert not (tmp_path / "out" / "p" / "network.json").exists()
 
 
-def test_found_surfaces_do_not_adjust_their_boundary_yet(
+def test_only_curves_of_given_mean_curvature_are_adjusted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
     project = film(ring(0.0), ring(1.6), network={"cells": 10, "closing": "adjust"})
-    with pytest.raises(InputError, match=r"adjust.*not part of version") as refused:
+    project = project.model_copy(
+        update={"surface": project.surface.model_copy(update={"volume": 3.0, "mean_curvature": None})}
+    )
+    with pytest.raises(InputError, match="a volume is given") as refused:
         compute(project)
-    assert refused.value.where == "network.closing"
-    assert refused.value.remedy == 'write closing = "open" or "round"'
+    assert refused.value.where == "surface.volume"
     (tmp_path / "p.toml").write_text(project.to_toml(), encoding="utf-8")
     assert main(["run", "p.toml", "--quiet"]) == 2
-    assert "network.closing" in capsys.readouterr().err
+    assert "surface.volume" in capsys.readouterr().err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["p.toml"]
     # the surface alone has nothing to close
-    assert compute(project, until="surface").network is None
+    held = film(ring(0.0), ring(1.6), network={"cells": 10, "closing": "adjust"})
+    assert compute(held, until="surface").network is None
+    mesh = parse_project({"surface": {"kind": "mesh", "file": "m.obj"}, "network": {"closing": "adjust"}})
+    with pytest.raises(InputError, match="a mesh has none") as refused:
+        compute(mesh)
+    assert refused.value.where == "network.closing"
 
 
 def test_found_surfaces_on_the_command_line(

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 import tomli_w
 from pydantic import Field, field_validator, model_validator
 
-from lamella.project_boundary import ArcTable, BoundaryTable, CircleTable, PartTable, SlideTable
+from lamella.project_boundary import AdjustTable, ArcTable, BoundaryTable, CircleTable, PartTable, SlideTable
 from lamella.project_surface import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
 from lamella.project_values import LEAST_LENGTH, Range, Refusal, Table, length, number, read_points, two_numbers
 from lamella.strip.material import MATERIALS, Material, find_material
@@ -16,6 +16,7 @@ __all__ = [
     "LEAST_LENGTH",
     "MATERIALS",
     "SURFACE_TABLES",
+    "AdjustTable",
     "ArcTable",
     "BoundaryTable",
     "CircleTable",

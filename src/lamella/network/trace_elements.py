@@ -33,6 +33,8 @@ Integers = NDArray[np.int64]
 
 # samples to either side over which a lamella turns by its geodesic curvature: the kinks at elements average out
 WIDE = 3
+# samples a segment, however short: next to the rim curvatures are read from the last of them
+FEWEST = 3
 # the speed along a lamella has a kink at every element's edge: so many points of a segment's series do, and at most
 ROUGH, SETTLE = 1e-6, 48
 
@@ -175,7 +177,7 @@ def trace_elements(
 
     per_cell = FINE if len(stops.kinds) <= FINE_LIMIT else COARSE
     whole = np.minimum(np.bincount(chain, reach, chains), 1.0)[chain]
-    number = np.maximum(np.ceil(reach / whole * per_cell - 1e-6), 1).astype(np.int64)
+    number = np.maximum(np.ceil(reach / whole * per_cell - 1e-6), FEWEST).astype(np.int64)
     last = np.r_[chain[1:] != chain[:-1], True]
     given = number + last
     segment = np.repeat(np.arange(len(number)), given)

@@ -142,7 +142,7 @@ class ElementSurface:
         return self.measured(where).mean_curvature
 
     def smoothed_mean_curvature(self, where: Places) -> Floats:
-        """`measured_mean_curvature` as continuous polynomials (L2 projection), 1/m, (n,): the H of files and pictures."""
+        """`measured_mean_curvature` by L2 projection on continuous polynomials, 1/m, (n,): H of files and pictures."""
         space, values = self._smoothed
         local = values[space.elements[where.element]][..., 7]
         return np.asarray(np.einsum("nk,nk->n", space.basis.basis(where.local), local))
