@@ -86,8 +86,7 @@ class ElementSegments:
         beside = np.where((zeros[:, 0] >= 0) & (sigma < BESIDE), BESIDE, sigma)
         beside = np.where((zeros[:, 1] >= 0) & (sigma > 1 - BESIDE), 1 - BESIDE, beside)
         places, way = self._find(segment, beside)
-        position, first, second = self._cells.tangents(places)
-        _, chi_x, chi_y = self._cells.jet(places)
+        (_, chi_x, chi_y), (position, first, second) = self._cells.jet_and_tangents(places)
         determinant = chi_x.real * chi_y.imag - chi_x.imag * chi_y.real
         is_a = self._tracks.family[self.owner[segment]] == A
         step = np.where(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,12 +35,12 @@ class Tracks:
     local_end: Floats
     element: Integers
 
-    @property
+    @cached_property
     def first(self) -> Integers:
         """First link of each chain."""
         return np.searchsorted(self.owner, np.arange(len(self.family)))
 
-    @property
+    @cached_property
     def last(self) -> Integers:
         """Last link of each chain."""
         return np.searchsorted(self.owner, np.arange(len(self.family)), side="right") - 1

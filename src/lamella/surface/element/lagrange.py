@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +16,9 @@ from lamella.surface.points import Floats
 
 EDGES = ((0, 1), (1, 2), (2, 0))
 """Corners of the local edges."""
+
+# numbers an array has that is worked on at a time
+CACHED = 40_000
 
 
 @dataclass(frozen=True)
@@ -57,18 +59,63 @@ class Lagrange:
         x, y = (local[:, axis, None] ** np.arange(self.order + 1) for axis in (0, 1))
         return np.asarray((x[:, powers[:, 0]] * y[:, powers[:, 1]] * factor) @ self._coefficients)
 
-    def coefficients(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Coefficients of the monomials x^i y^j, (m, k, ...), of polynomials with nodal values (m, k, ...)."""
-        return np.asarray(np.moveaxis(np.tensordot(self._coefficients, values, (1, 1)), 0, 1))
+    def coefficients(self, values: Floats) -> Floats:
+        """Coefficients (k, c, m) of the monomials x^i y^j, of c polynomials an element with nodal values (m, k, c)."""
+        return np.ascontiguousarray(np.tensordot(self._coefficients, values, (1, 1)).transpose(0, 2, 1))
 
-    def monomials(self, local: Floats) -> tuple[Floats, Floats, Floats]:
-        """x^i y^j and their derivatives by x and y at local coordinates (n, 2), each (n, k)."""
-        i, j = self._exponents.T
-        x, y = np.ones((2, self.order + 1, len(local)))
-        for power in range(1, self.order + 1):
-            x[power], y[power] = x[power - 1] * local[:, 0], y[power - 1] * local[:, 1]
-        by_x, by_y = np.maximum(i - 1, 0), np.maximum(j - 1, 0)
-        return (x[i] * y[j]).T, (i[:, None] * x[by_x] * y[j]).T, (j[:, None] * x[i] * y[by_y]).T
+    def jet(self, coefficients: Floats, element: NDArray[np.int64], local: Floats) -> Floats:
+        """Values and derivatives by x and y of polynomials of elements at places, (3, c, n).
+
+        Parameters
+        ----------
+        coefficients : (k, c, m)
+            See `coefficients`.
+        element : (n,) int
+        local : (n, 2)
+        """
+        return self._in_portions(coefficients, element, local, 3)
+
+    def values(self, coefficients: Floats, element: NDArray[np.int64], local: Floats) -> Floats:
+        """Values of polynomials of elements at places, (c, n), see `jet`."""
+        return np.asarray(self._in_portions(coefficients, element, local, 1)[0])
+
+    def _in_portions(self, coefficients: Floats, element: NDArray[np.int64], local: Floats, parts: int) -> Floats:
+        result = np.empty((parts, coefficients.shape[1], len(element)))
+        # as many places at a time as stay in the processor's cache
+        portion = max(CACHED // coefficients.shape[1], 1)
+        for begin in range(0, len(element), portion):
+            here = slice(begin, begin + portion)
+            x, y = np.ascontiguousarray(local[here].T)
+            self._horner(coefficients, element[here], x, y, result[:, :, here])
+        return result
+
+    def _horner(
+        self, coefficients: Floats, element: NDArray[np.int64], x: Floats, y: Floats, result: Floats
+    ) -> None:
+        """sum_j y^j (sum_i c_ij x^i), and its derivatives where `result` has room for them, by Horner's scheme."""
+        value, *derivatives = np.zeros((len(result), coefficients.shape[1], len(x)))
+        end = len(coefficients)
+        for j in range(self.order, -1, -1):
+            top, end = end - 1, end - (self.order + 1 - j)
+            row = coefficients[top].take(element, 1)
+            slope = np.zeros_like(row) if derivatives else row
+            for term in range(top - 1, end - 1, -1):
+                if derivatives:
+                    slope *= x
+                    slope += row
+                row *= x
+                row += coefficients[term].take(element, 1)
+            if derivatives:
+                by_x, by_y = derivatives
+                by_x *= y
+                by_x += slope
+                by_y *= y
+                by_y += value
+            value *= y
+            value += row
+        result[0] = value
+        if derivatives:
+            result[1], result[2] = derivatives
 
     def second_jet(self, local: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         """Values and derivatives x, y, xx, xy, yy of the basis at local coordinates (n, 2), each (n, k)."""
