@@ -77,8 +77,8 @@ class ElementSurface:
         return harmonic_normals(self.connectivity, self.nodes)
 
     @cached_property
-    def _polynomials(self) -> Floats:
-        """Coefficients of the position, (k, 3, m)."""
+    def polynomials(self) -> Floats:
+        """Coefficients of the position of each element, m, (k, 3, m), see `Lagrange.coefficients`."""
         return self.connectivity.basis.coefficients(self._corners)
 
     @cached_property
@@ -150,7 +150,7 @@ class ElementSurface:
 
     def frames(self, where: Places) -> ElementFrames:
         """Position and frame at n places."""
-        jet = self.connectivity.basis.jet(self._polynomials, where.element, where.local)
+        jet = self.connectivity.basis.jet(self.polynomials, where.element, where.local)
         position, first, second = np.ascontiguousarray(jet.transpose(0, 2, 1))
         return frames(position, first, second)
 
