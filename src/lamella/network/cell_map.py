@@ -83,6 +83,10 @@ class CellMap:
         jet = self.mesh.connectivity.basis.jet(self._both, where.element, where.local)
         return jet[:, 0] + 1j * jet[:, 1], jet[:, 2:].transpose(0, 2, 1)
 
+    def positions(self, where: Places) -> Floats:
+        """m, (n, 3)."""
+        return self.mesh.connectivity.basis.values(self._both[:, 2:], where.element, where.local).T
+
     def tangents(self, where: Places) -> tuple[Floats, Floats, Floats]:
         """Position and its derivatives by both local coordinates, m, (n, 3) each."""
         position, first, second = self.jet_and_tangents(where)[1]

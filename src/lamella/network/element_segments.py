@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import beta, betainc
+from scipy.special import beta, betainc, betaincinv
 
 from lamella.network.cell_map import CellMap
-from lamella.network.tracks import A, Tracks
+from lamella.network.tracks import A, Tracks, passages
 from lamella.surface.element.places import Places
 from lamella.surface.points import Floats
 
@@ -59,7 +59,7 @@ class ElementSegments:
         self._cells, self._tracks = cells, tracks
         self.owner, self._tau, self._reach, self._zeros = chain, tau, reach, zeros
         self._power = np.where(zeros >= 0, 1 + np.r_[orders, 0][zeros] / 2, 1.0)
-        self._stride = float(tracks.tau.max() + tracks.span.max() + 2)
+        self._stride = 2 * float(tracks.tau.max() + tracks.span.max() + 2)
         self._keys = tracks.owner * self._stride + tracks.tau
 
     def _find(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats]:
@@ -107,10 +107,17 @@ class ElementSegments:
             position[moved] = self._cells.tangents(exact)[0]
         return places, position, velocity
 
-    def speed(self, segment: Integers, sigma: Floats) -> Floats:
-        """Arc length per sigma, m, at parameters (p,) of segments (s,), shape (s, p)."""
-        _, _, velocity = self.velocity(np.repeat(segment, len(sigma)), np.tile(sigma, len(segment)))
-        return np.asarray(np.linalg.norm(velocity, axis=1)).reshape(len(segment), len(sigma))
+    def passages(self) -> tuple[Integers, Floats]:
+        """Segments and parameters where they go over from one element to the next, each (k,)."""
+        chain, tau = passages(self._cells, self._tracks)
+        starts = self.owner * self._stride + self._tau
+        segment = np.searchsorted(starts, chain * self._stride + tau, side="right") - 1
+        share = (tau - self._tau[segment]) / self._reach[segment]
+        inside = (segment >= 0) & (self.owner[segment] == chain) & (share > 0) & (share < 1)
+        segment, sigma = segment[inside], share[inside]
+        bent = np.flatnonzero((self._power[segment] != 1).any(1))
+        sigma[bent] = betaincinv(*self._power[segment[bent]].T, sigma[bent])
+        return segment, sigma
 
     def lead_out(self, segment: Integers, sigma: Floats, points: Floats, tangents: Floats) -> tuple[Floats, Floats]:
         """Points and directions (k, 3), those next to singular nodes from the node and points a little further out.

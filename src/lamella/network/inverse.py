@@ -19,7 +19,7 @@ MOST_STEPS, MOST_HOPS = 40, 20
 # of the wanted values; nearer is there
 FINE = 1e-12
 # local coordinates: the step after one as small as this is rounding, since the steps' sizes are squared
-SMALL = 1e-7
+SMALL = 1e-6
 # values this near are there as well when the steps have run out
 NEAR = 1e-9
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.errors import InputError
-from lamella.network.arcs import ArcLengths
 from lamella.network.cell_map import CellMap
+from lamella.network.element_arcs import ElementArcs
 from lamella.network.element_segments import ElementSegments
 from lamella.network.faces import trace_faces
 from lamella.network.lattice import ragged_ranges
@@ -32,8 +32,6 @@ Integers = NDArray[np.int64]
 
 # samples to either side over which a lamella turns by its geodesic curvature: the kinks at elements average out
 WIDE = 3
-# the speed along a lamella has a kink at every element's edge: so many points of a segment's series do, and at most
-ROUGH, SETTLE = 1e-6, 48
 
 
 @dataclass(frozen=True)
@@ -147,11 +145,8 @@ def trace_elements(
     chains = len(tracks.family)
     singular = singular_ends(cells, tracks)
     tips = rim_tips(cells, tracks)
-    rough = np.linalg.norm(
-        cells.tangents(Places(tracks.element, tracks.local_end))[0]
-        - cells.tangents(Places(tracks.element, tracks.local_start))[0],
-        axis=1,
-    )
+    ends = (cells.positions(Places(tracks.element, local)) for local in (tracks.local_start, tracks.local_end))
+    rough = np.linalg.norm(np.subtract(*ends), axis=1)
     length = np.bincount(tracks.owner, rough, chains)
     alive = np.ones(chains, bool)
     median = np.median(np.repeat(rough / np.maximum(tracks.span, 1e-12), 1)) if len(rough) else 0.0
@@ -170,7 +165,7 @@ def trace_elements(
     ends = np.r_[stops.chain[1:] != stops.chain[:-1], True][pair + 1]
     zeros = np.where(np.stack([begins, ends], 1), singular[chain], -1)
     segments = ElementSegments(cells, tracks, chain, stops.tau[pair], reach, zeros, orders)
-    arcs = ArcLengths(segments, ROUGH, SETTLE)
+    arcs = ElementArcs(segments)
 
     per_cell = FINE if len(stops.kinds) <= FINE_LIMIT else COARSE
     whole = np.minimum(np.bincount(chain, reach, chains), 1.0)[chain]
