@@ -40,6 +40,12 @@ def packed(blocks: Floats) -> Floats:
     return np.asarray(blocks[:, i, j])
 
 
+def _counted(keys: Integers, count: int) -> Integers:
+    """Order of whole numbers below `count`, equal ones as they come: by counting, faster than any comparison."""
+    n = len(keys)
+    return np.asarray(sp.csr_matrix((np.arange(n), keys, np.arange(n + 1)), (n, count)).tocsc().data)
+
+
 class SingularError(ArithmeticError):
     """The matrix has no inverse to working precision."""
 
@@ -133,24 +139,28 @@ class SymmetricPattern:
         kept = np.flatnonzero((one >= 0) & (other >= 0))
         size = count + border
         low, high = np.minimum(one, other)[kept], np.maximum(one, other)[kept]
-        keys = low * size + high
         rows = np.arange(count, size)
-        border_keys = np.arange(size) * size + rows[:, None]
-        below = rows[:, None] >= np.arange(size)
+        border_low, border_high = np.tile(np.arange(size), border), np.repeat(rows, size)
+        below = border_high >= border_low
         # the whole diagonal is there, whatever the elements
-        unique, inverse = np.unique(
-            np.concatenate([np.arange(size) * (size + 1), keys, border_keys[below]]), return_inverse=True
-        )
-        columns = np.searchsorted(unique, np.arange(size + 1) * size)
+        low = np.concatenate([np.arange(size), low, border_low[below]])
+        high = np.concatenate([np.arange(size), high, border_high[below]])
+        order = _counted(high, size)
+        order = order[_counted(low[order], size)]
+        low, high = low[order], high[order]
+        first = np.r_[True, (low[1:] != low[:-1]) | (high[1:] != high[:-1])]
+        inverse = np.empty(len(order), np.int64)
+        inverse[order] = np.cumsum(first) - 1
+        columns = np.searchsorted(low[first], np.arange(size + 1))
         border_target = np.full((border, size), -1)
-        border_target[below] = inverse[size + len(keys) :]
+        border_target[below.reshape(border, size)] = inverse[size + len(kept) :]
         return cls(
             size,
             columns,
-            unique % size,
+            high[first],
             border,
             backend or default_backend(),
-            inverse[size : size + len(keys)],
+            inverse[size : size + len(kept)],
             kept,
             border_target,
         )
