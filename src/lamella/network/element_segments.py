@@ -58,7 +58,9 @@ class ElementSegments:
     ) -> None:
         self._cells, self._tracks = cells, tracks
         self.owner, self._tau, self._reach, self._zeros = chain, tau, reach, zeros
+        self._is_a = tracks.family[chain] == A
         self._power = np.where(zeros >= 0, 1 + np.r_[orders, 0][zeros] / 2, 1.0)
+        self._bent = (self._power != 1).any(1)
         self._stride = 2 * float(tracks.tau.max() + tracks.span.max() + 2)
         self._keys = tracks.owner * self._stride + tracks.tau
 
@@ -66,7 +68,7 @@ class ElementSegments:
         """Places of parameters (k,) of segments (k,), and which way the chain's coordinate runs on their sheets."""
         t, chain = self._tracks, self.owner[segment]
         share = np.clip(sigma, 0, 1)
-        bent = np.flatnonzero((self._power[segment] != 1).any(1))
+        bent = np.flatnonzero(self._bent[segment])
         share[bent] = betainc(*self._power[segment[bent]].T, share[bent])
         tau = self._tau[segment] + share * self._reach[segment]
         link = np.searchsorted(self._keys, chain * self._stride + np.clip(tau, 0, self._stride - 1), side="right") - 1
@@ -75,7 +77,7 @@ class ElementSegments:
         along = np.clip(ahead / np.maximum(t.span[link], 1e-300), 0, 1)
         local = t.local_start[link] + along[:, None] * (t.local_end[link] - t.local_start[link])
         other = t.start[link] + ahead * t.way[link]
-        target = np.where(t.family[chain] == A, other + 1j * t.level[link], t.level[link] + 1j * other)
+        target = np.where(self._is_a[segment], other + 1j * t.level[link], t.level[link] + 1j * other)
         places, turn, _ = self._cells.invert(Places(t.element[link], local), target)
         return places, turn * t.way[link]
 
@@ -88,16 +90,16 @@ class ElementSegments:
         places, way = self._find(segment, beside)
         (_, chi_x, chi_y), (position, first, second) = self._cells.jet_and_tangents(places)
         determinant = chi_x.real * chi_y.imag - chi_x.imag * chi_y.real
-        is_a = self._tracks.family[self.owner[segment]] == A
+        is_a = self._is_a[segment]
         step = np.where(
             is_a[:, None],
             np.stack([chi_y.imag, -chi_x.imag], 1),
             np.stack([-chi_y.real, chi_x.real], 1),
         )
         rate = way * self._reach[segment] / determinant
-        p, q = self._power[segment].T
-        bent = np.flatnonzero((p != 1) | (q != 1))
-        rate[bent] *= beside[bent] ** (p[bent] - 1) * (1 - beside[bent]) ** (q[bent] - 1) / beta(p[bent], q[bent])
+        bent = np.flatnonzero(self._bent[segment])
+        p, q = self._power[segment[bent]].T
+        rate[bent] *= beside[bent] ** (p - 1) * (1 - beside[bent]) ** (q - 1) / beta(p, q)
         velocity = (step[:, :1] * first + step[:, 1:] * second) * rate[:, None]
         moved = beside != sigma
         if moved.any():
@@ -115,7 +117,7 @@ class ElementSegments:
         share = (tau - self._tau[segment]) / self._reach[segment]
         inside = (segment >= 0) & (self.owner[segment] == chain) & (share > 0) & (share < 1)
         segment, sigma = segment[inside], share[inside]
-        bent = np.flatnonzero((self._power[segment] != 1).any(1))
+        bent = np.flatnonzero(self._bent[segment])
         sigma[bent] = betaincinv(*self._power[segment[bent]].T, sigma[bent])
         return segment, sigma
 

@@ -47,13 +47,20 @@ def find_places(
     found : (n,) bool
         Whether the place was reached; else it is the starting one.
     """
+    count = len(start)
+    result, found = Places(start.element.copy(), start.local.copy()), np.zeros(count, bool)
+    # those not yet found, one column each
+    active, hops = np.arange(count), np.zeros(count, np.int64)
     element, local = start.element.copy(), np.array(start.local.T)
-    found = np.zeros(len(element), bool)
-    hops = np.zeros(len(element), np.int64)
-    active = np.arange(len(element))
+
+    def settle(index: Integers, at: Integers, place: Floats) -> None:
+        inside = np.minimum(np.minimum(place[0], place[1]), 1 - place[0] - place[1]) > -1e-6
+        if not inside.all():
+            index, at, place = index[inside], at[inside], place[:, inside]
+        found[index], result.element[index], result.local[index] = True, at, place.T
+
     for _ in range(MOST_STEPS):
-        at, here = element[active], local[:, active]
-        value, by_x, by_y = connectivity.basis.jet(coefficients, at, here.T)
+        value, by_x, by_y = connectivity.basis.jet(coefficients, element, local.T)
         miss = target[:, active] - value
         there = np.maximum(np.abs(miss[0]), np.abs(miss[1])) < FINE
         determinant = by_x[0] * by_y[1] - by_x[1] * by_y[0]
@@ -61,33 +68,30 @@ def find_places(
         step /= np.where(np.abs(determinant) < 1e-300, 1.0, determinant)
         size = np.maximum(np.abs(step[0]), np.abs(step[1]))
         step *= np.where(there, 0.0, np.minimum(1, 0.5 / np.maximum(size, 1e-300)))
-        moved = here + step
+        moved = local + step
         third = 1 - moved[0] - moved[1]
+        done = there | (size < SMALL)
+        local = np.clip(moved, -0.3, 1.3)
         # beyond an edge by more than rounding: go on in the neighbour
         beyond = np.flatnonzero((np.minimum(np.minimum(moved[0], moved[1]), third) < -1e-9) & ~there)
-        done = there | (size < SMALL)
-        local[:, active] = np.clip(moved, -0.3, 1.3)
         if len(beyond):
             barycentric = np.stack([third[beyond], *moved[:, beyond]])
             edge = (barycentric.argmin(0) + 1) % 3
-            goes = (connectivity.neighbours[at[beyond], edge] >= 0) & (hops[active[beyond]] < MOST_HOPS)
+            goes = (connectivity.neighbours[element[beyond], edge] >= 0) & (hops[active[beyond]] < MOST_HOPS)
             beyond, edge, barycentric = beyond[goes], edge[goes], barycentric[:, goes]
-            leaving = active[beyond]
-            cross(leaving, at[beyond], edge)
-            element[leaving], local[:, leaving] = _entered(connectivity, at[beyond], edge, barycentric)
-            hops[leaving] += 1
+            cross(active[beyond], element[beyond], edge)
+            element[beyond], local[:, beyond] = _entered(connectivity, element[beyond], edge, barycentric)
+            hops[active[beyond]] += 1
             done[beyond] = False
-        found[active[done]] = True
-        active = active[~done]
+        settle(active[done], element[done], local[:, done])
+        left = ~done
+        active, element, local = active[left], element[left], local[:, left]
         if not len(active):
-            break
-    if len(active):
-        value = connectivity.basis.values(coefficients, element[active], local[:, active].T)
-        found[active] = (np.abs(target[:, active] - value) < NEAR).all(0)
-    found &= np.minimum(np.minimum(local[0], local[1]), 1 - local[0] - local[1]) > -1e-6
-    lost = ~found
-    element[lost], local[:, lost] = start.element[lost], start.local[lost].T
-    return Places(element, np.ascontiguousarray(local.T)), found
+            return result, found
+    value = connectivity.basis.values(coefficients, element, local.T)
+    near = (np.abs(target[:, active] - value) < NEAR).all(0)
+    settle(active[near], element[near], local[:, near])
+    return result, found
 
 
 def _entered(

@@ -51,20 +51,27 @@ def project_onto_nodes(
     inverse_diagonal = 1 / matrix.diagonal()[:, None]
     solution = right * inverse_diagonal
     residual = right - matrix @ solution
-    direction = conditioned = inverse_diagonal * residual
-    product = (residual * conditioned).sum(0)
-    goal = tolerance**2 * (right**2 * inverse_diagonal).sum(0)
+    conditioned = inverse_diagonal * residual
+    direction = conditioned.copy()
+    product = _dots(residual, conditioned)
+    goal = tolerance**2 * _dots(right, right * inverse_diagonal)
     for _ in range(500):
         if (product <= goal).all():
             break
         image = matrix @ direction
-        step = product / np.maximum((direction * image).sum(0), 1e-300)
-        solution = solution + step * direction
-        residual = residual - step * image
-        conditioned = inverse_diagonal * residual
-        product, before = (residual * conditioned).sum(0), product
-        direction = conditioned + product / np.maximum(before, 1e-300) * direction
+        step = product / np.maximum(_dots(direction, image), 1e-300)
+        solution += step * direction
+        residual -= step * image
+        np.multiply(residual, inverse_diagonal, out=conditioned)
+        product, before = _dots(residual, conditioned), product
+        direction *= product / np.maximum(before, 1e-300)
+        direction += conditioned
     return np.asarray(solution)
+
+
+def _dots(one: Floats, other: Floats) -> Floats:
+    """Products of the columns of two tables (n, c), (c,)."""
+    return np.asarray(np.einsum("nc,nc->c", one, other))
 
 
 def smooth_normals(connectivity: Connectivity, nodes: Floats) -> Floats:
