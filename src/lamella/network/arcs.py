@@ -97,9 +97,7 @@ class ArcLengths:
         The cells stretch so much that no series reaches full accuracy.
     """
 
-    def __init__(
-        self, segments: Pieces, tail: float = TAIL, settle: int = 10**9, points: int = POINTS
-    ) -> None:
+    def __init__(self, segments: Pieces, tail: float = TAIL, settle: int = 10**9, points: int = POINTS) -> None:
         count = len(segments.owner)
         self.length = np.empty(count)
         self._series: list[tuple[Floats, Floats]] = []

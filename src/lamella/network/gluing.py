@@ -48,9 +48,7 @@ def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
     shifts = _best(gram, right, list(relations.values()), np.zeros(len(relations), complex))
     value = base + np.einsum("t,tek->ek", shifts, moves)
     transitions = _shifted(pieces, shifts)
-    return Isothermic(
-        mesh, odd, sign, cut, value, transitions, across, moves, gram, system.residual(value), system
-    )
+    return Isothermic(mesh, odd, sign, cut, value, transitions, across, moves, gram, system.residual(value), system)
 
 
 def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:

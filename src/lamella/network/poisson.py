@@ -167,10 +167,10 @@ def _frames(mesh: NetMesh, local: Floats) -> tuple[Complexes, Complexes, tuple[F
 
     # in the frame e_u along a, e_v: b = f / sqrt(e) e_u + area / sqrt(e) e_v
     s_a, s_b = image(a), image(b)
-    l, m, n = ((s * t).sum(0) for s, t in ((s_a, a), (s_a, b), (s_b, b)))
-    uu = l / e
-    uv = (m - f * uu) / area
-    vv = (e * n - 2 * f * m + f * f * uu) / area**2
+    aa, ab, bb = ((s * t).sum(0) for s, t in ((s_a, a), (s_a, b), (s_b, b)))
+    uu = aa / e
+    uv = (ab - f * uu) / area
+    vv = (e * bb - 2 * f * ab + f * f * uu) / area**2
     along = np.sqrt(e) + 0j
     other = (f + 1j * area) / np.sqrt(e)
     return along, other, (e, f, g), (uu - vv) / 2 - 1j * uv

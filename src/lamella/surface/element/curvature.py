@@ -57,16 +57,21 @@ class ElementPoints:
 def frames(position: Floats, first: Floats, second: Floats) -> ElementFrames:
     """Frames at points (n, 3) with tangent vectors (n, 3) along the local coordinates."""
     cross = np.cross(first, second)
-    area = np.sqrt((cross * cross).sum(1))
+    area = np.sqrt(_dots(cross, cross))
     normal = cross / area[:, None]
-    length = np.sqrt((first * first).sum(1))
+    length = np.sqrt(_dots(first, first))
     e_u = first / length[:, None]
     e_v = np.cross(normal, e_u)
     # first = length e_u, second = skew e_u + height e_v
-    skew, height = (second * e_u).sum(1), area / length
+    skew, height = _dots(second, e_u), area / length
     to_local = np.zeros((len(position), 2, 2))
     to_local[:, 0, 0], to_local[:, 0, 1], to_local[:, 1, 1] = 1 / length, -skew / length / height, 1 / height
     return ElementFrames(position, normal, e_u, e_v, to_local)
+
+
+def _dots(one: Floats, other: Floats) -> Floats:
+    """Products of rows (n, 3), (n,)."""
+    return np.asarray(np.einsum("nc,nc->n", one, other))
 
 
 def element_points(connectivity: Connectivity, corners: Floats, local: Floats, paired: bool) -> ElementPoints:
