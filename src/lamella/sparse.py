@@ -36,8 +36,9 @@ def default_backend() -> Backend:
 
 def packed(blocks: Floats) -> Floats:
     """Lower triangles of symmetric blocks (e, k, k), row by row, (e, k (k + 1) / 2)."""
-    i, j = np.tril_indices(blocks.shape[1])
-    return np.asarray(blocks[:, i, j])
+    k = blocks.shape[1]
+    i, j = np.tril_indices(k)
+    return np.asarray(blocks.reshape(len(blocks), -1).take(k * i + j, 1))
 
 
 def _counted(keys: Integers, count: int) -> Integers:
@@ -135,7 +136,7 @@ class SymmetricPattern:
             Default: `default_backend`.
         """
         first, second = np.tril_indices(unknowns.shape[1])
-        one, other = unknowns[:, first].ravel(), unknowns[:, second].ravel()
+        one, other = unknowns.take(first, 1).ravel(), unknowns.take(second, 1).ravel()
         kept = np.flatnonzero((one >= 0) & (other >= 0))
         size = count + border
         low, high = np.minimum(one, other)[kept], np.maximum(one, other)[kept]
@@ -148,7 +149,8 @@ class SymmetricPattern:
         order = _counted(high, size)
         order = order[_counted(low[order], size)]
         low, high = low[order], high[order]
-        first = np.r_[True, (low[1:] != low[:-1]) | (high[1:] != high[:-1])]
+        first = np.ones(len(order), bool)
+        first[1:] = (low[1:] != low[:-1]) | (high[1:] != high[:-1])
         inverse = np.empty(len(order), np.int64)
         inverse[order] = np.cumsum(first) - 1
         columns = np.searchsorted(low[first], np.arange(size + 1))

@@ -75,7 +75,8 @@ class ElementSegments:
         link = np.clip(link, t.first[chain], t.last[chain])
         ahead = tau - t.tau[link]
         along = np.clip(ahead / np.maximum(t.span[link], 1e-300), 0, 1)
-        local = t.local_start[link] + along[:, None] * (t.local_end[link] - t.local_start[link])
+        begin = t.local_start.take(link, 0)
+        local = begin + along[:, None] * (t.local_end.take(link, 0) - begin)
         other = t.start[link] + ahead * t.way[link]
         target = np.where(self._is_a[segment], other + 1j * t.level[link], t.level[link] + 1j * other)
         places, turn, _ = self._cells.invert(Places(t.element[link], local), target)

@@ -61,7 +61,7 @@ def find_places(
 
     for _ in range(MOST_STEPS):
         value, by_x, by_y = connectivity.basis.jet(coefficients, element, local.T)
-        miss = target[:, active] - value
+        miss = target.take(active, 1) - value
         there = np.maximum(np.abs(miss[0]), np.abs(miss[1])) < FINE
         determinant = by_x[0] * by_y[1] - by_x[1] * by_y[0]
         step = np.stack([miss[0] * by_y[1] - miss[1] * by_y[0], by_x[0] * miss[1] - by_x[1] * miss[0]])
@@ -83,9 +83,9 @@ def find_places(
             element[beyond], local[:, beyond] = _entered(connectivity, element[beyond], edge, barycentric)
             hops[active[beyond]] += 1
             done[beyond] = False
-        settle(active[done], element[done], local[:, done])
-        left = ~done
-        active, element, local = active[left], element[left], local[:, left]
+        settled, left = np.flatnonzero(done), np.flatnonzero(~done)
+        settle(active[settled], element[settled], local.take(settled, 1))
+        active, element, local = active[left], element[left], local.take(left, 1)
         if not len(active):
             return result, found
     value = connectivity.basis.values(coefficients, element, local.T)

@@ -166,7 +166,7 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     value, other = (small.chi.imag, small.chi.real) if family == 0 else (small.chi.real, small.chi.imag)
     # corners by value, as numbers of all triangles' corners one after the other
     by_value = 3 * np.arange(len(small.corners))[:, None] + _ranks(value[small.corners])
-    low, middle, high = value[small.corners.ravel()[by_value]].T
+    low, middle, high = value.take(small.corners.ravel().take(by_value.T))
     first, last = np.ceil(low).astype(np.int64), np.floor(high).astype(np.int64)
     count = np.maximum(last - first + 1, 0)
     triangle = np.repeat(np.arange(len(count)), count)
@@ -177,9 +177,10 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     at_corner = level == middle[triangle]
     below = level < middle[triangle]
     # ends of each link: the long edge, and the short one on the level's side
-    at_long = by_value[triangle][:, [0, 2]]
-    at_short = by_value[triangle[:, None], np.where(below[:, None], [0, 1], [1, 2])]
-    long_edge, short_edge = (small.corners.ravel()[at] for at in (at_long, at_short))
+    mine = by_value.take(triangle, 0)
+    at_long = mine[:, [0, 2]]
+    at_short = np.where(below[:, None], mine[:, :2], mine[:, 1:])
+    long_edge, short_edge = (small.corners.ravel().take(at) for at in (at_long, at_short))
     points = len(small.chi)
 
     def key(edge: Integers) -> Integers:
@@ -243,7 +244,7 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     for at, edge in ((at_long[use], long_edge[use]), (at_short[use], short_edge[use])):
         share = (level - value[edge[:, 0]]) / (value[edge[:, 1]] - value[edge[:, 0]])
         t = other[edge[:, 0]] + share * (other[edge[:, 1]] - other[edge[:, 0]])
-        first, second = (small.local.reshape(-1, 2)[at[:, side]] for side in range(2))
+        first, second = (small.local.reshape(-1, 2).take(at[:, side], 0) for side in range(2))
         ends.append((t, first + share[:, None] * (second - first)))
     (t_long, p_long), (t_short, p_short) = ends
     start, end = np.where(way, t_long, t_short), np.where(way, t_short, t_long)

@@ -179,10 +179,10 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
 
 def _positions(parts: Parts, surface: ElementSurface) -> Floats:
     """Nodes of order `ORDER` of every part, (m, k, 3)."""
-    basis = lagrange(ORDER)
-    where = parts.places(np.arange(len(parts.parent)), basis.nodes)
-    table = surface.connectivity.basis.basis(where.local).reshape(len(parts.parent), len(basis.nodes), -1)
-    return np.asarray(np.matmul(table, surface.nodes[surface.connectivity.elements[parts.parent]]))
+    nodes = lagrange(ORDER).nodes
+    where = parts.places(np.arange(len(parts.parent)), nodes)
+    position = surface.connectivity.basis.values(surface.polynomials, where.element, where.local)
+    return np.ascontiguousarray(position.T).reshape(len(parts.parent), len(nodes), 3)
 
 
 def _radii(surface: ElementSurface, umbilics: Umbilics, to_rim: Floats) -> Floats:
