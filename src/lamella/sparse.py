@@ -41,12 +41,6 @@ def packed(blocks: Floats) -> Floats:
     return np.asarray(blocks.reshape(len(blocks), -1).take(k * i + j, 1))
 
 
-def _counted(keys: Integers, count: int) -> Integers:
-    """Order of whole numbers below `count`, equal ones as they come: by counting, faster than any comparison."""
-    n = len(keys)
-    return np.asarray(sp.csr_matrix((np.arange(n), keys, np.arange(n + 1)), (n, count)).tocsc().data)
-
-
 class SingularError(ArithmeticError):
     """The matrix has no inverse to working precision."""
 
@@ -136,33 +130,28 @@ class SymmetricPattern:
             Default: `default_backend`.
         """
         first, second = np.tril_indices(unknowns.shape[1])
-        one, other = unknowns.take(first, 1).ravel(), unknowns.take(second, 1).ravel()
+        one, other = unknowns[:, first].ravel(), unknowns[:, second].ravel()
         kept = np.flatnonzero((one >= 0) & (other >= 0))
         size = count + border
         low, high = np.minimum(one, other)[kept], np.maximum(one, other)[kept]
+        keys = low * size + high
         rows = np.arange(count, size)
-        border_low, border_high = np.tile(np.arange(size), border), np.repeat(rows, size)
-        below = border_high >= border_low
+        border_keys = np.arange(size) * size + rows[:, None]
+        below = rows[:, None] >= np.arange(size)
         # the whole diagonal is there, whatever the elements
-        low = np.concatenate([np.arange(size), low, border_low[below]])
-        high = np.concatenate([np.arange(size), high, border_high[below]])
-        order = _counted(high, size)
-        order = order[_counted(low[order], size)]
-        low, high = low[order], high[order]
-        first = np.ones(len(order), bool)
-        first[1:] = (low[1:] != low[:-1]) | (high[1:] != high[:-1])
-        inverse = np.empty(len(order), np.int64)
-        inverse[order] = np.cumsum(first) - 1
-        columns = np.searchsorted(low[first], np.arange(size + 1))
+        unique, inverse = np.unique(
+            np.concatenate([np.arange(size) * (size + 1), keys, border_keys[below]]), return_inverse=True
+        )
+        columns = np.searchsorted(unique, np.arange(size + 1) * size)
         border_target = np.full((border, size), -1)
-        border_target[below.reshape(border, size)] = inverse[size + len(kept) :]
+        border_target[below] = inverse[size + len(keys) :]
         return cls(
             size,
             columns,
-            high[first],
+            unique % size,
             border,
             backend or default_backend(),
-            inverse[size : size + len(kept)],
+            inverse[size : size + len(keys)],
             kept,
             border_target,
         )

@@ -40,7 +40,8 @@ def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
     """
     sign, cut, turns = root_signs(mesh, cut_edges(mesh, odd))
     pieces, across = cut_pieces(mesh, cut, turns, odd)
-    system = Poisson.of(mesh, sign)
+    plain = Poisson.of(mesh, sign)
+    system = plain.weighted()
     sector = sectors(mesh.connectivity, cut)
     base, moves = system.solve(sector, *_links(mesh, pieces, sector))
     gram, right = system.quadratic(base, moves)
@@ -48,7 +49,7 @@ def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
     shifts = _best(gram, right, list(relations.values()), np.zeros(len(relations), complex))
     value = base + np.einsum("t,tek->ek", shifts, moves)
     transitions = _shifted(pieces, shifts)
-    return Isothermic(mesh, odd, sign, cut, value, transitions, across, moves, gram, system.residual(value), system)
+    return Isothermic(mesh, odd, sign, cut, value, transitions, across, moves, gram, plain.residual(value), plain)
 
 
 def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
@@ -76,12 +77,12 @@ def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
     change = _best(iso.gram, np.zeros(len(before), complex), rows, goal)
     change[given] = shifts[given] - before[given]
     value = iso.value + np.einsum("t,tek->ek", change, iso.moves)
-    folds = iso.system.folds(value) & ~iso.system.folds(iso.value)
+    folds = iso.plain.folds(value) & ~iso.plain.folds(iso.value)
     if folds.any():
         raise FoldedError(mesh.nodes[mesh.connectivity.elements[np.flatnonzero(folds)[0], 0]])
     found = before + change
     found[given] = shifts[given]
-    return replace(iso, value=value, transitions=_shifted(iso.transitions, found), residual=iso.system.residual(value))
+    return replace(iso, value=value, transitions=_shifted(iso.transitions, found), residual=iso.plain.residual(value))
 
 
 def _shifted(pieces: tuple[Transition, ...], shifts: Complexes) -> tuple[Transition, ...]:

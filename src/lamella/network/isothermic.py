@@ -74,8 +74,8 @@ class Isothermic:
     residual : float
         Root mean square of |dw - sqrt(D) dz| over that of |sqrt(D) dz|: how far the surface is from constant mean
         curvature.
-    system : Poisson
-        What w was fitted to.
+    plain : Poisson
+        What w was fitted to, not weighted.
     """
 
     mesh: NetMesh
@@ -88,7 +88,7 @@ class Isothermic:
     moves: Floats
     gram: Floats
     residual: float
-    system: Poisson
+    plain: Poisson
 
 
 # middles of the local edges and the edges' directions in local coordinates

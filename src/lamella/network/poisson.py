@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -19,11 +19,7 @@ Integers = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Poisson:
-    """The least squares problem of fitting dw to the forms with the weight 1 / |D|^2, element by element.
-
-    A plain least squares fit leaves a harmonic error, like r^(1/2) next to a zero of order 1, where w itself goes
-    like r^(3/2): however small, it would take half of its rays from a singular node. With the weight what the forms
-    are not closed by stays away from umbilics: the error dies out faster than w at zeros of any order.
+    """The least squares problem of fitting dw to the forms, element by element.
 
     Attributes
     ----------
@@ -31,9 +27,7 @@ class Poisson:
         The forms along both local coordinates at integration points.
     metric : tuple of (m, q)
     area : (m, q)
-        Area element over the points' weights.
-    weighted : (m, q)
-        The same times |D|^2 over its mean.
+        Area element over the points' weights, and over the fit's weight.
     x, y : (q, k)
         Derivatives of the basis.
     """
@@ -42,35 +36,43 @@ class Poisson:
     form_b: Complexes
     metric: tuple[Floats, Floats, Floats]
     area: Floats
-    weighted: Floats
     x: Floats
     y: Floats
 
     @classmethod
     def of(cls, mesh: NetMesh, sign: Integers) -> Poisson:
-        """The problem on a mesh with signs (m,) of the roots."""
+        """The problem on a mesh with signs (m,) of the roots, not weighted."""
         basis = mesh.connectivity.basis
         points, weights = triangle_rule(2 * basis.order)
         form_a, form_b, (e, f, g) = _forms(mesh, points)
         form_a, form_b = form_a * sign[:, None], form_b * sign[:, None]
         x, y = basis.basis(points, 1, 0), basis.basis(points, 0, 1)
-        determinant = e * g - f * f
+        area = np.sqrt(np.maximum(e * g - f * f, 1e-12 * e * g)) / weights
+        return cls(form_a, form_b, (e, f, g), area, x, y)
+
+    def weighted(self) -> Poisson:
+        """The same fit with the weight 1 / |D|^2: what the forms are not closed by stays away from umbilics.
+
+        A plain least squares fit leaves a harmonic error, like r^(1/2) next to a zero of order 1, where w itself goes
+        like r^(3/2): however small, it would take half of its rays from a singular node. With the weight the error dies
+        out faster than w at zeros of any order.
+        """
+        e, f, g = self.metric
+        a, b = self.form_a, self.form_b
+        square = (g * _square(a) - 2 * f * (a * b.conj()).real + e * _square(b)) / (e * g - f * f)
         # |sqrt(D) dz|^2 is 2 |D|
-        square = g * _square(form_a) - 2 * f * (form_a * form_b.conj()).real + e * _square(form_b)
-        square /= determinant
-        area = np.sqrt(np.maximum(determinant, 1e-12 * e * g)) / weights
-        return cls(form_a, form_b, (e, f, g), area, area * (square / square.mean()) ** 2, x, y)
+        return replace(self, area=self.area * (square / square.mean()) ** 2)
 
     @cached_property
     def blocks(self) -> Floats:
         """Matrices of the elements, (m, k, k)."""
-        return weighted_dirichlet_blocks(self.x, self.y, self.metric, self.weighted)
+        return weighted_dirichlet_blocks(self.x, self.y, self.metric, self.area)
 
     @cached_property
     def pull(self) -> Complexes:
         """Right sides of the elements, (m, k)."""
         e, f, g = self.metric
-        a, b = self.form_a / self.weighted, self.form_b / self.weighted
+        a, b = self.form_a / self.area, self.form_b / self.area
         return np.asarray((g * a - f * b) @ self.x + (e * b - f * a) @ self.y)
 
     def solve(
