@@ -37,8 +37,9 @@ def default_backend() -> Backend:
 
 def packed(blocks: Floats) -> Floats:
     """Lower triangles of symmetric blocks (e, k, k), row by row, (e, k (k + 1) / 2)."""
-    i, j = np.tril_indices(blocks.shape[1])
-    return np.asarray(blocks[:, i, j])
+    k = blocks.shape[1]
+    i, j = np.tril_indices(k)
+    return np.asarray(blocks.reshape(len(blocks), -1).take(k * i + j, 1))
 
 
 class SingularError(ArithmeticError):

@@ -83,6 +83,8 @@ class ArcLengths:
         Share of the speed's series that its last two terms may have.
     settle : int
         Points a segment at which any series is taken: where the speed is not smooth enough for more to tell more.
+    points : int
+        Points a segment to begin with.
 
     Attributes
     ----------
@@ -95,12 +97,12 @@ class ArcLengths:
         The cells stretch so much that no series reaches full accuracy.
     """
 
-    def __init__(self, segments: Pieces, tail: float = TAIL, settle: int = 10**9) -> None:
+    def __init__(self, segments: Pieces, tail: float = TAIL, settle: int = 10**9, points: int = POINTS) -> None:
         count = len(segments.owner)
         self.length = np.empty(count)
         self._series: list[tuple[Floats, Floats]] = []
         self._group, self._member = np.zeros(count, np.int64), np.zeros(count, np.int64)
-        left, points = np.arange(count), POINTS
+        left = np.arange(count)
         while len(left):
             if points > MOST_POINTS:
                 raise InputError(

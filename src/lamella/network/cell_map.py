@@ -12,16 +12,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.network.inverse import find_places
 from lamella.network.isothermic import Isothermic
 from lamella.network.net_mesh import NetMesh
 from lamella.surface.element.places import Places
 from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
-
-MOST_STEPS = 40
-# cells; Newton's steps for a place of given chi end below it
-FINE = 1e-12
 
 
 @dataclass(frozen=True)
@@ -65,30 +62,34 @@ class CellMap:
         )
 
     @cached_property
-    def _chi(self) -> Complexes:
-        """Coefficients of chi, (m, k)."""
-        return np.asarray(self.mesh.connectivity.basis.coefficients(self.value))
+    def _chi(self) -> Floats:
+        """Coefficients of both parts of chi, (k, 2, m)."""
+        return self.mesh.connectivity.basis.coefficients(np.stack([self.value.real, self.value.imag], 2))
 
     @cached_property
-    def _position(self) -> Floats:
-        """Coefficients of the position, (m, k, 3)."""
-        corners = self.mesh.nodes[self.mesh.connectivity.elements]
-        return np.asarray(self.mesh.connectivity.basis.coefficients(corners))
+    def _both(self) -> Floats:
+        """Coefficients of both parts of chi and of the position, (k, 5, m)."""
+        basis = self.mesh.connectivity.basis
+        return np.concatenate([self._chi, basis.coefficients(self.mesh.nodes[self.mesh.connectivity.elements])], 1)
 
     def jet(self, where: Places) -> tuple[Complexes, Complexes, Complexes]:
         """chi at places, each on its element's own sheet, and its derivatives by both local coordinates, (n,)."""
-        chi = self._chi[where.element]
-        value, first, second = (
-            np.einsum("nk,nk->n", table, chi) for table in self.mesh.connectivity.basis.monomials(where.local)
-        )
+        jet = self.mesh.connectivity.basis.jet(self._chi, where.element, where.local)
+        value, first, second = jet[:, 0] + 1j * jet[:, 1]
         return value, first, second
+
+    def jet_and_tangents(self, where: Places) -> tuple[Complexes, Floats]:
+        """chi and its derivatives by both local coordinates, (3, n), and the position and its, m, (3, n, 3)."""
+        jet = self.mesh.connectivity.basis.jet(self._both, where.element, where.local)
+        return jet[:, 0] + 1j * jet[:, 1], jet[:, 2:].transpose(0, 2, 1)
+
+    def positions(self, where: Places) -> Floats:
+        """m, (n, 3)."""
+        return self.mesh.connectivity.basis.values(self._both[:, 2:], where.element, where.local).T
 
     def tangents(self, where: Places) -> tuple[Floats, Floats, Floats]:
         """Position and its derivatives by both local coordinates, m, (n, 3) each."""
-        corners = self._position[where.element]
-        position, first, second = (
-            np.einsum("nk,nkc->nc", table, corners) for table in self.mesh.connectivity.basis.monomials(where.local)
-        )
+        position, first, second = self.jet_and_tangents(where)[1]
         return position, first, second
 
     def invert(self, start: Places, chi: Complexes) -> tuple[Places, Floats, NDArray[np.bool_]]:
@@ -109,70 +110,20 @@ class CellMap:
         found : (n,) bool
             Whether the place was reached; else it is the starting one.
         """
-        element, local, target = start.element.copy(), start.local.copy(), chi.copy()
-        found = np.zeros(len(element), bool)
-        hops, turn = np.zeros(len(element), int), np.ones(len(element))
-        active = np.arange(len(element))
-        for _ in range(MOST_STEPS):
-            here = Places(element[active], local[active])
-            value, first, second = self.jet(here)
-            miss = target[active] - value
-            determinant = first.real * second.imag - first.imag * second.real
-            safe = np.where(np.abs(determinant) < 1e-300, 1.0, determinant)
-            step = np.stack(
-                [miss.real * second.imag - miss.imag * second.real, first.real * miss.imag - first.imag * miss.real], 1
-            )
-            step /= safe[:, None]
-            step *= np.minimum(1, 0.5 / np.maximum(np.abs(step).max(1), 1e-300))[:, None]
-            moved = local[active] + step
-            done = np.abs(miss) < FINE
-            barycentric = np.column_stack([1 - moved.sum(1), moved])
-            # beyond an edge by more than rounding: go on in the neighbour
-            lowest = barycentric.argmin(1)
-            edge = (lowest + 1) % 3
-            across = self.mesh.connectivity.neighbours[element[active], edge]
-            leaves = (barycentric.min(1) < -1e-9) & (across >= 0) & ~done & (hops[active] < 20)
-            stays = ~leaves & ~done
-            local[active[stays]] = np.clip(moved[stays], -0.3, 1.3)
-            if leaves.any():
-                self._hop(active[leaves], edge[leaves], barycentric[leaves], element, local, target, turn)
-                hops[active[leaves]] += 1
-            found[active[done]] = True
-            active = active[~done]
-            if not len(active):
-                break
-        close = np.abs(target - self.jet(Places(element, local))[0]) < 1e-9
-        barycentric = np.column_stack([1 - local.sum(1), local])
-        found |= close
-        found &= barycentric.min(1) > -1e-6
-        element = np.where(found, element, start.element)
-        local = np.where(found[:, None], local, start.local)
-        return Places(element, local), np.where(found, turn, 1.0), found
+        target, turn = np.stack([chi.real, chi.imag]), np.ones(len(chi))
 
-    def _hop(
-        self,
-        index: Integers,
-        edge: Integers,
-        barycentric: Floats,
-        element: Integers,
-        local: Floats,
-        target: Complexes,
-        turn: Floats,
-    ) -> None:
-        """Carry some points over an edge, with their targets."""
-        connectivity = self.mesh.connectivity
-        own = element[index]
-        rows = np.arange(len(index))
-        through = self.across[own, edge]
-        piece = np.abs(through) - 1
-        crossing = through != 0
-        sign = np.where(crossing, self.signs[piece] if len(self.signs) else 1, 1)
-        shift = np.where(crossing, self.shifts[piece] if len(self.signs) else 0, 0)
-        target[index] = np.where(through >= 0, sign * target[index] + shift, sign * (target[index] - shift))
-        turn[index] *= sign
-        other = connectivity.neighbour_edges[own, edge]
-        share = np.clip(barycentric[rows, (edge + 1) % 3], 0, 1)
-        entered = np.zeros((len(index), 3))
-        entered[rows, other], entered[rows, (other + 1) % 3] = share, 1 - share
-        element[index] = connectivity.neighbours[own, edge]
-        local[index] = entered[:, 1:]
+        def cross(index: Integers, element: Integers, edge: Integers) -> None:
+            through = self.across[element, edge]
+            passed = np.flatnonzero(through)
+            if not len(passed):
+                return
+            index, through = index[passed], through[passed]
+            piece = np.abs(through) - 1
+            sign, shift = self.signs[piece], self.shifts[piece]
+            before = target[0, index] + 1j * target[1, index]
+            after = np.where(through > 0, sign * before + shift, sign * (before - shift))
+            target[0, index], target[1, index] = after.real, after.imag
+            turn[index] *= sign
+
+        places, found = find_places(self.mesh.connectivity, self._chi, start, target, cross)
+        return places, np.where(found, turn, 1.0), found

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import beta, betainc
+from scipy.special import beta, betainc, betaincinv
 
 from lamella.network.cell_map import CellMap
-from lamella.network.tracks import A, Tracks
+from lamella.network.tracks import A, Tracks, passages
 from lamella.surface.element.places import Places
 from lamella.surface.points import Floats
 
@@ -58,24 +58,27 @@ class ElementSegments:
     ) -> None:
         self._cells, self._tracks = cells, tracks
         self.owner, self._tau, self._reach, self._zeros = chain, tau, reach, zeros
+        self._is_a = tracks.family[chain] == A
         self._power = np.where(zeros >= 0, 1 + np.r_[orders, 0][zeros] / 2, 1.0)
-        self._stride = float(tracks.tau.max() + tracks.span.max() + 2)
+        self._bent = (self._power != 1).any(1)
+        self._stride = 2 * float(tracks.tau.max() + tracks.span.max() + 2)
         self._keys = tracks.owner * self._stride + tracks.tau
 
     def _find(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats]:
         """Places of parameters (k,) of segments (k,), and which way the chain's coordinate runs on their sheets."""
         t, chain = self._tracks, self.owner[segment]
         share = np.clip(sigma, 0, 1)
-        bent = np.flatnonzero((self._power[segment] != 1).any(1))
+        bent = np.flatnonzero(self._bent[segment])
         share[bent] = betainc(*self._power[segment[bent]].T, share[bent])
         tau = self._tau[segment] + share * self._reach[segment]
         link = np.searchsorted(self._keys, chain * self._stride + np.clip(tau, 0, self._stride - 1), side="right") - 1
         link = np.clip(link, t.first[chain], t.last[chain])
         ahead = tau - t.tau[link]
         along = np.clip(ahead / np.maximum(t.span[link], 1e-300), 0, 1)
-        local = t.local_start[link] + along[:, None] * (t.local_end[link] - t.local_start[link])
+        begin = t.local_start.take(link, 0)
+        local = begin + along[:, None] * (t.local_end.take(link, 0) - begin)
         other = t.start[link] + ahead * t.way[link]
-        target = np.where(t.family[chain] == A, other + 1j * t.level[link], t.level[link] + 1j * other)
+        target = np.where(self._is_a[segment], other + 1j * t.level[link], t.level[link] + 1j * other)
         places, turn, _ = self._cells.invert(Places(t.element[link], local), target)
         return places, turn * t.way[link]
 
@@ -86,19 +89,18 @@ class ElementSegments:
         beside = np.where((zeros[:, 0] >= 0) & (sigma < BESIDE), BESIDE, sigma)
         beside = np.where((zeros[:, 1] >= 0) & (sigma > 1 - BESIDE), 1 - BESIDE, beside)
         places, way = self._find(segment, beside)
-        position, first, second = self._cells.tangents(places)
-        _, chi_x, chi_y = self._cells.jet(places)
+        (_, chi_x, chi_y), (position, first, second) = self._cells.jet_and_tangents(places)
         determinant = chi_x.real * chi_y.imag - chi_x.imag * chi_y.real
-        is_a = self._tracks.family[self.owner[segment]] == A
+        is_a = self._is_a[segment]
         step = np.where(
             is_a[:, None],
             np.stack([chi_y.imag, -chi_x.imag], 1),
             np.stack([-chi_y.real, chi_x.real], 1),
         )
         rate = way * self._reach[segment] / determinant
-        p, q = self._power[segment].T
-        bent = np.flatnonzero((p != 1) | (q != 1))
-        rate[bent] *= beside[bent] ** (p[bent] - 1) * (1 - beside[bent]) ** (q[bent] - 1) / beta(p[bent], q[bent])
+        bent = np.flatnonzero(self._bent[segment])
+        p, q = self._power[segment[bent]].T
+        rate[bent] *= beside[bent] ** (p - 1) * (1 - beside[bent]) ** (q - 1) / beta(p, q)
         velocity = (step[:, :1] * first + step[:, 1:] * second) * rate[:, None]
         moved = beside != sigma
         if moved.any():
@@ -108,10 +110,17 @@ class ElementSegments:
             position[moved] = self._cells.tangents(exact)[0]
         return places, position, velocity
 
-    def speed(self, segment: Integers, sigma: Floats) -> Floats:
-        """Arc length per sigma, m, at parameters (p,) of segments (s,), shape (s, p)."""
-        _, _, velocity = self.velocity(np.repeat(segment, len(sigma)), np.tile(sigma, len(segment)))
-        return np.asarray(np.linalg.norm(velocity, axis=1)).reshape(len(segment), len(sigma))
+    def passages(self) -> tuple[Integers, Floats]:
+        """Segments and parameters where they go over from one element to the next, each (k,)."""
+        chain, tau = passages(self._cells, self._tracks)
+        starts = self.owner * self._stride + self._tau
+        segment = np.searchsorted(starts, chain * self._stride + tau, side="right") - 1
+        share = (tau - self._tau[segment]) / self._reach[segment]
+        inside = (segment >= 0) & (self.owner[segment] == chain) & (share > 0) & (share < 1)
+        segment, sigma = segment[inside], share[inside]
+        bent = np.flatnonzero(self._bent[segment])
+        sigma[bent] = betaincinv(*self._power[segment[bent]].T, sigma[bent])
+        return segment, sigma
 
     def lead_out(self, segment: Integers, sigma: Floats, points: Floats, tangents: Floats) -> tuple[Floats, Floats]:
         """Points and directions (k, 3), those next to singular nodes from the node and points a little further out.

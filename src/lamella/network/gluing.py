@@ -48,7 +48,8 @@ def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
     relations = vertex_relations(mesh, pieces, across, odd)
     shifts = best_shifts(gram, right, list(relations.values()), np.zeros(len(relations), complex))
     value = base + np.einsum("t,tek->ek", shifts, moves)
-    return Isothermic(mesh, odd, sign, cut, value, _shifted(pieces, shifts), across, moves, gram, plain.residual(value))
+    transitions = _shifted(pieces, shifts)
+    return Isothermic(mesh, odd, sign, cut, value, transitions, across, moves, gram, plain.residual(value), plain)
 
 
 def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
@@ -76,13 +77,12 @@ def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
     change = best_shifts(iso.gram, np.zeros(len(before), complex), rows, goal)
     change[given] = shifts[given] - before[given]
     value = iso.value + np.einsum("t,tek->ek", change, iso.moves)
-    system = Poisson.of(mesh, iso.sign)
-    folds = system.folds(value) & ~system.folds(iso.value)
+    folds = iso.plain.folds(value) & ~iso.plain.folds(iso.value)
     if folds.any():
         raise FoldedError(mesh.nodes[mesh.connectivity.elements[np.flatnonzero(folds)[0], 0]])
     found = before + change
     found[given] = shifts[given]
-    return replace(iso, value=value, transitions=_shifted(iso.transitions, found), residual=system.residual(value))
+    return replace(iso, value=value, transitions=_shifted(iso.transitions, found), residual=iso.plain.residual(value))
 
 
 def _shifted(pieces: tuple[Transition, ...], shifts: Complexes) -> tuple[Transition, ...]:

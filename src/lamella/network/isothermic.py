@@ -16,7 +16,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
 from lamella.network.net_mesh import NetMesh
-from lamella.network.poisson import deviator_root
+from lamella.network.poisson import Poisson, deviator_root
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.points import Complexes, Floats
 
@@ -74,6 +74,8 @@ class Isothermic:
     residual : float
         Root mean square of |dw - sqrt(D) dz| over that of |sqrt(D) dz|: how far the surface is from constant mean
         curvature.
+    plain : Poisson
+        What w was fitted to, not weighted.
     """
 
     mesh: NetMesh
@@ -86,6 +88,7 @@ class Isothermic:
     moves: Floats
     gram: Floats
     residual: float
+    plain: Poisson
 
 
 # middles of the local edges and the edges' directions in local coordinates

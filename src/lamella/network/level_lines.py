@@ -164,9 +164,9 @@ def whole_shifts(cells: CellMap) -> Complexes:
 def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     """All level lines of a family (0: A, Im chi whole; 1: B, Re chi whole)."""
     value, other = (small.chi.imag, small.chi.real) if family == 0 else (small.chi.real, small.chi.imag)
-    order = np.argsort(value[small.corners], axis=1)
-    rank = np.take_along_axis(small.corners, order, 1)
-    low, middle, high = value[rank].T
+    # corners by value, as numbers of all triangles' corners one after the other
+    by_value = 3 * np.arange(len(small.corners))[:, None] + _ranks(value[small.corners])
+    low, middle, high = value.take(small.corners.ravel().take(by_value.T))
     first, last = np.ceil(low).astype(np.int64), np.floor(high).astype(np.int64)
     count = np.maximum(last - first + 1, 0)
     triangle = np.repeat(np.arange(len(count)), count)
@@ -177,8 +177,10 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     at_corner = level == middle[triangle]
     below = level < middle[triangle]
     # ends of each link: the long edge, and the short one on the level's side
-    long_edge = rank[triangle][:, [0, 2]]
-    short_edge = np.where(below[:, None], rank[triangle][:, [0, 1]], rank[triangle][:, [1, 2]])
+    mine = by_value.take(triangle, 0)
+    at_long = mine[:, [0, 2]]
+    at_short = np.where(below[:, None], mine[:, :2], mine[:, 1:])
+    long_edge, short_edge = (small.corners.ravel().take(at) for at in (at_long, at_short))
     points = len(small.chi)
 
     def key(edge: Integers) -> Integers:
@@ -238,15 +240,12 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     way = forward[use]
     triangle, level = triangle[use], level[use]
     ends = []
-    for edge, at_end in ((long_edge[use], np.zeros(len(use), bool)), (short_edge[use], at_corner[use])):
-        share = np.where(
-            at_end, 0.0, (level - value[edge[:, 0]]) / np.where(at_end, 1, value[edge[:, 1]] - value[edge[:, 0]])
-        )
-        corner = rank[triangle][:, 1]
-        t = np.where(at_end, other[corner], other[edge[:, 0]] + share * (other[edge[:, 1]] - other[edge[:, 0]]))
-        place = _local_of(small, triangle, edge, share)
-        tip = _local_of(small, triangle, np.stack([corner, corner], 1), np.zeros(len(use)))
-        ends.append((t, np.where(at_end[:, None], tip, place)))
+    # a line into a singular corner, the middle one, has it as the short edge's first end
+    for at, edge in ((at_long[use], long_edge[use]), (at_short[use], short_edge[use])):
+        share = (level - value[edge[:, 0]]) / (value[edge[:, 1]] - value[edge[:, 0]])
+        t = other[edge[:, 0]] + share * (other[edge[:, 1]] - other[edge[:, 0]])
+        first, second = (small.local.reshape(-1, 2).take(at[:, side], 0) for side in range(2))
+        ends.append((t, first + share[:, None] * (second - first)))
     (t_long, p_long), (t_short, p_short) = ends
     start, end = np.where(way, t_long, t_short), np.where(way, t_short, t_long)
     local_start = np.where(way[:, None], p_long, p_short)
@@ -267,13 +266,16 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     return Chains(offsets, triangle, level, start, end, local_start, local_end, kinds[chain_rank])
 
 
-def _local_of(small: SmallTriangles, triangle: Integers, edge: Integers, share: Floats) -> Floats:
-    """Local coordinates of points on edges of small triangles."""
-    corners = small.corners[triangle]
-    rows = np.arange(len(triangle))
-    a = small.local[triangle][rows, (corners == edge[:, :1]).argmax(1)]
-    b = small.local[triangle][rows, (corners == edge[:, 1:]).argmax(1)]
-    return np.asarray(a + share[:, None] * (b - a))
+def _ranks(values: Floats) -> Integers:
+    """Columns of three values a row in ascending order, (n, 3)."""
+    a, b, c = values.T
+    # how many of the others go before each: equal ones in the order of the columns
+    place_a = (b < a).astype(np.int64) + (c < a)
+    place_b = (a <= b).astype(np.int64) + (c < b)
+    result = np.empty(values.shape, np.int64)
+    rows = np.arange(len(values))
+    result[rows, place_a], result[rows, place_b], result[rows, 3 - place_a - place_b] = 0, 1, 2
+    return result
 
 
 def _jumps(

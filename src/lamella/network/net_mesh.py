@@ -16,6 +16,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from lamella.network.inverse import find_places
 from lamella.network.rosette import RINGS, Rosette, rosette
 from lamella.surface.element.bisect import Parts, bisect, whole
 from lamella.surface.element.connectivity import Connectivity, connect
@@ -92,17 +93,21 @@ class _TangentPlane:
 
     def up(self, z: Complexes, surface: ElementSurface) -> tuple[Places, Floats]:
         """Places and points (n, 3) of the surface above z (n,)."""
-        foot = self.at.position[0] + z.real[:, None] * self.at.e_u[0] + z.imag[:, None] * self.at.e_v[0]
-        height = np.zeros(len(z))
-        normal = self.at.normal[0]
-        for _ in range(4):
-            places, near = surface.closest(foot + height[:, None] * normal)
-            there = surface.measured(places).normal
-            change = ((near - foot) * there).sum(1) / (there @ normal) - height
-            height += change
-            if np.abs(change).max(initial=0.0) < 1e-12 * np.abs(z).max(initial=1.0):
-                break
-        return surface.closest(foot + height[:, None] * normal)
+        axes = np.stack([self.at.e_u[0], self.at.e_v[0]])
+        coordinates = np.matmul(axes, surface.polynomials)
+        # the first of the coefficients is the constant
+        coordinates[0] -= (axes @ self.at.position[0])[:, None]
+        foot = self.at.position[0] + np.stack([z.real, z.imag], 1) @ axes
+        middles = surface.nodes[surface.connectivity.faces].mean(1)
+        start = Places(cKDTree(middles).query(foot)[1], np.full((len(z), 2), 1 / 3))
+        target = np.stack([z.real, z.imag])
+        places, found = find_places(surface.connectivity, coordinates, start, target, lambda *_: None)
+        lost = np.flatnonzero(~found)
+        if len(lost):
+            # beyond the rim: the nearest place
+            nearest, _ = surface.closest(foot[lost])
+            places.element[lost], places.local[lost] = nearest.element, nearest.local
+        return places, surface.frames(places).position
 
 
 def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
@@ -182,10 +187,10 @@ def shape_entries(surface: ElementSurface, where: Places) -> Floats:
 
 def _positions(parts: Parts, surface: ElementSurface) -> Floats:
     """Nodes of order `ORDER` of every part, (m, k, 3)."""
-    basis = lagrange(ORDER)
-    where = parts.places(np.arange(len(parts.parent)), basis.nodes)
-    table = surface.connectivity.basis.basis(where.local).reshape(len(parts.parent), len(basis.nodes), -1)
-    return np.asarray(np.matmul(table, surface.nodes[surface.connectivity.elements[parts.parent]]))
+    nodes = lagrange(ORDER).nodes
+    where = parts.places(np.arange(len(parts.parent)), nodes)
+    position = surface.connectivity.basis.values(surface.polynomials, where.element, where.local)
+    return np.ascontiguousarray(position.T).reshape(len(parts.parent), len(nodes), 3)
 
 
 def _radii(surface: ElementSurface, umbilics: Umbilics, to_rim: Floats) -> Floats:

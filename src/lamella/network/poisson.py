@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.network.net_mesh import COLUMNS, ROWS, NetMesh
+from lamella.network.net_mesh import NetMesh
 from lamella.sparse import SymmetricPattern, packed
-from lamella.surface.element.geometry import dirichlet_blocks, tangents, weighted_dirichlet_blocks
+from lamella.surface.element.geometry import tangents, weighted_dirichlet_blocks
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.points import Complexes, Floats
 
@@ -18,10 +19,19 @@ Integers = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Poisson:
-    """The least squares problem of fitting dw to the forms, element by element."""
+    """The least squares problem of fitting dw to the forms, element by element.
 
-    blocks: Floats
-    pull: Complexes
+    Attributes
+    ----------
+    form_a, form_b : (m, q) complex
+        The forms along both local coordinates at integration points.
+    metric : tuple of (m, q)
+    area : (m, q)
+        Area element over the points' weights, and over the fit's weight.
+    x, y : (q, k)
+        Derivatives of the basis.
+    """
+
     form_a: Complexes
     form_b: Complexes
     metric: tuple[Floats, Floats, Floats]
@@ -37,10 +47,8 @@ class Poisson:
         form_a, form_b, (e, f, g) = _forms(mesh, points)
         form_a, form_b = form_a * sign[:, None], form_b * sign[:, None]
         x, y = basis.basis(points, 1, 0), basis.basis(points, 0, 1)
-        corners = mesh.nodes[mesh.connectivity.elements]
-        blocks, _, area = dirichlet_blocks(x, y, *tangents(x, y, corners), weights)
-        pull = ((g * form_a - f * form_b) / area) @ x + ((e * form_b - f * form_a) / area) @ y
-        return cls(blocks, pull, form_a, form_b, (e, f, g), area, x, y)
+        area = np.sqrt(np.maximum(e * g - f * f, 1e-12 * e * g)) / weights
+        return cls(form_a, form_b, (e, f, g), area, x, y)
 
     def weighted(self) -> Poisson:
         """The same fit with the weight 1 / |D|^2: what the forms are not closed by stays away from umbilics.
@@ -50,18 +58,26 @@ class Poisson:
         out faster than w at zeros of any order.
         """
         e, f, g = self.metric
-        square = g * np.abs(self.form_a) ** 2 - 2 * f * (self.form_a * self.form_b.conj()).real
-        square = (square + e * np.abs(self.form_b) ** 2) / (e * g - f * f)
+        a, b = self.form_a, self.form_b
+        square = (g * _square(a) - 2 * f * (a * b.conj()).real + e * _square(b)) / (e * g - f * f)
         # |sqrt(D) dz|^2 is 2 |D|
-        area = self.area * (square / square.mean()) ** 2
-        blocks = weighted_dirichlet_blocks(self.x, self.y, self.metric, area)
-        return replace(self, blocks=blocks, pull=replace(self, area=area).pull_of(self.form_a, self.form_b))
+        return replace(self, area=self.area * (square / square.mean()) ** 2)
+
+    @cached_property
+    def blocks(self) -> Floats:
+        """Matrices of the elements, (m, k, k)."""
+        return weighted_dirichlet_blocks(self.x, self.y, self.metric, self.area)
+
+    @cached_property
+    def pull(self) -> Complexes:
+        """Right sides of the elements, (m, k)."""
+        return self.pull_of(self.form_a, self.form_b)
 
     def pull_of(self, form_a: Complexes, form_b: Complexes) -> Complexes:
         """Right sides (m, k) of other forms, (m, q) along both local coordinates."""
         e, f, g = self.metric
-        first, second = (g * form_a - f * form_b) / self.area, (e * form_b - f * form_a) / self.area
-        return np.asarray(first @ self.x + second @ self.y)
+        a, b = form_a / self.area, form_b / self.area
+        return np.asarray((g * a - f * b) @ self.x + (e * b - f * a) @ self.y)
 
     def solve(
         self, sector: Integers, home: Integers, sign: Floats, offset: Floats, held: dict[int, Floats]
@@ -131,7 +147,7 @@ class Poisson:
         e, f, g = self.metric
 
         def energy(one: Complexes, other: Complexes) -> float:
-            density = g * np.abs(one) ** 2 - 2 * f * (one * other.conj()).real + e * np.abs(other) ** 2
+            density = g * _square(one) - 2 * f * (one * other.conj()).real + e * _square(other)
             return float((density / self.area).sum())
 
         miss = energy(value @ self.x.T - self.form_a, value @ self.y.T - self.form_b)
@@ -143,23 +159,32 @@ def _frames(mesh: NetMesh, local: Floats) -> tuple[Complexes, Complexes, tuple[F
     connectivity = mesh.connectivity
     basis = connectivity.basis
     value, x, y = (basis.basis(local, *d) for d in ((0, 0), (1, 0), (0, 1)))
-    corners = mesh.nodes[connectivity.elements]
-    a, b = np.matmul(x, corners), np.matmul(y, corners)
-    e, f, g = (np.einsum("eqc,eqc->eq", s, t) for s, t in ((a, a), (a, b), (b, b)))
-    normal = np.cross(a, b)
-    normal /= np.linalg.norm(normal, axis=2)[..., None]
-    e_u = a / np.sqrt(e)[..., None]
-    e_v = np.cross(normal, e_u)
-    shape = np.matmul(value, mesh.shape[connectivity.elements])
+    a, b = tangents(x, y, mesh.nodes[connectivity.elements])
+    # components first: (3, m, q)
+    a, b = (np.ascontiguousarray(np.moveaxis(t, 2, 0)) for t in (a, b))
+    e, f, g = ((s * t).sum(0) for s, t in ((a, a), (a, b), (b, b)))
+    area = np.sqrt(e * g - f * f)
+    xx, xy, xz, yy, yz, zz = np.moveaxis(np.matmul(value, mesh.shape[connectivity.elements]), 2, 0)
 
-    def form(s: Floats, t: Floats) -> Floats:
-        both = s[..., ROWS] * t[..., COLUMNS] + s[..., COLUMNS] * t[..., ROWS]
-        return np.asarray((shape * both * np.where(ROWS == COLUMNS, 0.5, 1.0)).sum(-1))
+    def image(t: Floats) -> Floats:
+        return np.stack(
+            [xx * t[0] + xy * t[1] + xz * t[2], xy * t[0] + yy * t[1] + yz * t[2], xz * t[0] + yz * t[1] + zz * t[2]]
+        )
 
-    deviator = (form(e_u, e_u) - form(e_v, e_v)) / 2 - 1j * form(e_u, e_v)
+    # in the frame e_u along a, e_v: b = f / sqrt(e) e_u + area / sqrt(e) e_v
+    s_a, s_b = image(a), image(b)
+    aa, ab, bb = ((s * t).sum(0) for s, t in ((s_a, a), (s_a, b), (s_b, b)))
+    uu = aa / e
+    uv = (ab - f * uu) / area
+    vv = (e * bb - 2 * f * ab + f * f * uu) / area**2
     along = np.sqrt(e) + 0j
-    other = (f + 1j * np.sqrt(e * g - f * f)) / np.sqrt(e)
-    return along, other, (e, f, g), deviator
+    other = (f + 1j * area) / np.sqrt(e)
+    return along, other, (e, f, g), (uu - vv) / 2 - 1j * uv
+
+
+def _square(value: Complexes) -> Floats:
+    """|value|^2."""
+    return np.asarray(value.real**2 + value.imag**2)
 
 
 def deviator_root(

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.errors import InputError
-from lamella.network.arcs import ArcLengths
 from lamella.network.cell_map import CellMap
+from lamella.network.element_arcs import ElementArcs
 from lamella.network.element_segments import ElementSegments
 from lamella.network.faces import trace_faces
 from lamella.network.lattice import ragged_ranges
@@ -20,7 +20,6 @@ from lamella.network.level_lines import (
     level_chains,
     small_triangles,
 )
-from lamella.network.net_mesh import COLUMNS, ROWS
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network, Period
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
 from lamella.network.tracks import A, B, Tracks, make_tracks, rim_tips, singular_ends
@@ -35,8 +34,6 @@ Integers = NDArray[np.int64]
 WIDE = 3
 # samples a segment, however short: next to the rim curvatures are read from the last of them
 FEWEST = 3
-# the speed along a lamella has a kink at every element's edge: so many points of a segment's series do, and at most
-ROUGH, SETTLE = 1e-6, 48
 
 
 @dataclass(frozen=True)
@@ -150,11 +147,8 @@ def trace_elements(
     chains = len(tracks.family)
     singular = singular_ends(cells, tracks)
     tips = rim_tips(cells, tracks)
-    rough = np.linalg.norm(
-        cells.tangents(Places(tracks.element, tracks.local_end))[0]
-        - cells.tangents(Places(tracks.element, tracks.local_start))[0],
-        axis=1,
-    )
+    ends = (cells.positions(Places(tracks.element, local)) for local in (tracks.local_start, tracks.local_end))
+    rough = np.linalg.norm(np.subtract(*ends), axis=1)
     length = np.bincount(tracks.owner, rough, chains)
     alive = np.ones(chains, bool)
     median = np.median(np.repeat(rough / np.maximum(tracks.span, 1e-12), 1)) if len(rough) else 0.0
@@ -173,7 +167,7 @@ def trace_elements(
     ends = np.r_[stops.chain[1:] != stops.chain[:-1], True][pair + 1]
     zeros = np.where(np.stack([begins, ends], 1), singular[chain], -1)
     segments = ElementSegments(cells, tracks, chain, stops.tau[pair], reach, zeros, orders)
-    arcs = ArcLengths(segments, ROUGH, SETTLE)
+    arcs = ElementArcs(segments)
 
     per_cell = FINE if len(stops.kinds) <= FINE_LIMIT else COARSE
     whole = np.minimum(np.bincount(chain, reach, chains), 1.0)[chain]
@@ -186,7 +180,7 @@ def trace_elements(
     places, points, velocity = segments.velocity(segment, parameter)
     tangents = velocity / np.linalg.norm(velocity, axis=1)[:, None]
     points, tangents = segments.lead_out(segment, parameter, points, tangents)
-    normals = _normals(cells, places)
+    normals, shape = _normals_and_shape(cells, places)
     tangents -= (tangents * normals).sum(1)[:, None] * normals
     tangents /= np.linalg.norm(tangents, axis=1)[:, None]
 
@@ -206,7 +200,7 @@ def trace_elements(
     stop_sample[first_stop] = segment_start
     stop_sample[first_stop[last] + 1] = (segment_start + number)[last]
     family = tracks.family[used]
-    darboux = _darboux(cells, places, tangents, normals, points, arclengths, offsets)
+    darboux = _darboux(shape, tangents, normals, arclengths, offsets)
 
     nodes, at = np.unique(stop_node, return_inverse=True)
     at = at.ravel()
@@ -256,39 +250,29 @@ def trace_elements(
     )
 
 
-def _normals(cells: CellMap, places: Places) -> Floats:
-    connectivity = cells.mesh.connectivity
-    nodal = cells.mesh.normals[connectivity.elements[places.element]]
-    normal = np.einsum("nk,nkc->nc", connectivity.basis.basis(places.local), nodal)
-    return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])
+def _normals_and_shape(cells: CellMap, places: Places) -> tuple[Floats, Floats]:
+    """Unit normals (n, 3) and entries of the shape operator (n, 6), see `NetMesh.shape`."""
+    mesh = cells.mesh
+    basis = mesh.connectivity.basis
+    nodal = np.column_stack([mesh.normals, mesh.shape])[mesh.connectivity.elements]
+    both = basis.values(basis.coefficients(nodal), places.element, places.local)
+    normal = both[:3] / np.sqrt((both[:3] ** 2).sum(0))
+    return np.ascontiguousarray(normal.T), both[3:].T
 
 
-def _darboux(
-    cells: CellMap,
-    places: Places,
-    tangents: Floats,
-    normals: Floats,
-    points: Floats,
-    arclengths: Floats,
-    offsets: Integers,
-) -> Darboux:
+def _darboux(shape: Floats, tangents: Floats, normals: Floats, arclengths: Floats, offsets: Integers) -> Darboux:
     """kn and tg from the surface's shape operator along the curve; kg from the curve's own turning."""
-    connectivity = cells.mesh.connectivity
-    shape = np.einsum(
-        "nk,nkc->nc", connectivity.basis.basis(places.local), cells.mesh.shape[connectivity.elements[places.element]]
-    )
     sideways = np.cross(normals, tangents)
-
-    def form(s: Floats, t: Floats) -> Floats:
-        both = s[:, ROWS] * t[:, COLUMNS] + s[:, COLUMNS] * t[:, ROWS]
-        return np.asarray((shape * both * np.where(ROWS == COLUMNS, 0.5, 1.0)).sum(1))
-
-    index = np.arange(len(points))
-    owner = np.searchsorted(offsets, index, side="right") - 1
-    before = np.maximum(index - WIDE, offsets[owner])
-    after = np.minimum(index + WIDE, offsets[owner + 1] - 1)
-    turning = (tangents[after] - tangents[before]) / (arclengths[after] - arclengths[before])[:, None]
-    return Darboux(form(tangents, tangents), (turning * sideways).sum(1), form(tangents, sideways))
+    xx, xy, xz, yy, yz, zz = shape.T
+    x, y, z = tangents.T
+    # S t
+    image = np.stack([xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z], 1)
+    index = np.arange(len(tangents))
+    count = np.diff(offsets)
+    before = np.maximum(index - WIDE, np.repeat(offsets[:-1], count))
+    after = np.minimum(index + WIDE, np.repeat(offsets[1:] - 1, count))
+    turning = ((tangents[after] - tangents[before]) * sideways).sum(1) / (arclengths[after] - arclengths[before])
+    return Darboux((image * tangents).sum(1), turning, (image * sideways).sum(1))
 
 
 def _rims(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ from lamella.surface.points import Floats
 Integers = NDArray[np.int64]
 
 A, B = 0, 1
+# Newton steps to a place on an element's edge, and of the edge: the step after one as small as this is rounding
+EDGE_STEPS, EDGE_FINE = 8, 1e-7
 
 
 @dataclass(frozen=True)
@@ -34,12 +37,12 @@ class Tracks:
     local_end: Floats
     element: Integers
 
-    @property
+    @cached_property
     def first(self) -> Integers:
         """First link of each chain."""
         return np.searchsorted(self.owner, np.arange(len(self.family)))
 
-    @property
+    @cached_property
     def last(self) -> Integers:
         """Last link of each chain."""
         return np.searchsorted(self.owner, np.arange(len(self.family)), side="right") - 1
@@ -92,23 +95,44 @@ def rim_tips(cells: CellMap, tracks: Tracks) -> Floats:
     """Exact tau of the chains' ends on the rim, (c, 2): where the boundary edge has the chain's level."""
     last = tracks.last
     tips = np.stack([np.zeros(len(last)), tracks.tau[last] + tracks.span[last]], 1)
-    basis = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     for side, (link, local) in enumerate(((tracks.first, tracks.local_start), (last, tracks.local_end))):
         mine = np.flatnonzero((tracks.ends[:, side] != SINGULAR_END) & (tracks.ends[:, side] != CLOSED))
-        index = link[mine]
-        at = local[index]
-        barycentric = np.column_stack([1 - at.sum(1), at])
-        edge = (barycentric.argmin(1) + 1) % 3
-        begin, along = basis[edge], basis[(edge + 1) % 3] - basis[edge]
-        share = ((at - begin) * along).sum(1) / (along**2).sum(1)
-        is_a = tracks.family[mine] == A
-        for _ in range(8):
-            place = Places(tracks.element[index], begin + share[:, None] * along)
-            chi, chi_x, chi_y = cells.jet(place)
-            slope = chi_x * along[:, 0] + chi_y * along[:, 1]
-            miss = np.where(is_a, chi.imag, chi.real) - tracks.level[index]
-            share = np.clip(share - miss / np.where(is_a, slope.imag, slope.real), 0, 1)
-        chi, _, _ = cells.jet(Places(tracks.element[index], begin + share[:, None] * along))
-        other = np.where(is_a, chi.real, chi.imag)
-        tips[mine, side] = tracks.tau[index] + (other - tracks.start[index]) * tracks.way[index]
+        tips[mine, side] = _on_edges(cells, tracks, link[mine], local[link[mine]])
     return tips
+
+
+def passages(cells: CellMap, tracks: Tracks) -> tuple[Integers, Floats]:
+    """Chain and exact tau of every place where a chain goes over from one element to the next, closed ones twice.
+
+    A closed chain's come again a whole way further on, where it is passed beyond its first place.
+    """
+    following = np.arange(1, len(tracks.owner) + 1)
+    closed = tracks.ends[:, 0] == CLOSED
+    following[tracks.last] = np.where(closed, tracks.first, tracks.last)
+    link = np.flatnonzero(tracks.element != tracks.element[following])
+    tau = _on_edges(cells, tracks, link, tracks.local_end[link])
+    chain = tracks.owner[link]
+    again = closed[chain]
+    last = tracks.last[chain[again]]
+    return np.r_[chain, chain[again]], np.r_[tau, tau[again] + tracks.tau[last] + tracks.span[last]]
+
+
+def _on_edges(cells: CellMap, tracks: Tracks, link: Integers, local: Floats) -> Floats:
+    """Exact tau of places (n, 2) of links on edges of their elements: where the edge has the chain's level."""
+    basis = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    barycentric = np.column_stack([1 - local.sum(1), local])
+    edge = (barycentric.argmin(1) + 1) % 3
+    begin, along = basis[edge], basis[(edge + 1) % 3] - basis[edge]
+    share = ((local - begin) * along).sum(1) / (along**2).sum(1)
+    element, level = tracks.element[link], tracks.level[link]
+    is_a = tracks.family[tracks.owner[link]] == A
+    for _ in range(EDGE_STEPS):
+        chi, chi_x, chi_y = cells.jet(Places(element, begin + share[:, None] * along))
+        slope = chi_x * along[:, 0] + chi_y * along[:, 1]
+        miss = np.where(is_a, chi.imag, chi.real) - level
+        before, share = share, np.clip(share - miss / np.where(is_a, slope.imag, slope.real), 0, 1)
+        if np.abs(share - before).max(initial=0.0) < EDGE_FINE:
+            break
+    chi, _, _ = cells.jet(Places(element, begin + share[:, None] * along))
+    other = np.where(is_a, chi.real, chi.imag)
+    return np.asarray(tracks.tau[link] + (other - tracks.start[link]) * tracks.way[link])

@@ -11,6 +11,25 @@ from lamella.surface.points import Complexes, Floats
 
 
 @dataclass(frozen=True)
+class ElementFrames:
+    """Points of curved elements with their tangent planes: one row a point.
+
+    Attributes
+    ----------
+    position, normal, e_u, e_v : (n, 3)
+        m; orthonormal frame with e_u along the first local coordinate, normal = e_u x e_v.
+    to_local : (n, 2, 2)
+        Local coordinates of tangent vectors: d(x, y) = to_local @ (components along e_u, e_v).
+    """
+
+    position: Floats
+    normal: Floats
+    e_u: Floats
+    e_v: Floats
+    to_local: Floats
+
+
+@dataclass(frozen=True)
 class ElementPoints:
     """Points of curved elements: one row a point.
 
@@ -35,6 +54,26 @@ class ElementPoints:
     to_local: Floats
 
 
+def frames(position: Floats, first: Floats, second: Floats) -> ElementFrames:
+    """Frames at points (n, 3) with tangent vectors (n, 3) along the local coordinates."""
+    cross = np.cross(first, second)
+    area = np.sqrt(_dots(cross, cross))
+    normal = cross / area[:, None]
+    length = np.sqrt(_dots(first, first))
+    e_u = first / length[:, None]
+    e_v = np.cross(normal, e_u)
+    # first = length e_u, second = skew e_u + height e_v
+    skew, height = _dots(second, e_u), area / length
+    to_local = np.zeros((len(position), 2, 2))
+    to_local[:, 0, 0], to_local[:, 0, 1], to_local[:, 1, 1] = 1 / length, -skew / length / height, 1 / height
+    return ElementFrames(position, normal, e_u, e_v, to_local)
+
+
+def _dots(one: Floats, other: Floats) -> Floats:
+    """Products of rows (n, 3), (n,)."""
+    return np.asarray(np.einsum("nc,nc->n", one, other))
+
+
 def element_points(connectivity: Connectivity, corners: Floats, local: Floats, paired: bool) -> ElementPoints:
     """Points of elements with nodes (m, k, 3).
 
@@ -51,20 +90,13 @@ def element_points(connectivity: Connectivity, corners: Floats, local: Floats, p
         x, a, b, aa, ab, bb = (np.einsum("nk,nkc->nc", f, corners) for f in jet)
     else:
         x, a, b, aa, ab, bb = (np.matmul(f, corners).reshape(-1, 3) for f in jet)
-    cross = np.cross(a, b)
-    area = np.linalg.norm(cross, axis=1)
-    normal = cross / area[:, None]
-    length = np.linalg.norm(a, axis=1)
-    e_u = a / length[:, None]
-    e_v = np.cross(normal, e_u)
-    # a = length e_u, b = skew e_u + height e_v
-    skew, height = (b * e_u).sum(1), area / length
-    laa, lab, lbb = ((d * normal).sum(1) for d in (aa, ab, bb))
-    # second fundamental form in the frame: e_u = a / length, e_v = (b - skew / length a) / height
-    ratio = skew / length
-    suu = laa / length**2
-    suv = (lab - ratio * laa) / (length * height)
-    svv = (lbb - 2 * ratio * lab + ratio**2 * laa) / height**2
-    to_local = np.zeros((len(x), 2, 2))
-    to_local[:, 0, 0], to_local[:, 0, 1], to_local[:, 1, 1] = 1 / length, -ratio / height, 1 / height
-    return ElementPoints(x, normal, e_u, e_v, (suu + svv) / 2, (suu - svv) / 2 - 1j * suv, to_local)
+    there = frames(x, a, b)
+    laa, lab, lbb = ((d * there.normal).sum(1) for d in (aa, ab, bb))
+    # second fundamental form in the frame: e_u = p a, e_v = q a + r b
+    p, q, r = there.to_local[:, 0, 0], there.to_local[:, 0, 1], there.to_local[:, 1, 1]
+    suu = laa * p**2
+    suv = (q * laa + r * lab) * p
+    svv = r**2 * lbb + 2 * q * r * lab + q**2 * laa
+    return ElementPoints(
+        x, there.normal, there.e_u, there.e_v, (suu + svv) / 2, (suu - svv) / 2 - 1j * suv, there.to_local
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csc_matrix
+from scipy.sparse import csr_matrix
 
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.quadrature import triangle_rule
@@ -23,7 +23,7 @@ def normal_and_area(first: Floats, second: Floats) -> tuple[Floats, Floats]:
 
 
 def project_onto_nodes(
-    space: Connectivity, points: Floats, weights: Floats, values: Floats, tolerance: float = 1e-9
+    space: Connectivity, points: Floats, weights: Floats, values: Floats, tolerance: float = 1e-10
 ) -> Floats:
     """Nodal values (n, c) of an L2 projection onto continuous polynomials.
 
@@ -43,28 +43,39 @@ def project_onto_nodes(
     basis = space.basis.basis(points)
     parts = np.matmul(basis.T, values * weights[..., None])
     n, flat = space.node_count, space.elements.ravel()
-    right = np.stack([np.bincount(flat, parts[..., c].ravel(), n) for c in range(values.shape[-1])], 1)
+    right: Floats = np.stack([np.bincount(flat, parts[..., c].ravel(), n) for c in range(values.shape[-1])], 1)
     k = space.elements.shape[1]
     blocks = weights @ (basis[:, :, None] * basis[:, None, :]).reshape(len(points), -1)
     rows, columns = np.repeat(space.elements, k, axis=1), np.tile(space.elements, (1, k))
-    matrix = csc_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), (n, n)).tocsr()
+    matrix = csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), (n, n))
     inverse_diagonal = 1 / matrix.diagonal()[:, None]
-    solution = right * inverse_diagonal
+    # to begin with: each element's own projection, as if its area element were that of all on average
+    share = basis.T * weights.mean(0)
+    own = np.matmul(np.linalg.solve(share @ basis, share), values)
+    solution: Floats = np.stack([np.bincount(flat, own[..., c].ravel(), n) for c in range(values.shape[-1])], 1)
+    solution = solution / np.bincount(flat, minlength=n)[:, None]
     residual = right - matrix @ solution
-    direction = conditioned = inverse_diagonal * residual
-    product = (residual * conditioned).sum(0)
-    goal = tolerance**2 * (right**2 * inverse_diagonal).sum(0)
+    conditioned = inverse_diagonal * residual
+    direction = conditioned.copy()
+    product = _dots(residual, conditioned)
+    goal = tolerance**2 * _dots(right, right * inverse_diagonal)
     for _ in range(500):
         if (product <= goal).all():
             break
         image = matrix @ direction
-        step = product / np.maximum((direction * image).sum(0), 1e-300)
-        solution = solution + step * direction
-        residual = residual - step * image
-        conditioned = inverse_diagonal * residual
-        product, before = (residual * conditioned).sum(0), product
-        direction = conditioned + product / np.maximum(before, 1e-300) * direction
+        step = product / np.maximum(_dots(direction, image), 1e-300)
+        solution += step * direction
+        residual -= step * image
+        np.multiply(residual, inverse_diagonal, out=conditioned)
+        product, before = _dots(residual, conditioned), product
+        direction *= product / np.maximum(before, 1e-300)
+        direction += conditioned
     return np.asarray(solution)
+
+
+def _dots(one: Floats, other: Floats) -> Floats:
+    """Products of the columns of two tables (n, c), (c,)."""
+    return np.asarray(np.einsum("nc,nc->c", one, other))
 
 
 def smooth_normals(connectivity: Connectivity, nodes: Floats) -> Floats:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
+from math import perm
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from lamella.surface.points import Floats
 
 EDGES = ((0, 1), (1, 2), (2, 0))
 """Corners of the local edges."""
+
+# numbers an array has that is worked on at a time
+CACHED = 40_000
 
 
 @dataclass(frozen=True)
@@ -47,39 +50,94 @@ class Lagrange:
 
     def basis(self, local: Floats, x_order: int = 0, y_order: int = 0) -> Floats:
         """Derivative d^(i+j) / dx^i dy^j of the basis at local coordinates (n, 2), as (n, k)."""
-        powers = self._exponents - (x_order, y_order)
-        factor = np.ones(len(powers))
-        for axis, derivatives in ((0, x_order), (1, y_order)):
-            for step in range(derivatives):
-                factor *= self._exponents[:, axis] - step
-        factor[(powers < 0).any(1)] = 0
-        powers = np.maximum(powers, 0)
-        x, y = (local[:, axis, None] ** np.arange(self.order + 1) for axis in (0, 1))
-        return np.asarray((x[:, powers[:, 0]] * y[:, powers[:, 1]] * factor) @ self._coefficients)
+        return np.asarray(self._monomials(local) @ _derivative(self.order, x_order, y_order))
 
-    def coefficients(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Coefficients of the monomials x^i y^j, (m, k, ...), of polynomials with nodal values (m, k, ...)."""
-        return np.asarray(np.moveaxis(np.tensordot(self._coefficients, values, (1, 1)), 0, 1))
-
-    def monomials(self, local: Floats) -> tuple[Floats, Floats, Floats]:
-        """x^i y^j and their derivatives by x and y at local coordinates (n, 2), each (n, k)."""
+    def _monomials(self, local: Floats) -> Floats:
+        """x^i y^j at local coordinates (n, 2), (n, k)."""
         i, j = self._exponents.T
         x, y = np.ones((2, self.order + 1, len(local)))
         for power in range(1, self.order + 1):
             x[power], y[power] = x[power - 1] * local[:, 0], y[power - 1] * local[:, 1]
-        by_x, by_y = np.maximum(i - 1, 0), np.maximum(j - 1, 0)
-        return (x[i] * y[j]).T, (i[:, None] * x[by_x] * y[j]).T, (j[:, None] * x[i] * y[by_y]).T
+        return np.asarray((x[i] * y[j]).T)
+
+    def coefficients(self, values: Floats) -> Floats:
+        """Coefficients (k, c, m) of the monomials x^i y^j, of c polynomials an element with nodal values (m, k, c)."""
+        return np.ascontiguousarray(np.tensordot(self._coefficients, values, (1, 1)).transpose(0, 2, 1))
+
+    def jet(self, coefficients: Floats, element: NDArray[np.int64], local: Floats) -> Floats:
+        """Values and derivatives by x and y of polynomials of elements at places, (3, c, n).
+
+        Parameters
+        ----------
+        coefficients : (k, c, m)
+            See `coefficients`.
+        element : (n,) int
+        local : (n, 2)
+        """
+        return self._in_portions(coefficients, element, local, 3)
+
+    def values(self, coefficients: Floats, element: NDArray[np.int64], local: Floats) -> Floats:
+        """Values of polynomials of elements at places, (c, n), see `jet`."""
+        return np.asarray(self._in_portions(coefficients, element, local, 1)[0])
+
+    def _in_portions(self, coefficients: Floats, element: NDArray[np.int64], local: Floats, parts: int) -> Floats:
+        result = np.empty((parts, coefficients.shape[1], len(element)))
+        # as many places at a time as stay in the processor's cache
+        portion = max(CACHED // coefficients.shape[1], 1)
+        for begin in range(0, len(element), portion):
+            here = slice(begin, begin + portion)
+            x, y = np.ascontiguousarray(local[here].T)
+            self._horner(coefficients, element[here], x, y, result[:, :, here])
+        return result
+
+    def _horner(self, coefficients: Floats, element: NDArray[np.int64], x: Floats, y: Floats, result: Floats) -> None:
+        """sum_j y^j (sum_i c_ij x^i), and its derivatives where `result` has room for them, by Horner's scheme."""
+        value, *derivatives = np.zeros((len(result), coefficients.shape[1], len(x)))
+        end = len(coefficients)
+        for j in range(self.order, -1, -1):
+            top, end = end - 1, end - (self.order + 1 - j)
+            row = coefficients[top].take(element, 1)
+            slope = np.zeros_like(row) if derivatives else row
+            for term in range(top - 1, end - 1, -1):
+                if derivatives:
+                    slope *= x
+                    slope += row
+                row *= x
+                row += coefficients[term].take(element, 1)
+            if derivatives:
+                by_x, by_y = derivatives
+                by_x *= y
+                by_x += slope
+                by_y *= y
+                by_y += value
+            value *= y
+            value += row
+        result[0] = value
+        if derivatives:
+            result[1], result[2] = derivatives
 
     def second_jet(self, local: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         """Values and derivatives x, y, xx, xy, yy of the basis at local coordinates (n, 2), each (n, k)."""
-        return (
-            self.basis(local),
-            self.basis(local, 1, 0),
-            self.basis(local, 0, 1),
-            self.basis(local, 2, 0),
-            self.basis(local, 1, 1),
-            self.basis(local, 0, 2),
+        monomials = self._monomials(local)
+        value, x, y, xx, xy, yy = (
+            np.asarray(monomials @ _derivative(self.order, *d))
+            for d in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
         )
+        return value, x, y, xx, xy, yy
+
+
+@lru_cache
+def _derivative(order: int, x_order: int, y_order: int) -> Floats:
+    """Coefficients of the monomials in a derivative of each polynomial of the basis, (k, k)."""
+    basis = lagrange(order)
+    exponents = basis._exponents
+    number = {(i, j): index for index, (i, j) in enumerate(exponents.tolist())}
+    result = np.zeros((len(exponents), len(exponents)))
+    for source, (i, j) in enumerate(exponents.tolist()):
+        if i >= x_order and j >= y_order:
+            # x^i y^j becomes this multiple of x^(i - x_order) y^(j - y_order)
+            result[number[i - x_order, j - y_order], source] = perm(i, x_order) * perm(j, y_order)
+    return result @ basis._coefficients
 
 
 @lru_cache

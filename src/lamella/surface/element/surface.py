@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import Connectivity, connect
-from lamella.surface.element.curvature import ElementPoints, element_points
+from lamella.surface.element.curvature import ElementFrames, ElementPoints, element_points, frames
 from lamella.surface.element.edge_basis import edge_rule, edge_slopes, edge_values
 from lamella.surface.element.gauss_map import harmonic_normals
 from lamella.surface.element.geometry import normal_and_area, project_onto_nodes, tangents
@@ -77,13 +77,24 @@ class ElementSurface:
         return harmonic_normals(self.connectivity, self.nodes)
 
     @cached_property
-    def _smoothed(self) -> tuple[Connectivity, Floats]:
-        """Connectivity and nodal values (n, 8): the shape operator (xx, xy, xz, yy, yz, zz), H^2 - K, measured H."""
+    def polynomials(self) -> Floats:
+        """Coefficients of the position of each element, m, (k, 3, m), see `Lagrange.coefficients`."""
+        return self.connectivity.basis.coefficients(self._corners)
+
+    @cached_property
+    def _smooth_space(self) -> Connectivity:
+        """Polynomials of the continuous fields."""
         connectivity = self.connectivity
-        space = connect(connectivity.faces, int(connectivity.faces.max()) + 1, SMOOTHED_ORDER[connectivity.basis.order])
-        points, weights = triangle_rule(2 * connectivity.basis.order)
-        there = element_points(connectivity, self._corners, points, False)
-        normals = self._gauss[connectivity.elements]
+        return connect(connectivity.faces, int(connectivity.faces.max()) + 1, SMOOTHED_ORDER[connectivity.basis.order])
+
+    @cached_property
+    def _smoothed(self) -> Floats:
+        """Coefficients (k, 7, m) of the continuous shape operator (xx, xy, xz, yy, yz, zz) and H^2 - K."""
+        points, weights = triangle_rule(2 * self.connectivity.basis.order)
+        x_1, x_2 = tangents(*self._slopes(points), self._corners)
+        m, q = x_1.shape[:2]
+        there = frames(np.empty((m * q, 0)), x_1.reshape(-1, 3), x_2.reshape(-1, 3))
+        normals = self._gauss[self.connectivity.elements]
         n_x, n_y = (np.matmul(slope, normals).reshape(-1, 3) for slope in self._slopes(points))
         # S = -dn along both axes of the frame
         along = there.to_local
@@ -96,9 +107,22 @@ class ElementSurface:
         uv = there.e_u[:, _ROWS] * there.e_v[:, _COLUMNS] + there.e_v[:, _ROWS] * there.e_u[:, _COLUMNS]
         tensor = (h + half) * uu + (h - half) * vv + s_uv[:, None] * uv
         square = half[:, 0] ** 2 + s_uv**2
-        values = np.column_stack([tensor, square, there.mean_curvature]).reshape(len(self._corners), -1, 8)
+        # the area element is 1 / det(to_local)
+        area = 1 / (along[:, 0, 0] * along[:, 1, 1]).reshape(m, q)
+        values = np.column_stack([tensor, square]).reshape(m, q, 7)
+        space = self._smooth_space
+        nodal = project_onto_nodes(space, points, area * weights, values)
+        return space.basis.coefficients(nodal[space.elements])
+
+    @cached_property
+    def _smoothed_mean_curvature(self) -> Floats:
+        """Coefficients (k, 1, m) of the continuous H from positions alone, 1/m."""
+        points, weights = triangle_rule(2 * self.connectivity.basis.order)
+        measured = element_points(self.connectivity, self._corners, points, False).mean_curvature
         _, area = normal_and_area(*tangents(*self._slopes(points), self._corners))
-        return space, project_onto_nodes(space, points, area * weights, values)
+        space = self._smooth_space
+        nodal = project_onto_nodes(space, points, area * weights, measured.reshape(*area.shape, 1))
+        return space.basis.coefficients(nodal[space.elements])
 
     def _slopes(self, local: Floats) -> tuple[Floats, Floats]:
         basis = self.connectivity.basis
@@ -106,15 +130,12 @@ class ElementSurface:
 
     def at(self, where: Places) -> SurfacePoints:
         """Everything about n places, in one evaluation."""
-        there = element_points(self.connectivity, self._corners[where.element], where.local, True)
-        space, values = self._smoothed
-        local = values[space.elements[where.element]]
-        smooth = np.einsum("nk,nkc->nc", space.basis.basis(where.local), local)
+        there = self.frames(where)
+        basis = self._smooth_space.basis
+        smooth = basis.values(self._smoothed[:, :6], where.element, where.local).T
         uu, vv, uv = (_form(smooth, a, b) for a, b in ((there.e_u,) * 2, (there.e_v,) * 2, (there.e_u, there.e_v)))
-        gradient = np.stack(
-            [np.einsum("nk,nk->n", space.basis.basis(where.local, *d), local[..., 6]) for d in ((1, 0), (0, 1))], 1
-        )
-        along = np.einsum("nij,ni->nj", there.to_local, gradient)
+        _, by_x, by_y = basis.jet(self._smoothed[:, 6:], where.element, where.local)[:, 0]
+        along = there.to_local[:, 0] * by_x[:, None] + there.to_local[:, 1] * by_y[:, None]
         deviator = (uu - vv) / 2 - 1j * uv
         square = np.maximum(np.abs(deviator) ** 2, np.finfo(float).tiny)
         return SurfacePoints(
@@ -127,10 +148,17 @@ class ElementSurface:
             (along[:, 0] + 1j * along[:, 1]) / (4 * square),
         )
 
+    def frames(self, where: Places) -> ElementFrames:
+        """Position and frame at n places."""
+        jet = self.connectivity.basis.jet(self.polynomials, where.element, where.local)
+        position, first, second = np.ascontiguousarray(jet.transpose(0, 2, 1))
+        return frames(position, first, second)
+
     def smooth_normal(self, where: Places) -> Floats:
         """Unit normal of the harmonic Gauss map at n places, (n, 3): it does not jump between elements."""
-        local = self._gauss[self.connectivity.elements[where.element]]
-        normal = np.einsum("nk,nkc->nc", self.connectivity.basis.basis(where.local), local)
+        basis = self.connectivity.basis
+        coefficients = basis.coefficients(self._gauss[self.connectivity.elements])
+        normal = basis.values(coefficients, where.element, where.local).T
         return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])
 
     def measured(self, where: Places) -> ElementPoints:
@@ -143,9 +171,8 @@ class ElementSurface:
 
     def smoothed_mean_curvature(self, where: Places) -> Floats:
         """`measured_mean_curvature` by L2 projection on continuous polynomials, 1/m, (n,): H of files and pictures."""
-        space, values = self._smoothed
-        local = values[space.elements[where.element]][..., 7]
-        return np.asarray(np.einsum("nk,nk->n", space.basis.basis(where.local), local))
+        values = self._smooth_space.basis.values(self._smoothed_mean_curvature, where.element, where.local)[0]
+        return np.asarray(values)
 
     def check_places(self) -> Places:
         """Twelve places inside every element."""
@@ -251,4 +278,4 @@ _HALF = np.where(_ROWS == _COLUMNS, 0.5, 1.0)
 def _form(tensor: Floats, a: Floats, b: Floats) -> Floats:
     """a . T b for symmetric matrices given by six entries."""
     both = a[:, _ROWS] * b[:, _COLUMNS] + a[:, _COLUMNS] * b[:, _ROWS]
-    return np.asarray((tensor[:, :6] * both * _HALF).sum(1))
+    return np.asarray((tensor * both * _HALF).sum(1))

@@ -73,7 +73,7 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
     size = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
     if not len(found):
         return Umbilics(found, np.zeros((0, 3)), np.zeros(0, np.int64))
-    position = surface.measured(found).position
+    position = surface.frames(found).position
     for reach in REACHES:
         places, position, orders = _gathered(surface, position, reach * size)
         # the Hopf differential is holomorphic: a negative turn is noise next to a zero of higher order
@@ -96,7 +96,7 @@ def _gathered(surface: ElementSurface, position: Floats, reach: float) -> tuple[
 def deviator_in_element(surface: ElementSurface, where: Places) -> Complexes:
     """Trace-free shape operator in one orthonormal frame an element, 1/m, (n,): no turn of the frame is in it."""
     m = len(surface.connectivity.elements)
-    middle = surface.measured(Places(np.arange(m), np.full((m, 2), 1 / 3)))
+    middle = surface.frames(Places(np.arange(m), np.full((m, 2), 1 / 3)))
     at = surface.at(where)
     return np.asarray(at.deviator * _frame_turn(at.e_u, at.e_v, middle.e_u[where.element]) ** 2)
 

@@ -1,0 +1,76 @@
+"""Arc lengths along lamellas on elements.
+
+The speed along a lamella jumps a little where it goes over from one element to the next, and is analytic in between:
+pieces that end there as well as at stops need few points of a series each.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.network.arcs import ArcLengths
+from lamella.network.element_segments import ElementSegments
+from lamella.surface.points import Floats
+
+Integers = NDArray[np.int64]
+
+# points of a part's series to begin with and to settle for, and the share that its last two terms may have
+POINTS, SETTLE, TAIL = 6, 24, 1e-5
+# of a segment: a part is longer
+LEAST = 1e-6
+
+
+class ElementArcs:
+    """Arc length along every segment, and the parameters that divide it evenly.
+
+    Parameters
+    ----------
+    segments : ElementSegments
+
+    Attributes
+    ----------
+    length : (s,)
+        m.
+    """
+
+    def __init__(self, segments: ElementSegments) -> None:
+        count = len(segments.owner)
+        segment, sigma = segments.passages()
+        inside = (sigma > LEAST) & (sigma < 1 - LEAST)
+        segment, begin = np.r_[np.arange(count), segment[inside]], np.r_[np.zeros(count), sigma[inside]]
+        order = np.lexsort((begin, segment))
+        self._parts = _Parts(segments, segment[order], begin[order])
+        self._arcs = ArcLengths(self._parts, TAIL, SETTLE, POINTS)
+        self.length = np.bincount(self._parts.owner, self._arcs.length, count)
+        self._first = np.searchsorted(self._parts.owner, np.arange(count + 1))
+        self._before = np.cumsum(self._arcs.length) - self._arcs.length
+
+    def parameter(self, segment: Integers, fraction: Floats) -> Floats:
+        """sigma where the given fractions of the segments' arc lengths are reached, (k,)."""
+        goal = self._before[self._first[segment]] + fraction * self.length[segment]
+        part = np.searchsorted(self._before, goal, side="right") - 1
+        part = np.clip(part, self._first[segment], self._first[segment + 1] - 1)
+        share = np.clip((goal - self._before[part]) / self._arcs.length[part], 0, 1)
+        sigma = self._parts.sigma(part, self._arcs.parameter(part, share))
+        return np.where(fraction == 1, 1.0, np.where(fraction == 0, 0.0, sigma))
+
+
+class _Parts:
+    """Parts of segments, in their order."""
+
+    def __init__(self, segments: ElementSegments, owner: Integers, begin: Floats) -> None:
+        self._segments, self.owner, self._begin = segments, owner, begin
+        end = np.where(np.r_[owner[1:] != owner[:-1], True], 1.0, np.r_[begin[1:], 1.0])
+        self._reach = end - begin
+
+    def sigma(self, part: Integers, share: Floats) -> Floats:
+        """The segments' parameters at shares of parts, arrays of equal shape."""
+        return np.asarray(self._begin[part] + share * self._reach[part])
+
+    def speed(self, part: Integers, share: Floats) -> Floats:
+        """Arc length per share, m, at shares (p,) of parts (s,), shape (s, p)."""
+        every = np.repeat(part, len(share))
+        _, _, velocity = self._segments.velocity(self.owner[every], self.sigma(every, np.tile(share, len(part))))
+        speed = np.sqrt((velocity**2).sum(1)) * self._reach[every]
+        return np.asarray(speed.reshape(len(part), len(share)))
