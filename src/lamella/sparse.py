@@ -166,7 +166,8 @@ class SymmetricPattern:
         keys[size + pairs :] = border_low * size + border_high + count
         order = np.argsort(keys, kind="stable")  # merges the runs that element blocks come in
         keys = keys[order]
-        new = np.concatenate([[True], keys[1:] != keys[:-1]])
+        new = np.ones(len(keys), bool)
+        new[1:] = keys[1:] != keys[:-1]
         unique = keys[new]
         del keys
         entry = np.empty(len(order), np.int64)

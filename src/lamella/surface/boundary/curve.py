@@ -20,6 +20,11 @@ by h angle / 4, and the surface's curvature there by angle / h. Below 1e-6 that 
 also what drawings that are rounded to micrometres leave at tangent joints.
 """
 
+CURVATURE_JUMP = 1e-2
+"""Over the loop's length. A larger jump of the curvature is a corner, tangent or not: where a line goes over into an arc
+the curvature of a film has a logarithm, which no polynomial follows, and no element may run across.
+"""
+
 _STANDSTILL = 1e-9
 """Of a piece's mean speed: a slower end has no tangent."""
 
@@ -55,7 +60,8 @@ class Loop:
     course : Course
         The exact curve.
     corners : (c,)
-        t where the tangent jumps by more than `CORNER_ANGLE` or a sliding part begins or ends; sorted.
+        t where the tangent jumps by more than `CORNER_ANGLE`, the curvature by more than `CURVATURE_JUMP`, or a sliding
+        part begins or ends; sorted.
     turns : (c,)
         Jump of the tangent at each corner, radians in 0..pi.
     slides : tuple of Slide
@@ -183,10 +189,11 @@ def make_loop(name: str, pieces: Pieces, sliding: Sequence[Sliding] = (), *, whe
     _check_moving(called, course, where)
     m = pieces.count
     one, zero = np.ones(m), np.zeros(m)
-    behind = _unit(course.pieces.evaluate(np.arange(m), zero)[1])
-    before = _unit(course.pieces.evaluate(np.arange(m) - 1, one)[1])
-    turn = angle_between(before, behind)
-    corner = turn > CORNER_ANGLE
+    _, behind, bent_behind = course.pieces.evaluate(np.arange(m), zero)
+    _, before, bent_before = course.pieces.evaluate(np.arange(m) - 1, one)
+    turn = angle_between(_unit(before), _unit(behind))
+    jump = np.linalg.norm(_curvature(behind, bent_behind) - _curvature(before, bent_before), axis=1)
+    corner = (turn > CORNER_ANGLE) | (jump * course.length > CURVATURE_JUMP)
     marks = [(part.first, part.first + part.count) for part in sliding if part.count < m]
     for first, last in marks:
         corner[[first, last % m]] = True
@@ -230,6 +237,12 @@ def place(point: Floats) -> str:
 def angle_between(a: Floats, b: Floats) -> Floats:
     """Angles between unit vectors (n, 3), radians in 0..pi, exact for small and for straight angles."""
     return np.asarray(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.einsum("...i,...i", a, b)))
+
+
+def _curvature(first: Floats, second: Floats) -> Floats:
+    """Curvature vectors (n, 3), 1/m, from derivatives by any parameter."""
+    square = (first**2).sum(1)[:, None]
+    return np.asarray((second - (second * first).sum(1)[:, None] / square * first) / square)
 
 
 def _unit(vectors: Floats) -> Floats:
