@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from lamella.errors import InputError
 from lamella.network.arcs import ArcLengths, Segments
 from lamella.network.density import Density
-from lamella.network.domain import A, domain_of
+from lamella.network.domain import A
+from lamella.network.domain_of import domain_of
 from lamella.network.faces import trace_faces
 from lamella.network.lattice import Lattice, build_lattice, ragged_ranges
 from lamella.network.network import BOUNDARY, Network
@@ -77,7 +78,7 @@ def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, segment: 
 
 
 def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: float = 0.5) -> Network:
-    """The network of a closed-form surface: lamellas u + v = i l0 and u - v = j l0, exactly on it.
+    """The network of a closed-form surface: lamellas u + v = i l0 and u - v = j l0, or principal lines, exactly on it.
 
     Parameters
     ----------
@@ -96,9 +97,11 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
     InputError
         No lamella crosses another one.
     """
-    domain = domain_of(surface, density.step)
-    lines = domain.lines()
+    domain = domain_of(surface, density.step, density.pattern)
+    lines = domain.lines().every(density.pattern)
     lines = lines.take(lines.end > lines.start)
+    # cells between the curves that cross those of A, and of B
+    wide = np.array(density.pattern.every[::-1])
     left_out = 0
     while True:
         lattice = build_lattice(domain, lines)
@@ -120,7 +123,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
                 "network.spacing",
                 "network.cells",
             )
-        whole = length[segments.span > 1 - 1e-9]
+        whole = length[segments.span > wide[lines.family[segments.owner]] - 1e-9]
         total = np.bincount(segments.owner, length, minlength=len(lines.family))
         short = total < minimum_length * np.median(whole if len(whole) else length)
         if not short.any():
@@ -136,7 +139,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
 
     per_cell = FINE if len(lattice.kinds) <= FINE_LIMIT else COARSE
     # a lamella shorter than a cell is sampled as finely as a whole cell
-    cells = np.minimum(np.bincount(segments.owner, segments.span), 1.0)[segments.owner]
+    cells = np.minimum(np.bincount(segments.owner, segments.span), wide[lines.family])[segments.owner]
     count = np.maximum(np.ceil(segments.span / cells * per_cell - 1e-6), 1).astype(np.int64)
     # every segment gives the samples from its start on; a line's last segment also gives its end
     last = np.r_[segments.owner[1:] != segments.owner[:-1], True]
@@ -179,7 +182,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         node_kinds=lattice.kinds,
         ids=_ids(lines.family),
         families=np.where(lines.family == A, "A", "B"),
-        closed=np.zeros(lines_count, bool),
+        closed=lines.closed,
         sample_offsets=offsets,
         sample_points=samples.points,
         sample_normals=normals,
@@ -194,6 +197,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         face_offsets=faces.offsets,
         face_nodes=faces.nodes,
         faces_left_out=faces.large,
+        pattern=density.pattern,
     )
 
 
