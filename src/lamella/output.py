@@ -128,7 +128,12 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
         add("Network", "Cell edge, median", n["cell_edge_median"], "m")
         add("Network", "Cell edge, largest", n["cell_edge_max"], "m")
         add("Network", "Node angle off 90°, largest", n["node_angle_deviation_max_deg"], "°", form=".2g")
-        add("Network", "Normal curvature off H, largest", n["normal_curvature_deviation_max"], "1/m", form=".2g")
+        if n["kind"] == "lamellas":
+            add("Network", "Normal curvature off H, largest", n["normal_curvature_deviation_max"], "1/m", form=".2g")
+        elif n["panel_planarity"]:
+            add("Network", "Panels with four corners", n["panels"], form=",")
+            add("Network", "Panel planarity, median", n["panel_planarity"]["median"], form=".2g")
+            add("Network", "Panel planarity, worst", n["panel_planarity"]["max"], form=".2g")
     if m:
         add("Lamellas", "Length, one layer", m["total_length"], "m")
         add("Lamellas", "Geodesic curvature, largest", m["geodesic_curvature_max"], "1/m")

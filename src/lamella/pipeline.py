@@ -30,6 +30,10 @@ if TYPE_CHECKING:
 
 STAGES = ("surface", "network", "lamellas", "fabrication", "structure")
 LAST_STAGE = "fabrication"
+NO_STRIPS = (
+    "a strip normal to the surface along a principal line is developable, but unrolls neither straight nor with one "
+    "radius"
+)
 
 # Is told what is being done, a line at a time and before it is done: stages without indent, what they do below two
 # spaces, details below four (Newton steps, say; the command line shows those with --verbose only).
@@ -143,7 +147,7 @@ def plan(
     ------
     InputError
     """
-    depth = _depth(LAST_STAGE if until is None else until)
+    depth = _last_of(project, until)
     if depth and project.network.closing == "adjust" and project.surface.kind not in CLOSED_FORMS:
         raise InputError(
             f'closing = "adjust" is not part of version {__version__} yet',
@@ -155,7 +159,8 @@ def plan(
         _check_fabrication(fill_in(project, surface), surface.mean_curvature)
     if not isinstance(surface, ClosedForm):
         return surface, None
-    return surface, choose_density(surface, cells=project.network.cells, spacing=project.network.spacing)
+    table = project.network
+    return surface, choose_density(surface, cells=table.cells, spacing=table.spacing, pattern=table.pattern)
 
 
 def fill_in(project: Project, surface: Surface[Any]) -> Project:
@@ -208,9 +213,11 @@ def compute(
     ------
     InputError
     """
-    depth = _depth(LAST_STAGE if until is None else until)
+    depth = _last_of(project, until)
     clock = _Clock(progress)
     warnings: list[str] = []
+    if depth < STAGES.index("lamellas") and until is None:
+        warnings.append(f"the run ends with the network: {NO_STRIPS}")
 
     clock.start(f"surface: {project.surface.kind}")
     surface, density = plan(project, until=until, folder=folder, progress=progress)
@@ -286,9 +293,24 @@ def _weave(surface: Surface[Any], project: Project, progress: Progress) -> Eleme
         spacing=table.spacing,
         closing=table.closing,
         minimum_length=table.minimum_length,
+        pattern=table.pattern,
         loop_names=tuple(loop.name for loop in boundary),
         progress=progress,
     )
+
+
+def _last_of(project: Project, until: str | None) -> int:
+    """Number of the last stage; of a principal net that is the network."""
+    depth, last = _depth(LAST_STAGE if until is None else until), STAGES.index("network")
+    if project.network.kind != "principal" or depth <= last:
+        return depth
+    if until is not None:
+        raise InputError(
+            f"stage {until!r} needs a net of lamellas: {NO_STRIPS}",
+            'write --until network, or kind = "lamellas"',
+            "network.kind",
+        )
+    return last
 
 
 def _depth(until: str) -> int:

@@ -13,6 +13,7 @@ from lamella.fabrication.sheet import Nesting
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas
 from lamella.strip.material import Material
+from lamella.strip.planarity import planarity_score
 from lamella.strip.unroll import development_deviation
 from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
@@ -85,6 +86,8 @@ def network_summary(network: Network, requested: str) -> dict[str, Any]:
         "lamellas": len(network.ids),
         "lamellas_left_out": network.left_out,
         "faces": len(network.face_offsets) - 1,
+        "kind": network.pattern.kind,
+        "every": list(network.pattern.every),
         "requested": requested,
         "cells": network.cells,
         "step": network.step,
@@ -100,6 +103,22 @@ def network_summary(network: Network, requested: str) -> dict[str, Any]:
         "cell_edge_max": float(edges.max()),
         "periods": periods,
         "closed": all(abs(c - round(c)) <= 1e-3 for p in network.periods for c in (p.a_cells, p.b_cells)),
+    } | (principal_summary(network) if network.pattern.kind == "principal" else {})
+
+
+def principal_summary(network: Network) -> dict[str, Any]:
+    """What a principal net is judged by: its panels, and how its normal curvature varies. kn is H nowhere."""
+    kn, family = network.sample_darboux.kn, np.repeat(network.families, np.diff(network.sample_offsets))
+    curvatures = {f: [float(kn[family == f].min()), float(kn[family == f].max())] for f in "AB" if (family == f).any()}
+    start = network.face_offsets[:-1][np.diff(network.face_offsets) == 4]
+    corners = network.node_points[network.face_nodes[start[:, None] + np.arange(4)]]
+    score = planarity_score(*corners.transpose(1, 0, 2))
+    return {
+        "normal_curvature_deviation_max": None,
+        "normal_curvature": curvatures,
+        "geodesic_torsion_max": float(np.abs(network.sample_darboux.tg).max()),
+        "panels": len(start),
+        "panel_planarity": {"median": float(np.median(score)), "max": float(score.max())} if len(start) else None,
     }
 
 

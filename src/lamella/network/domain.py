@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from lamella.network.network import Period
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.closed_form import ClosedForm
-from lamella.surface.outline import Disc, Rectangle, Ring, Square
+from lamella.surface.outline import Disc, Rectangle, Ring
 from lamella.surface.scherk import Scherk, asymptotic_to_conformal
 
 Floats = NDArray[np.float64]
@@ -183,7 +183,9 @@ class Band(PlaneDomain):
 
     @property
     def periods(self) -> tuple[Period, ...]:
-        return (Period("axis", self.turn.imag / self.pattern.every[A], self.turn.real / self.pattern.every[B]),)
+        p, q = self.pattern.every
+        # no -0 where principal lines run around the axis
+        return (Period("axis", self.turn.imag / p + 0.0, self.turn.real / q + 0.0),)
 
     def extent(self) -> tuple[Floats, Floats]:
         # one turn's worth of lamellas of each family; every other one is a repetition

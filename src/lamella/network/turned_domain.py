@@ -7,7 +7,6 @@ import numpy as np
 from lamella.network.domain import Complexes, Floats, RectangleDomain, ScherkDomain, centred
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.closed_form import ClosedForm
-from lamella.surface.scherk import Scherk
 
 # halvings that leave rounding only
 HALVINGS = 60
@@ -32,18 +31,16 @@ class TurnedRectangle(RectangleDomain):
         rate = self.slope * direction
         across = np.stack([-zeta.real, self.outline.width - zeta.real]) / rate.real
         up = np.stack([-zeta.imag, self.outline.height - zeta.imag]) / rate.imag
-        return np.maximum(across.min(0), up.min(0)), np.minimum(across.max(0), up.max(0))
+        start, end = np.maximum(across.min(0), up.min(0)), np.minimum(across.max(0), up.max(0))
+        return np.asarray(start, np.float64), np.asarray(end, np.float64)
 
 
 class TurnedScherk(ScherkDomain):
     """Scherk's curved diamond, which is convex, and symmetric about its diagonals, as principal lines cross it."""
 
-    def __init__(self, surface: Scherk, step: float, pattern: Pattern = LAMELLAS) -> None:
-        super().__init__(surface, step, pattern)
-
     def extent(self) -> tuple[Floats, Floats]:
         tips = self.reach * np.array([1, 1j, -1, -1j]) / self.slope - self.origin
-        return tips.real, tips.imag
+        return np.asarray(tips.real, np.float64), np.asarray(tips.imag, np.float64)
 
     def chord(self, base: Complexes, direction: complex) -> tuple[Floats, Floats]:
         zeta = self.place(np.zeros(len(base), np.int64), base)
@@ -56,4 +53,4 @@ class TurnedScherk(ScherkDomain):
             at = zeta + (foot + half) * rate
             within = np.abs(self._asymptotic(at.imag)) + np.abs(self._asymptotic(at.real)) < self.limit
             inside, outside = np.where(within, half, inside), np.where(within, outside, half)
-        return foot - inside, foot + inside
+        return np.asarray(foot - inside, np.float64), np.asarray(foot + inside, np.float64)
