@@ -130,10 +130,15 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
         add("Network", "Node angle off 90°, largest", n["node_angle_deviation_max_deg"], "°", form=".2g")
         if n["kind"] == "lamellas":
             add("Network", "Normal curvature off H, largest", n["normal_curvature_deviation_max"], "1/m", form=".2g")
-        elif n["panel_planarity"]:
+        else:
             add("Network", "Panels with four corners", n["panels"], form=",")
-            add("Network", "Panel planarity, median", n["panel_planarity"]["median"], form=".2g")
-            add("Network", "Panel planarity, worst", n["panel_planarity"]["max"], form=".2g")
+            for key, label in (
+                ("median", "inside, median"),
+                ("max", "inside, worst"),
+                ("rim_max", "at the rim, worst"),
+            ):
+                if n["panel_planarity"][key] is not None:
+                    add("Network", f"Panel planarity {label}", n["panel_planarity"][key], form=".2g")
     if m:
         add("Lamellas", "Length, one layer", m["total_length"], "m")
         add("Lamellas", "Geodesic curvature, largest", m["geodesic_curvature_max"], "1/m")

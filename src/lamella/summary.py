@@ -10,7 +10,7 @@ import numpy as np
 
 from lamella.fabrication.part import Parts
 from lamella.fabrication.sheet import Nesting
-from lamella.network.network import SINGULAR, Network
+from lamella.network.network import BOUNDARY, SINGULAR, Network
 from lamella.strip.lamellas import Lamellas
 from lamella.strip.material import Material
 from lamella.strip.planarity import planarity_score
@@ -111,14 +111,20 @@ def principal_summary(network: Network) -> dict[str, Any]:
     kn, family = network.sample_darboux.kn, np.repeat(network.families, np.diff(network.sample_offsets))
     curvatures = {f: [float(kn[family == f].min()), float(kn[family == f].max())] for f in "AB" if (family == f).any()}
     start = network.face_offsets[:-1][np.diff(network.face_offsets) == 4]
-    corners = network.node_points[network.face_nodes[start[:, None] + np.arange(4)]]
-    score = planarity_score(*corners.transpose(1, 0, 2))
+    panels = network.face_nodes[start[:, None] + np.arange(4)]
+    score = planarity_score(*network.node_points[panels].transpose(1, 0, 2))
+    rim = (network.node_kinds[panels] == BOUNDARY).any(1)
+    inner = score[~rim]
     return {
         "normal_curvature_deviation_max": None,
         "normal_curvature": curvatures,
         "geodesic_torsion_max": float(np.abs(network.sample_darboux.tg).max()),
         "panels": len(start),
-        "panel_planarity": {"median": float(np.median(score)), "max": float(score.max())} if len(start) else None,
+        "panel_planarity": {
+            "median": float(np.median(inner)) if len(inner) else None,
+            "max": float(inner.max()) if len(inner) else None,
+            "rim_max": float(score[rim].max()) if rim.any() else None,
+        },
     }
 
 
