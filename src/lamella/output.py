@@ -127,9 +127,16 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
         add("Network", "Cell edge, smallest", n["cell_edge_min"], "m")
         add("Network", "Cell edge, median", n["cell_edge_median"], "m")
         add("Network", "Cell edge, largest", n["cell_edge_max"], "m")
-        add("Network", "Node angle off 90°, largest", n["node_angle_deviation_max_deg"], "°", form=".2g")
+        if n["normal_curvature"] in (None, s["mean_curvature"]):
+            add("Network", "Node angle off 90°, largest", n["node_angle_deviation_max_deg"], "°", form=".2g")
+        else:
+            add("Network", "Node angle, smallest", n["node_angle_min_deg"], "°")
+            add("Network", "Node angle, largest", n["node_angle_max_deg"], "°")
+            add("Network", "Normal curvature of all lamellas", n["normal_curvature"], "1/m")
         if n["kind"] == "lamellas":
-            add("Network", "Normal curvature off H, largest", n["normal_curvature_deviation_max"], "1/m", form=".2g")
+            of = "H" if n["normal_curvature"] == s["mean_curvature"] else "it"
+            off = n["normal_curvature_deviation_max"]
+            add("Network", f"Normal curvature off {of}, largest", off, "1/m", form=".2g")
         else:
             add("Network", "Panels with four corners", n["panels"], form=",")
             for key, label in (

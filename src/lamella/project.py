@@ -71,6 +71,15 @@ class NetworkTable(Table):
         "multiple of it.",
         examples=[2, [2, 1]],
     )
+    normal_curvature: float | None = number(
+        "Normal curvature of all lamellas where it is not to be H: 0 for asymptotic lines. They cross at other angles "
+        "than 90 deg then. On closed forms of revolution; the run ends with the network.",
+        "1/m",
+        ge=-1e6,
+        le=1e6,
+        default=None,
+        examples=[0.0],
+    )
     angle: float = number(
         "Angle between the families at the nodes; other than 90 is not offered yet.", "deg", default=90.0
     )
@@ -97,7 +106,7 @@ class NetworkTable(Table):
     def pattern(self) -> Pattern:
         """Which curves of the isothermic lattice the net has."""
         p, q = (self.every, self.every) if isinstance(self.every, int) else self.every
-        return Pattern(self.kind, (p, q))
+        return Pattern(self.kind, (p, q), self.normal_curvature)
 
     @model_validator(mode="before")
     @classmethod
@@ -116,8 +125,16 @@ class NetworkTable(Table):
             raise Refusal(
                 f"angle = {self.angle:g} deg: only 90 deg is offered", "write angle = 90 or leave it out", "angle"
             )
+        if self.kind == "principal" and self.normal_curvature is not None:
+            raise Refusal(
+                f'normal_curvature = {self.normal_curvature:g} 1/m and kind = "principal" are both given: along '
+                "principal lines the normal curvature is the principal one",
+                "keep one of them",
+                "normal_curvature",
+            )
         if self.closing == "adjust" and self.pattern != LAMELLAS:
-            what = f'kind = "{self.kind}"' if self.kind != "lamellas" else f"every = {shown(self.every)}"
+            what = f"normal_curvature = {self.normal_curvature}" if self.kind == "lamellas" else f'kind = "{self.kind}"'
+            what = f"every = {shown(self.every)}" if self.every != 1 else what
             raise Refusal(
                 f'closing = "adjust" moves the boundary for the whole net of lamellas, not for {what}',
                 'write closing = "open" or "round"',

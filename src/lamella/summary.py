@@ -76,7 +76,11 @@ def _held(table: BoundaryTable) -> str:
 
 def network_summary(network: Network, requested: str) -> dict[str, Any]:
     """The network's figures."""
-    deviation = np.abs(90 - network.node_angles)
+    angles = network.node_angles
+    deviation = np.abs(90 - angles)
+    wanted = network.pattern.normal_curvature
+    if wanted is None:
+        wanted = network.mean_curvature
     edges = network.cell_edges
     a, b = network.node_degrees()
     rays = a + b
@@ -95,9 +99,12 @@ def network_summary(network: Network, requested: str) -> dict[str, Any]:
             {"point": network.node_points[i].tolist(), "order": int(rays[i]) // 2 - 2, "rays": int(rays[i])}
             for i in np.flatnonzero(network.node_kinds == SINGULAR).tolist()
         ],
+        "node_angle_min_deg": float(angles.min()),
+        "node_angle_max_deg": float(angles.max()),
         "node_angle_deviation_max_deg": float(deviation.max()),
         "node_angle_deviation_mean_deg": float(deviation.mean()),
-        "normal_curvature_deviation_max": float(np.abs(network.sample_darboux.kn - network.mean_curvature).max()),
+        "normal_curvature": wanted,
+        "normal_curvature_deviation_max": float(np.abs(network.sample_darboux.kn - wanted).max()),
         "cell_edge_min": float(edges.min()),
         "cell_edge_median": float(np.median(edges)),
         "cell_edge_max": float(edges.max()),
@@ -116,8 +123,9 @@ def principal_summary(network: Network) -> dict[str, Any]:
     rim = (network.node_kinds[panels] == BOUNDARY).any(1)
     inner = score[~rim]
     return {
+        "normal_curvature": None,
         "normal_curvature_deviation_max": None,
-        "normal_curvature": curvatures,
+        "principal_curvatures": curvatures,
         "geodesic_torsion_max": float(np.abs(network.sample_darboux.tg).max()),
         "panels": len(start),
         "panel_planarity": {

@@ -49,6 +49,8 @@ def network_bytes(network: Network, *, name: str, version: str) -> bytes:
     }
     if network.pattern.kind != "lamellas":
         head["kind"] = network.pattern.kind
+    if network.pattern.normal_curvature is not None:
+        head["normal_curvature"] = network.pattern.normal_curvature
     return b"".join(
         (
             orjson.dumps(head)[:-1],

@@ -11,6 +11,7 @@ from lamella.network.arcs import ArcLengths, Segments
 from lamella.network.domain import Lines
 from lamella.network.domain_of import domain_of
 from lamella.network.lattice import build_lattice
+from lamella.network.leaning_band import check_normal_curvature
 from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.outline import Ring
@@ -129,6 +130,8 @@ def choose_density(
     if spacing is not None and not 0 < spacing < np.inf:
         raise InputError(f"spacing = {spacing!r} m is no length", "write a number above 0, in m", "network.spacing")
     refuse_umbilic(surface)
+    if pattern.normal_curvature is not None:
+        check_normal_curvature(surface, pattern.normal_curvature)
     whole = surface.whole_length
     requested = f"cells = {cells}"
     if cells is None and spacing is None:

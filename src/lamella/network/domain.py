@@ -120,6 +120,10 @@ class Domain(ABC):
     def derivative(self, sheet: Integers, point: Complexes) -> Complexes:
         """d zeta / d cell at points of the cell plane (not at a singular node)."""
 
+    def velocity(self, sheet: Integers, point: Complexes, direction: Complexes) -> Complexes:
+        """Rate at which zeta changes along lines of given direction, a cell."""
+        return self.derivative(sheet, point) * direction
+
 
 class PlaneDomain(Domain):
     """A domain of one sheet on which zeta is an affine function of the cell plane.

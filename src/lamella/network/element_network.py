@@ -179,6 +179,13 @@ def element_network(
     InputError
     """
     refuse_umbilic(surface)
+    if pattern.normal_curvature not in (None, surface.mean_curvature):
+        raise InputError(
+            f"lines of normal curvature {pattern.normal_curvature:g} 1/m, other than H = {surface.mean_curvature:.6g} "
+            "1/m, are offered on closed forms of revolution",
+            "leave normal_curvature out",
+            "network.normal_curvature",
+        )
     umbilics = surface.umbilics
     told = ", ".join(f"order {m}" for m in umbilics.orders.tolist())
     progress(f"  {len(umbilics.orders)} umbilics" + (f" ({told})" if told else ""))

@@ -17,6 +17,7 @@ def make_network(
     minimum_length: float = 0.5,
     kind: NetKind = "lamellas",
     every: tuple[int, int] = (1, 1),
+    normal_curvature: float | None = None,
 ) -> Network:
     """The network of lamellas, or of principal lines, on a surface.
 
@@ -34,11 +35,13 @@ def make_network(
         Principal lines: for panels that are planar quads; no strip stands on them straight or with one radius.
     every : (int, int)
         Of the net of that density one in so many A and B curves is kept.
+    normal_curvature : float, optional
+        Of all lamellas, 1/m, where it is not to be H: 0 for asymptotic lines. On surfaces of revolution.
 
     Raises
     ------
     InputError
         See `lamella.network.density.choose_density`; or no two lamellas cross.
     """
-    density = choose_density(surface, cells=cells, spacing=spacing, pattern=Pattern(kind, every))
+    density = choose_density(surface, cells=cells, spacing=spacing, pattern=Pattern(kind, every, normal_curvature))
     return trace_closed_form(surface, density, minimum_length=minimum_length)

@@ -38,10 +38,13 @@ class Pattern:
     kind : "lamellas" or "principal"
     every : (int, int)
         p, q: one in p curves of family A is kept, one in q of family B.
+    normal_curvature : float, optional
+        Of the curves, 1/m, where it is not H: they cross at other angles than 90 degrees then.
     """
 
     kind: NetKind = "lamellas"
     every: tuple[int, int] = (1, 1)
+    normal_curvature: float | None = None
 
     @property
     def factor(self) -> complex:

@@ -14,6 +14,7 @@ from lamella.network.domain import A
 from lamella.network.domain_of import domain_of
 from lamella.network.faces import trace_faces
 from lamella.network.lattice import Lattice, build_lattice, ragged_ranges
+from lamella.network.leaning_band import LeaningBand, line_darboux
 from lamella.network.network import BOUNDARY, Network
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.darboux import Darboux, lamella_darboux
@@ -65,6 +66,7 @@ def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, segment: 
         np.empty((3, count)),
         np.empty(count, np.complex128),
     )
+    leaning = isinstance(segments.domain, LeaningBand)
     for start in range(0, count, BLOCK):
         block = slice(start, start + BLOCK)
         zeta, derivative = segments.where(segment[block], arcs.parameter(segment[block], fraction[block]))
@@ -72,7 +74,7 @@ def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, segment: 
         heading = derivative / np.abs(derivative)
         samples.points[block], samples.normals[block] = at.position, at.normal
         samples.tangents[block] = at.vector(heading)
-        samples.darboux[:, block] = lamella_darboux(at, heading)
+        samples.darboux[:, block] = line_darboux(at, heading) if leaning else lamella_darboux(at, heading)
         samples.where[block] = zeta
     return samples
 
