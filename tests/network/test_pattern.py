@@ -32,13 +32,16 @@ from lamella import (
 )
 from lamella.files.network_json import network_bytes, network_schema
 from lamella.network.cell_sizes import MOST_RATIO, large_cells
+from lamella.network.density import choose_density
 from lamella.network.element_network import ElementNetwork, element_network
-from lamella.network.network import BOUNDARY, REGULAR, SINGULAR, Network
+from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
 from lamella.network.pattern import Pattern, fitting_cells
 from lamella.project import project_schema
 from lamella.summary import network_summary, principal_summary
+from lamella.surface.found.find import find_film
 from lamella.surface.outline import Ring
-from network.test_found_network import FORMS, from_exact_nodes
+from network.random_boundaries import sketch
+from network.test_found_network import FORMS, euler, from_exact_nodes
 from network.test_network import _check_combinatorics
 
 
@@ -189,6 +192,27 @@ def test_around_a_hole_of_elements() -> None:
     with pytest.raises(InputError, match=r"cells = 21 around 'border 1' is no multiple of 2") as refused:
         on_elements("unduloid", Pattern("lamellas", (2, 2)), 21)
     assert "20 or 22" in refused.value.remedy
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(100, 112))
+def test_patterns_on_random_films(seed: int) -> None:
+    """What holds of every net (tests/network/test_random_networks.py) holds of its patterns."""
+    case = sketch(seed)
+    try:
+        found = find_film(case.loops, case.mean_curvature, tolerance=2e-2, most_nodes=12_000)
+    except InputError:
+        pytest.skip("no such film")
+    surface, loops = found.surface("form-found"), len(case.loops)
+    for pattern in (Pattern("principal"), Pattern("principal", (2, 1)), Pattern("lamellas", (2, 2))):
+        network = element_network(surface, cells=2 * case.cells, minimum_length=0.0, pattern=pattern).network
+        at, owner = np.unique(np.column_stack([network.stop_nodes, network.stop_owner]), axis=0).T
+        regular = network.node_kinds == REGULAR
+        for family in "AB":
+            degree = np.bincount(at[network.families[owner] == family], minlength=len(regular))
+            assert (degree[regular] == 1).all()
+        if not (network.node_kinds == SEAM).any():
+            assert 2 - loops - len(network.faces_left_out) <= euler(network) <= 2 - loops
 
 
 # --- principal nets -------------------------------------------------------------------------------------------------
@@ -470,6 +494,16 @@ def test_at_the_mean_curvature_they_are_the_lamellas() -> None:
     assert np.array_equal(plain.sample_points, same.sample_points)
     near = make_network(surface, cells=24, normal_curvature=surface.mean_curvature + 1e-9)
     same_points(near.node_points, plain.node_points, 1e-7)
+
+
+def test_spacing_of_such_lines() -> None:
+    """The cells are rhombi, and the guess from which the nearest number is looked for knows it."""
+    for surface, wanted in LEANING:
+        median = float(np.median(make_network(surface, cells=40, normal_curvature=wanted).cell_edges))
+        assert make_network(surface, spacing=median, normal_curvature=wanted).cells == pytest.approx(40, abs=1)
+        fine = choose_density(surface, spacing=median / 10, pattern=Pattern(normal_curvature=wanted))
+        assert fine.estimated_nodes > 20_000
+        assert fine.cells == pytest.approx(400, rel=0.1)
 
 
 def test_such_lines_with_some_left_out() -> None:

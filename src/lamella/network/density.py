@@ -63,17 +63,19 @@ def _estimate(lines: Lines) -> tuple[float, float]:
 
 
 def _median_edge(surface: ClosedForm, whole: float, lines: Lines, pattern: Pattern) -> float:
-    """Median cell edge divided by the step, 1 / sqrt(m): l / l0 = 1 / (sqrt2 mu) of lamellas, weighted alike in chi."""
+    """Median cell edge divided by the step, 1 / sqrt(m), weighted alike in the cell plane."""
     lines = lines.take(np.arange(0, len(lines.start), max(1, len(lines.start) // 200)))
     length = np.maximum(lines.end - lines.start, 0)
     count = 64
     t = lines.start[:, None] + length[:, None] * ((np.arange(count) + 0.5) / count)
     point = lines.base[:, None] + t * lines.direction[:, None]
-    place = domain_of(surface, whole / TRIAL, pattern).place(np.repeat(lines.sheet, count), point.ravel())
-    edge = 1 / surface.at(place).mu
+    domain = domain_of(surface, whole / TRIAL, pattern)
+    where = np.repeat(lines.sheet, count), point.ravel()
+    velocity = domain.velocity(*where, np.repeat(lines.direction, count))
+    edge = surface.metric(domain.place(*where)) * np.abs(velocity)
     order = np.argsort(edge)
     share = np.cumsum(np.repeat(length, count)[order])
-    return float(edge[order][np.searchsorted(share, share[-1] / 2)] * pattern.edge)
+    return float(edge[order][np.searchsorted(share, share[-1] / 2)] / domain.step)
 
 
 def _nearest(surface: ClosedForm, whole: float, cells: int, spacing: float, pattern: Pattern) -> int:

@@ -6,7 +6,8 @@ mu^2 = |T| / r^2 changes along the meridian alone: the lines are V -+ p(U) = con
 
     dp/dU = sqrt((1 + c) / (1 - c)) for T > 0 (d1 along the parallel), its inverse for T < 0,   c = (kn - H) r^2 / |T|,
 
-straight in the plane of p + i V. At kn = H, p = U, and they are the lamellas at 90 degrees; kn = 0: asymptotic lines.
+straight in the plane of p + i V. At kn = H they are the lamellas that cross at 90 degrees, p = U; those of kn = 0 are
+asymptotic lines.
 """
 
 from __future__ import annotations
