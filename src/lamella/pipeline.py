@@ -213,7 +213,7 @@ def compute(
     clock = _Clock(progress)
     warnings: list[str] = []
     if depth < STAGES.index("lamellas") and until is None:
-        warnings.append(f"the run ends with the network: {_no_strips(project)}")
+        warnings.append(f"the run ends with the network: {project.network.pattern.no_strips}")
 
     clock.start(f"surface: {project.surface.kind}")
     surface, density = plan(project, until=until, folder=folder, progress=progress)
@@ -298,30 +298,15 @@ def _weave(surface: Surface[Any], project: Project, progress: Progress) -> Eleme
 def _last_of(project: Project, until: str | None) -> int:
     """Number of the last stage; of principal lines, and of lamellas that cross askew, that is the network."""
     depth, last = _depth(LAST_STAGE if until is None else until), STAGES.index("network")
-    if not _no_strips(project) or depth <= last:
+    if not project.network.pattern.no_strips or depth <= last:
         return depth
     if until is not None:
         raise InputError(
-            f"stage {until!r} needs a net of lamellas at right angles: {_no_strips(project)}",
+            f"stage {until!r} needs a net of lamellas at right angles: {project.network.pattern.no_strips}",
             'write --until network, kind = "lamellas" and no normal_curvature',
             "network.kind" if project.network.kind == "principal" else "network.normal_curvature",
         )
     return last
-
-
-def _no_strips(project: Project) -> str:
-    """Why a net has no strips, "" where it has."""
-    if project.network.kind == "principal":
-        return (
-            "a strip normal to the surface along a principal line is developable, but unrolls neither straight nor "
-            "with one radius"
-        )
-    if project.network.normal_curvature is not None:
-        return (
-            "lamellas of a given normal curvature cross at other angles than 90 deg, and joints for these are not part "
-            f"of version {__version__} (where normal_curvature is H it can be left out)"
-        )
-    return ""
 
 
 def _depth(until: str) -> int:

@@ -37,6 +37,8 @@ from lamella.network.element_network import ElementNetwork, element_network
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
 from lamella.network.pattern import Pattern, fitting_cells
 from lamella.project import project_schema
+from lamella.strip.lamellas import Section, make_lamellas
+from lamella.strip.material import MATERIALS
 from lamella.summary import network_summary, principal_summary
 from lamella.surface.found.find import find_film
 from lamella.surface.outline import Ring
@@ -385,6 +387,14 @@ def test_no_strips_on_principal_lines(until: str) -> None:
     assert refused.value.where == "network.kind"
     assert until in refused.value.message
     assert compute(project, until="surface").network is None
+
+
+def test_strips_are_refused_as_a_function_too() -> None:
+    section = Section(0.1, 0.0015, 1, 0.025)
+    for more in ({"kind": "principal"}, {"normal_curvature": 0.1}):
+        network = make_network(Catenoid(1.0, (-0.5, 0.5)), cells=12, **more)
+        with pytest.raises(InputError, match="there are no strips for this net"):
+            make_lamellas(network, section, MATERIALS["S355"])
 
 
 def test_the_files_tell_the_kind() -> None:

@@ -52,6 +52,21 @@ class Pattern:
         return 1 + 1j if self.kind == "lamellas" else 1 + 0j
 
     @property
+    def no_strips(self) -> str:
+        """Why no strips are made for these curves, "" where they are."""
+        if self.kind == "principal":
+            return (
+                "a strip normal to the surface along a principal line is developable, but unrolls neither straight nor "
+                "with one radius"
+            )
+        if self.normal_curvature is not None:
+            return (
+                "lamellas of a given normal curvature cross at other angles than 90 deg, and joints for these are not "
+                "offered yet (where normal_curvature is H it can be left out)"
+            )
+        return ""
+
+    @property
     def edge(self) -> float:
         """Cell edge of the whole lattice times mu over l0."""
         return 1 / abs(self.factor)
