@@ -139,6 +139,7 @@ def test_defaults_filled_in_read_back_the_same(path: Path) -> None:
     # every key that can have a value has one
     for table, model in TABLES.items():
         unset = {"spacing"} if project.network.spacing is None else {"cells"}
+        unset |= {"normal_curvature"} if project.network.normal_curvature is None else set()
         assert set(full[table]) == set(model.model_fields) - (unset if table == "network" else set())
 
 

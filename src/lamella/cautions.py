@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from lamella.network.cell_sizes import MOST_RATIO, large_cells
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas, layer_drift
 from lamella.surface.element.surface import ElementSurface
@@ -67,7 +68,7 @@ def surface_file_cautions(surface: Surface[Any]) -> Iterator[str]:
 
 
 def network_cautions(network: Network, height: float, closing: str = "open") -> Iterator[str]:
-    """Lamellas left out, cells too small for the strip, and a wish to close a net that closes anyway."""
+    """Lamellas left out, cells much larger than others or too small for the strip, needless wishes."""
     if closing != "open":
         yield f"network.closing = {closing!r} has nothing to do: every net of a closed-form surface closes by itself"
     if network.left_out:
@@ -84,8 +85,16 @@ def network_cautions(network: Network, height: float, closing: str = "open") -> 
             f"{len(network.faces_left_out)} faces of more than six corners between lamellas and rim are left out (near "
             f"{places} m): more cells make them smaller"
         )
+    count, large = large_cells(network)
+    if large:
+        places = "; ".join(f"{one.edge:.3g} m at ({', '.join(f'{x:.3g}' for x in one.point)}) m" for one in large)
+        yield (
+            f"{count} cell edge{'s are' if count > 1 else ' is'} over {MOST_RATIO:g} x the median, up to "
+            f"{large[0].ratio:.3g} x ({places}): the surface is nearly planar or spherical there; more cells, or a "
+            "boundary that bends it more"
+        )
     median = float(np.median(network.cell_edges))
-    if median < height:
+    if median < height and network.pattern.kind == "lamellas":
         yield (
             f"half of the cell edges are shorter than {median * 1000:.3g} mm, less than the strip's height of "
             f"{height * 1000:g} mm: choose fewer cells or a lower strip"

@@ -131,10 +131,27 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
         add("Network", "Cell edge, smallest", n["cell_edge_min"], "m")
         add("Network", "Cell edge, median", n["cell_edge_median"], "m")
         add("Network", "Cell edge, largest", n["cell_edge_max"], "m")
-        add("Network", "Node angle off 90°, largest", n["node_angle_deviation_max_deg"], "°", form=".2g")
         if "adjustment" in n:
             add("Network", "Boundary adjusted by, at most", n["adjustment"]["moved_max"], "mm", 1e3, ".3g")
-        add("Network", "Normal curvature off H, largest", n["normal_curvature_deviation_max"], "1/m", form=".2g")
+        if n["normal_curvature"] in (None, s["mean_curvature"]):
+            add("Network", "Node angle off 90°, largest", n["node_angle_deviation_max_deg"], "°", form=".2g")
+        else:
+            add("Network", "Node angle, smallest", n["node_angle_min_deg"], "°")
+            add("Network", "Node angle, largest", n["node_angle_max_deg"], "°")
+            add("Network", "Normal curvature of all lamellas", n["normal_curvature"], "1/m")
+        if n["kind"] == "lamellas":
+            of = "H" if n["normal_curvature"] == s["mean_curvature"] else "it"
+            off = n["normal_curvature_deviation_max"]
+            add("Network", f"Normal curvature off {of}, largest", off, "1/m", form=".2g")
+        else:
+            add("Network", "Panels with four corners", n["panels"], form=",")
+            for key, label in (
+                ("median", "inside, median"),
+                ("max", "inside, worst"),
+                ("rim_max", "at the rim, worst"),
+            ):
+                if n["panel_planarity"][key] is not None:
+                    add("Network", f"Panel planarity {label}", n["panel_planarity"][key], form=".2g")
     if m:
         add("Lamellas", "Length, one layer", m["total_length"], "m")
         add("Lamellas", "Geodesic curvature, largest", m["geodesic_curvature_max"], "1/m")

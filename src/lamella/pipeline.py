@@ -147,7 +147,7 @@ def plan(
     ------
     InputError
     """
-    depth = _depth(LAST_STAGE if until is None else until)
+    depth = _last_of(project, until)
     if depth:
         _refuse_adjusting(project)
     surface = make_surface(project, folder, progress)
@@ -155,7 +155,8 @@ def plan(
         _check_fabrication(fill_in(project, surface), surface.mean_curvature)
     if not isinstance(surface, ClosedForm):
         return surface, None
-    return surface, choose_density(surface, cells=project.network.cells, spacing=project.network.spacing)
+    table = project.network
+    return surface, choose_density(surface, cells=table.cells, spacing=table.spacing, pattern=table.pattern)
 
 
 def _refuse_adjusting(project: Project) -> None:
@@ -181,7 +182,7 @@ def _planned(
 ) -> tuple[Surface[Any], Density | None, Adjusted | None]:
     """`plan`, with the boundary adjusted where the project asks for it."""
     table = project.surface
-    depth = _depth(LAST_STAGE if until is None else until)
+    depth = _last_of(project, until)
     if not depth or project.network.closing != "adjust" or table.kind != "form-found":
         return *plan(project, until=until, folder=folder, progress=progress), None
     from lamella.network.adjust import adjust_boundary
@@ -246,9 +247,11 @@ def compute(
     ------
     InputError
     """
-    depth = _depth(LAST_STAGE if until is None else until)
+    depth = _last_of(project, until)
     clock = _Clock(progress)
     warnings: list[str] = []
+    if depth < STAGES.index("lamellas") and until is None:
+        warnings.append(f"the run ends with the network: {project.network.pattern.no_strips}")
 
     clock.start(f"surface: {project.surface.kind}")
     surface, density, adjusted = _planned(project, until, folder, progress)
@@ -327,9 +330,24 @@ def _weave(surface: Surface[Any], project: Project, adjusted: Adjusted | None, p
         closing="round" if table.closing == "round" else "open",
         step=adjusted.step if adjusted else None,
         minimum_length=table.minimum_length,
+        pattern=table.pattern,
         loop_names=tuple(loop.name for loop in boundary),
         progress=progress,
     )
+
+
+def _last_of(project: Project, until: str | None) -> int:
+    """Number of the last stage; of principal lines, and of lamellas that cross askew, that is the network."""
+    depth, last = _depth(LAST_STAGE if until is None else until), STAGES.index("network")
+    if not project.network.pattern.no_strips or depth <= last:
+        return depth
+    if until is not None:
+        raise InputError(
+            f"stage {until!r} needs a net of lamellas at right angles: {project.network.pattern.no_strips}",
+            'write --until network, kind = "lamellas" and no normal_curvature',
+            "network.kind" if project.network.kind == "principal" else "network.normal_curvature",
+        )
+    return last
 
 
 def _depth(until: str) -> int:

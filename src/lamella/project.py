@@ -7,10 +7,12 @@ from typing import Annotated, Any, Literal
 import tomli_w
 from pydantic import Field, field_validator, model_validator
 
+from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.project_boundary import AdjustTable, ArcTable, BoundaryTable, CircleTable, PartTable, SlideTable
 from lamella.project_surface import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
 from lamella.project_values import LEAST_LENGTH, Range, Refusal, Table, length, number, read_points, two_numbers
 from lamella.strip.material import MATERIALS, Material, find_material
+from lamella.wording import shown
 
 __all__ = [
     "LEAST_LENGTH",
@@ -36,9 +38,19 @@ __all__ = [
 ]
 
 
-class NetworkTable(Table):
-    """How dense the net is."""
+# of curves left out; fewer are kept than anybody would build
+MOST_LEFT_OUT = 100
+_Every = Annotated[int, Field(ge=1, le=MOST_LEFT_OUT)]
 
+
+class NetworkTable(Table):
+    """Which curves the net has, and how dense it is."""
+
+    kind: Literal["lamellas", "principal"] = Field(
+        default="lamellas",
+        description='"lamellas": the curves strips stand on, straight or with one radius; "principal": principal '
+        "lines, for panels that are nearly planar quads. A principal net has no strips: the run ends with the network.",
+    )
     cells: int | None = number(
         "Number of A lamellas that cross a loop once around the axis; on a simply connected surface, number of "
         "cells along its longest principal line. 24 when spacing is not given either.",
@@ -53,6 +65,22 @@ class NetworkTable(Table):
         default=None,
         examples=[0.5],
     )
+    every: _Every | Annotated[tuple[_Every, _Every], Field(strict=False)] = Field(
+        default=1,
+        description="2 keeps every second curve of the net that cells or spacing ask for, 3 every third; [2, 1] every "
+        "second one of family A and all of family B. Singular nodes stay nodes. Around a hole cells has to be a "
+        "multiple of it.",
+        examples=[2, [2, 1]],
+    )
+    normal_curvature: float | None = number(
+        "Normal curvature of all lamellas where it is not to be H: 0 for asymptotic lines. They cross at other angles "
+        "than 90 deg then. On closed forms of revolution; the run ends with the network.",
+        "1/m",
+        ge=-1e6,
+        le=1e6,
+        default=None,
+        examples=[0.0],
+    )
     angle: float = number(
         "Angle between the families at the nodes; other than 90 is not offered yet.", "deg", default=90.0
     )
@@ -63,6 +91,23 @@ class NetworkTable(Table):
     minimum_length: float = number(
         "Lamellas shorter than this many median cell edges are left out.", "cells", ge=0, le=100, default=0.5
     )
+
+    @field_validator("every", mode="before")
+    @classmethod
+    def _counts(cls, value: Any) -> Any:
+        counts = value if isinstance(value, list | tuple) else [value]
+        remedy = "write a whole number such as 2, or one for each family: [2, 1]"
+        if len(counts) not in (1, 2) or any(isinstance(n, bool) or not isinstance(n, int) for n in counts):
+            raise Refusal(f"{shown(value)} is not a whole number, or two", remedy)
+        if not all(1 <= n <= MOST_LEFT_OUT for n in counts):
+            raise Refusal(f"{shown(value)} is out of range: has to be from 1 to {MOST_LEFT_OUT}", remedy)
+        return counts[0] if len(set(counts)) == 1 else tuple(counts)
+
+    @property
+    def pattern(self) -> Pattern:
+        """Which curves of the isothermic lattice the net has."""
+        p, q = (self.every, self.every) if isinstance(self.every, int) else self.every
+        return Pattern(self.kind, (p, q), self.normal_curvature)
 
     @model_validator(mode="before")
     @classmethod
@@ -80,6 +125,21 @@ class NetworkTable(Table):
         if self.angle != 90:
             raise Refusal(
                 f"angle = {self.angle:g} deg: only 90 deg is offered", "write angle = 90 or leave it out", "angle"
+            )
+        if self.kind == "principal" and self.normal_curvature is not None:
+            raise Refusal(
+                f'normal_curvature = {self.normal_curvature:g} 1/m and kind = "principal" are both given: along '
+                "principal lines the normal curvature is the principal one",
+                "keep one of them",
+                "normal_curvature",
+            )
+        if self.closing == "adjust" and self.pattern != LAMELLAS:
+            what = f"normal_curvature = {self.normal_curvature}" if self.kind == "lamellas" else f'kind = "{self.kind}"'
+            what = f"every = {shown(self.every)}" if self.every != 1 else what
+            raise Refusal(
+                f'closing = "adjust" moves the boundary for the whole net of lamellas, not for {what}',
+                'write closing = "open" or "round"',
+                "closing",
             )
         return self
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from lamella.fabrication.part import Parts
 from lamella.fabrication.sheet import Nesting
-from lamella.network.network import SINGULAR, Network
+from lamella.network.network import BOUNDARY, SINGULAR, Network
 from lamella.strip.lamellas import Lamellas
 from lamella.strip.material import Material
+from lamella.strip.planarity import planarity_score
 from lamella.strip.unroll import development_deviation
 from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
@@ -75,7 +76,11 @@ def _held(table: BoundaryTable) -> str:
 
 def network_summary(network: Network, requested: str) -> dict[str, Any]:
     """The network's figures."""
-    deviation = np.abs(90 - network.node_angles)
+    angles = network.node_angles
+    deviation = np.abs(90 - angles)
+    wanted = network.pattern.normal_curvature
+    if wanted is None:
+        wanted = network.mean_curvature
     edges = network.cell_edges
     a, b = network.node_degrees()
     rays = a + b
@@ -85,6 +90,8 @@ def network_summary(network: Network, requested: str) -> dict[str, Any]:
         "lamellas": len(network.ids),
         "lamellas_left_out": network.left_out,
         "faces": len(network.face_offsets) - 1,
+        "kind": network.pattern.kind,
+        "every": list(network.pattern.every),
         "requested": requested,
         "cells": network.cells,
         "step": network.step,
@@ -92,14 +99,40 @@ def network_summary(network: Network, requested: str) -> dict[str, Any]:
             {"point": network.node_points[i].tolist(), "order": int(rays[i]) // 2 - 2, "rays": int(rays[i])}
             for i in np.flatnonzero(network.node_kinds == SINGULAR).tolist()
         ],
+        "node_angle_min_deg": float(angles.min()),
+        "node_angle_max_deg": float(angles.max()),
         "node_angle_deviation_max_deg": float(deviation.max()),
         "node_angle_deviation_mean_deg": float(deviation.mean()),
-        "normal_curvature_deviation_max": float(np.abs(network.sample_darboux.kn - network.mean_curvature).max()),
+        "normal_curvature": wanted,
+        "normal_curvature_deviation_max": float(np.abs(network.sample_darboux.kn - wanted).max()),
         "cell_edge_min": float(edges.min()),
         "cell_edge_median": float(np.median(edges)),
         "cell_edge_max": float(edges.max()),
         "periods": periods,
         "closed": all(abs(c - round(c)) <= 1e-3 for p in network.periods for c in (p.a_cells, p.b_cells)),
+    } | (principal_summary(network) if network.pattern.kind == "principal" else {})
+
+
+def principal_summary(network: Network) -> dict[str, Any]:
+    """What a principal net is judged by: its panels, and how its normal curvature varies. kn is H nowhere."""
+    kn, family = network.sample_darboux.kn, np.repeat(network.families, np.diff(network.sample_offsets))
+    curvatures = {f: [float(kn[family == f].min()), float(kn[family == f].max())] for f in "AB" if (family == f).any()}
+    start = network.face_offsets[:-1][np.diff(network.face_offsets) == 4]
+    panels = network.face_nodes[start[:, None] + np.arange(4)]
+    score = planarity_score(*network.node_points[panels].transpose(1, 0, 2))
+    rim = (network.node_kinds[panels] == BOUNDARY).any(1)
+    inner = score[~rim]
+    return {
+        "normal_curvature": None,
+        "normal_curvature_deviation_max": None,
+        "principal_curvatures": curvatures,
+        "geodesic_torsion_max": float(np.abs(network.sample_darboux.tg).max()),
+        "panels": len(start),
+        "panel_planarity": {
+            "median": float(np.median(inner)) if len(inner) else None,
+            "max": float(inner.max()) if len(inner) else None,
+            "rim_max": float(score[rim].max()) if rim.any() else None,
+        },
     }
 
 

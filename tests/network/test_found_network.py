@@ -182,13 +182,14 @@ def from_exact_nodes(form: ClosedForm, network: Network, step: float) -> tuple[n
     zeta = parameters(form, points)
     at = form.at(zeta)
     w = form.isothermic(zeta)
-    chi = np.column_stack([w.real - w.imag, w.real + w.imag]) / step
+    cells = network.pattern.cells(w, step)
+    chi = np.column_stack([cells.real, cells.imag])
     fixed = bool(form.singular_orders())
     origin = np.zeros(2) if fixed else np.angle(np.exp(2j * np.pi * chi).mean(0)) / (2 * np.pi)
     miss = chi - origin
     miss -= np.round(miss)
-    # a cell is l0 / sqrt 2 wide in the plane of w
-    tangential = np.linalg.norm(miss, axis=1) * step / np.sqrt(2) / at.mu
+    # a cell of lamellas is l0 / sqrt 2 wide in the plane of w
+    tangential = np.linalg.norm(miss * network.pattern.every[::-1], axis=1) * step * network.pattern.edge / at.mu
     return np.hypot(tangential, np.linalg.norm(points - at.position, axis=1)), origin
 
 

@@ -40,13 +40,17 @@ def network_bytes(network: Network, *, name: str, version: str) -> bytes:
         network.sample_normals,
         network.stop_arclengths,
     )
-    head = {
+    head: dict[str, Any] = {
         "schema": SCHEMA,
         "version": version,
         "units": "m",
         "name": name,
         "surface": {"mean_curvature": float(network.mean_curvature)},
     }
+    if network.pattern.kind != "lamellas":
+        head["kind"] = network.pattern.kind
+    if network.pattern.normal_curvature is not None:
+        head["normal_curvature"] = network.pattern.normal_curvature
     return b"".join(
         (
             orjson.dumps(head)[:-1],

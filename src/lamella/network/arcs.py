@@ -61,7 +61,8 @@ class Segments:
         t = self.t[segment] + np.where(radial, 1.0, sigma) * self.span[segment]
         point = self.base[segment] + t * self.direction[segment]
         zeta = self.domain.place(self.sheet[segment], point)
-        derivative = self.domain.derivative(self.sheet[segment], point) * self.direction[segment] * self.span[segment]
+        velocity = self.domain.velocity(self.sheet[segment], point, self.direction[segment])
+        derivative = velocity * self.span[segment]
         return np.where(radial, sigma * zeta, zeta), np.where(radial, zeta, derivative)
 
     def speed(self, segment: Integers, sigma: Floats) -> Floats:

@@ -1,7 +1,8 @@
 """The surface's elements in the cell plane: chi = (u - v) + i (u + v) over l0, and back.
 
 A lamellas are Im chi = whole, B lamellas Re chi = whole (`lamella.network.domain`); nodes are the whole numbers. Each
-element has its own sheet; through a cut chi goes over into sign chi + shift.
+element has its own sheet; through a cut chi goes over into sign chi + shift. For principal lines, and where curves are
+left out, chi is that of `lamella.network.pattern`.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from lamella.network.inverse import find_places
 from lamella.network.isothermic import Isothermic
 from lamella.network.net_mesh import NetMesh
+from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.element.places import Places
 from lamella.surface.points import Complexes, Floats
 
@@ -37,6 +39,8 @@ class CellMap:
         Of the transitions, from left to right.
     step : float
         l0, sqrt(m).
+    pattern : Pattern
+        What chi is of w, and which curves are kept: chi counts these.
     """
 
     mesh: NetMesh
@@ -45,20 +49,21 @@ class CellMap:
     signs: Integers
     shifts: Complexes
     step: float
+    pattern: Pattern = LAMELLAS
 
     @classmethod
-    def of(cls, iso: Isothermic, origin: complex, step: float) -> CellMap:
+    def of(cls, iso: Isothermic, origin: complex, step: float, pattern: Pattern = LAMELLAS) -> CellMap:
         """The map whose lattice has a point at w = origin (sqrt(m)) and neighbours l0 = step apart."""
-        scale = (1 + 1j) / step
         signs = np.array([piece.sign for piece in iso.transitions], np.int64)
         shifts = np.array([piece.shift for piece in iso.transitions], complex)
         return cls(
             iso.mesh,
-            (iso.value - origin) * scale,
+            pattern.cells(iso.value - origin, step),
             iso.across,
             signs,
-            (shifts + (signs - 1) * origin) * scale,
+            pattern.cells(shifts + (signs - 1) * origin, step),
             step,
+            pattern,
         )
 
     @cached_property

@@ -8,9 +8,13 @@ import numpy as np
 
 from lamella.errors import InputError
 from lamella.network.arcs import ArcLengths, Segments
-from lamella.network.domain import Lines, domain_of
+from lamella.network.domain import Lines
+from lamella.network.domain_of import domain_of
 from lamella.network.lattice import build_lattice
+from lamella.network.leaning_band import check_normal_curvature
+from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 from lamella.surface.closed_form import ClosedForm
+from lamella.surface.outline import Ring
 from lamella.surface.umbilic import refuse_umbilic
 
 LEAST_CELLS = 3
@@ -38,16 +42,19 @@ class Density:
         From the number of cells that fit on the surface.
     requested : str
         What the project asked for.
+    pattern : Pattern
+        Of the curves this far apart, those the net has.
     """
 
     cells: int
     step: float
     estimated_nodes: int
     requested: str
+    pattern: Pattern = LAMELLAS
 
 
-def _coarse_lines(surface: ClosedForm, whole: float) -> Lines:
-    return domain_of(surface, whole / TRIAL).lines()
+def _coarse_lines(surface: ClosedForm, whole: float, pattern: Pattern) -> Lines:
+    return domain_of(surface, whole / TRIAL, pattern).lines()
 
 
 def _estimate(lines: Lines) -> tuple[float, float]:
@@ -55,27 +62,29 @@ def _estimate(lines: Lines) -> tuple[float, float]:
     return float(np.maximum(lines.end - lines.start, 0).sum() / 2) / TRIAL**2, 2 * len(lines.start) / TRIAL
 
 
-def _median_edge(surface: ClosedForm, whole: float, lines: Lines) -> float:
-    """Median cell edge divided by the step, sqrt(m): l / l0 = 1 / (sqrt2 mu), weighted alike in the cell plane."""
+def _median_edge(surface: ClosedForm, whole: float, lines: Lines, pattern: Pattern) -> float:
+    """Median cell edge divided by the step, 1 / sqrt(m), weighted alike in the cell plane."""
     lines = lines.take(np.arange(0, len(lines.start), max(1, len(lines.start) // 200)))
     length = np.maximum(lines.end - lines.start, 0)
     count = 64
     t = lines.start[:, None] + length[:, None] * ((np.arange(count) + 0.5) / count)
     point = lines.base[:, None] + t * lines.direction[:, None]
-    place = domain_of(surface, whole / TRIAL).place(np.repeat(lines.sheet, count), point.ravel())
-    edge = 1 / surface.at(place).mu
+    domain = domain_of(surface, whole / TRIAL, pattern)
+    where = np.repeat(lines.sheet, count), point.ravel()
+    velocity = domain.velocity(*where, np.repeat(lines.direction, count))
+    edge = surface.metric(domain.place(*where)) * np.abs(velocity)
     order = np.argsort(edge)
     share = np.cumsum(np.repeat(length, count)[order])
-    return float(edge[order][np.searchsorted(share, share[-1] / 2)] / np.sqrt(2))
+    return float(edge[order][np.searchsorted(share, share[-1] / 2)] / domain.step)
 
 
-def _nearest(surface: ClosedForm, whole: float, cells: int, spacing: float) -> int:
+def _nearest(surface: ClosedForm, whole: float, cells: int, spacing: float, pattern: Pattern) -> int:
     """The number of cells near a first guess whose net, pieces cut off by the rim included, has the nearest median."""
     misses: dict[int, float] = {}
 
     def miss(count: int) -> float:
         if count not in misses:
-            domain = domain_of(surface, whole / count)
+            domain = domain_of(surface, whole / count, pattern)
             lines = domain.lines()
             lines = lines.take(lines.end > lines.start)
             length = ArcLengths(Segments(domain, build_lattice(domain, lines))).length
@@ -93,7 +102,9 @@ def _round(number: float) -> str:
     return f"{number:,.0f}" if number < 1e12 else f"{number:.3g}"
 
 
-def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: float | None = None) -> Density:
+def choose_density(
+    surface: ClosedForm, *, cells: int | None = None, spacing: float | None = None, pattern: Pattern = LAMELLAS
+) -> Density:
     """The step l0 that holds a whole number of cells and comes nearest to what is asked.
 
     Parameters
@@ -103,12 +114,14 @@ def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: fl
         Number of A lamellas that cross a loop once around the axis; on a simply connected surface number of
         cells along its longest principal line. Default 24 when spacing is not given either.
     spacing : float, optional
-        Wanted median cell edge, m.
+        Wanted median cell edge, m, before curves are left out.
+    pattern : Pattern
 
     Raises
     ------
     InputError
-        Both given; fewer than 3 cells; a net of more than 500,000 nodes; every point of the surface umbilic.
+        Both given; fewer than 3 cells; a net of more than 500,000 nodes; every point of the surface umbilic; a number
+        of cells around the axis that is no multiple of what is kept.
     """
     if cells is not None and spacing is not None:
         raise InputError(
@@ -119,15 +132,17 @@ def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: fl
     if spacing is not None and not 0 < spacing < np.inf:
         raise InputError(f"spacing = {spacing!r} m is no length", "write a number above 0, in m", "network.spacing")
     refuse_umbilic(surface)
+    if pattern.normal_curvature is not None:
+        check_normal_curvature(surface, pattern.normal_curvature)
     whole = surface.whole_length
     requested = f"cells = {cells}"
     if cells is None and spacing is None:
         cells, requested = 24, "cells = 24 (default)"
     key = "network.cells"
-    lines = _coarse_lines(surface, whole)
+    lines = _coarse_lines(surface, whole, pattern)
     if spacing is not None:
         key, requested = "network.spacing", f"spacing = {spacing:g} m"
-        median = _median_edge(surface, whole, lines)
+        median = _median_edge(surface, whole, lines, pattern)
         exact = whole * median / spacing
         cells = max(round(exact), 1)
         if cells < LEAST_CELLS:
@@ -139,11 +154,16 @@ def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: fl
             )
         area, ends = _estimate(lines)
         if area * cells**2 + ends * cells < MOST_TRIED:
-            cells = _nearest(surface, whole, cells, spacing)
+            cells = _nearest(surface, whole, cells, spacing, pattern)
     assert cells is not None
+    if isinstance(surface.outline, Ring):
+        turn = complex(surface.isothermic(np.array([2j * np.pi]))[0])
+        cells = fitting_cells(cells, pattern.multiple(turn), "the axis", given=spacing is None)
     if cells < LEAST_CELLS:
         raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
     area, ends = _estimate(lines)
+    p, q = pattern.every
+    area, ends = area / (p * q), ends * (p + q) / (2 * p * q)
     estimate = area * cells**2 + ends * cells
     if estimate > MOST_NODES:
         most = int((np.sqrt(ends**2 + 4 * area * MOST_NODES) - ends) / (2 * area))
@@ -160,4 +180,4 @@ def choose_density(surface: ClosedForm, *, cells: int | None = None, spacing: fl
             remedy,
             key,
         )
-    return Density(cells, whole / cells, round(estimate), requested)
+    return Density(cells, whole / cells, round(estimate), requested, pattern)

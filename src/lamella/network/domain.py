@@ -2,7 +2,8 @@
 
 In the lamella plane with coordinate chi = (1 + i) w = (u - v) + i (u + v) the A lamellas (u + v = const) are the
 lines Im chi = const and the B lamellas (u - v = const) the lines Re chi = const. A domain divides by the step l0,
-so that lamellas are lines through the whole numbers and nodes are the points of the integer lattice.
+so that lamellas are lines through the whole numbers and nodes are the points of the integer lattice. In a principal net
+chi is w itself (`lamella.network.pattern`), and all of this holds for principal lines.
 
 A domain may have several *sheets*, each with a lattice of its own (the half planes around the rays of a
 singular node); `Domain.canonical` names a lattice point alike on every sheet that sees it.
@@ -11,15 +12,16 @@ singular node); `Domain.canonical` names a lattice point alike on every sheet th
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lamella.network.network import Period
+from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.closed_form import ClosedForm
-from lamella.surface.outline import Disc, Rectangle, Ring, Square
+from lamella.surface.outline import Disc, Rectangle, Ring
 from lamella.surface.scherk import Scherk, asymptotic_to_conformal
 
 Floats = NDArray[np.float64]
@@ -48,6 +50,8 @@ class Lines:
         In cells.
     singular : (m,) bool
         Whether t = 0 is a singular node where the lamella starts.
+    closed : (m,) bool
+        Whether the end is the start again.
     """
 
     family: Integers
@@ -57,6 +61,16 @@ class Lines:
     start: Floats
     end: Floats
     singular: NDArray[np.bool_]
+    closed: NDArray[np.bool_]
+
+    @property
+    def level(self) -> Integers:
+        """The whole number of chi each line is at, (m,)."""
+        return np.rint(self.base.real + self.base.imag).astype(np.int64)
+
+    def every(self, pattern: Pattern) -> Lines:
+        """Those a pattern keeps."""
+        return self.take(self.level % np.array(pattern.every)[self.family] == 0)
 
     def take(self, keep: NDArray[np.bool_] | Integers) -> Lines:
         """Some of the lines, by mask or by index."""
@@ -78,8 +92,8 @@ class Rim(NamedTuple):
 class Domain(ABC):
     """A region of the cell plane that every lamella line meets in one piece."""
 
-    def __init__(self, surface: ClosedForm, step: float) -> None:
-        self.surface, self.step = surface, step
+    def __init__(self, surface: ClosedForm, step: float, pattern: Pattern = LAMELLAS) -> None:
+        self.surface, self.step, self.pattern = surface, step, pattern
 
     @abstractmethod
     def lines(self) -> Lines:
@@ -91,7 +105,7 @@ class Domain(ABC):
 
     @property
     def periods(self) -> tuple[Period, ...]:
-        """Cells crossed on a loop around each hole."""
+        """Kept curves crossed on a loop around each hole."""
         return ()
 
     def canonical(self, sheet: Integers, point: Complexes) -> Integers:
@@ -106,6 +120,10 @@ class Domain(ABC):
     def derivative(self, sheet: Integers, point: Complexes) -> Complexes:
         """d zeta / d cell at points of the cell plane (not at a singular node)."""
 
+    def velocity(self, sheet: Integers, point: Complexes, direction: Complexes) -> Complexes:
+        """Rate at which zeta changes along lines of given direction, a cell."""
+        return self.derivative(sheet, point) * direction
+
 
 class PlaneDomain(Domain):
     """A domain of one sheet on which zeta is an affine function of the cell plane.
@@ -116,11 +134,11 @@ class PlaneDomain(Domain):
         Lattice point 0 in the unshifted cell plane.
     """
 
-    def __init__(self, surface: ClosedForm, step: float, origin: complex) -> None:
-        super().__init__(surface, step)
+    def __init__(self, surface: ClosedForm, step: float, origin: complex, pattern: Pattern = LAMELLAS) -> None:
+        super().__init__(surface, step, pattern)
         self.origin = origin
         # chi is linear in zeta on these surfaces: zeta = slope * (cell + origin)
-        self.slope = complex(surface.from_isothermic(np.array([step / (1 + 1j)]))[0])
+        self.slope = complex(surface.from_isothermic(np.array([step / pattern.factor]))[0])
 
     def place(self, sheet: Integers, point: Complexes) -> Complexes:
         return self.slope * (point + self.origin)
@@ -149,9 +167,8 @@ class PlaneDomain(Domain):
         bases = base * constants.astype(complex)
         start, end = self.chord(bases, direction)
         m = len(constants)
-        return Lines(
-            np.full(m, family), np.zeros(m, np.int64), bases, np.full(m, direction), start, end, np.zeros(m, bool)
-        )
+        never = np.zeros(m, bool)
+        return Lines(np.full(m, family), np.zeros(m, np.int64), bases, np.full(m, direction), start, end, never, never)
 
 
 def _join(pieces: list[Lines]) -> Lines:
@@ -161,29 +178,47 @@ def _join(pieces: list[Lines]) -> Lines:
 class Band(PlaneDomain):
     """A ring around an axis: a strip of the cell plane that repeats after a whole number of cells."""
 
-    def __init__(self, surface: ClosedForm, step: float) -> None:
-        super().__init__(surface, step, 0j)
+    def __init__(self, surface: ClosedForm, step: float, pattern: Pattern = LAMELLAS) -> None:
+        super().__init__(surface, step, 0j, pattern)
         assert isinstance(surface.outline, Ring)
         self.outline = surface.outline
-        turn = 2j * np.pi / self.slope
-        self.period = complex(round(turn.real), round(turn.imag))
+        self.turn = 2j * np.pi / self.slope
+        self.period = complex(round(self.turn.real), round(self.turn.imag))
 
     @property
     def periods(self) -> tuple[Period, ...]:
-        turn = 2j * np.pi / self.slope
-        return (Period("axis", turn.imag, turn.real),)
+        p, q = self.pattern.every
+        # no -0 where principal lines run around the axis
+        return (Period("axis", self.turn.imag / p + 0.0, self.turn.real / q + 0.0),)
 
     def extent(self) -> tuple[Floats, Floats]:
         # one turn's worth of lamellas of each family; every other one is a repetition
-        return tuple(np.array([0.0, abs(p) - 1.0]) for p in (self.period.real, self.period.imag))  # type: ignore[return-value]
+        around = (np.array([0.0, abs(p) - 1.0]) for p in (self.period.real, self.period.imag))
+        ends = np.array([self.outline.start, self.outline.end]) / self.slope
+        # principal lines that close around the axis do not repeat: there is one at each whole number along it
+        real, imag = (turn if turn[1] > 0 else side for turn, side in zip(around, (ends.real, ends.imag), strict=True))
+        return real, imag
 
     def chord(self, base: Complexes, direction: complex) -> tuple[Floats, Floats]:
+        if self._closes(direction):
+            return np.zeros(len(base)), np.full(len(base), abs(self.period))
         at_zero, rate = (self.slope * base).real, (self.slope * direction).real
         ends = np.stack([(self.outline.start - at_zero) / rate, (self.outline.end - at_zero) / rate])
         return ends.min(0), ends.max(0)
 
+    def _closes(self, direction: complex) -> bool:
+        """Whether lines of a direction run around the axis, back to where they began."""
+        return (self.period * complex(direction).conjugate()).imag == 0
+
+    def _family(self, family: int, constants: Integers, base: complex, direction: complex) -> Lines:
+        lines = super()._family(family, constants, base, direction)
+        return replace(lines, closed=np.full(len(constants), self._closes(direction)))
+
     def canonical(self, sheet: Integers, point: Complexes) -> Integers:
-        turns = np.floor(np.rint(point.imag) / self.period.imag)
+        if self.period.imag:
+            turns = np.floor(np.rint(point.imag) / self.period.imag)
+        else:
+            turns = np.floor(np.rint(point.real) / self.period.real)
         return super().canonical(sheet, point - turns * self.period)
 
     def rim(self, where: Complexes) -> Rim:
@@ -201,8 +236,8 @@ class Band(PlaneDomain):
 class RectangleDomain(PlaneDomain):
     """A rectangle whose sides are lamella directions: whole cells across its narrow side, centred along."""
 
-    def __init__(self, surface: ClosedForm, step: float) -> None:
-        super().__init__(surface, step, 0j)
+    def __init__(self, surface: ClosedForm, step: float, pattern: Pattern = LAMELLAS) -> None:
+        super().__init__(surface, step, 0j, pattern)
         outline = surface.outline
         assert isinstance(outline, Rectangle)
         self.outline = outline
@@ -242,7 +277,7 @@ class RectangleDomain(PlaneDomain):
         )
 
 
-def _centred(cells: float) -> complex:
+def centred(cells: float) -> complex:
     """Lattice origin that puts a node in the middle for an even number of cells across, else a face."""
     return 0j if round(cells) % 2 == 0 else -(0.5 + 0.5j)
 
@@ -250,8 +285,8 @@ def _centred(cells: float) -> complex:
 class ScherkDomain(PlaneDomain):
     """Scherk's square: a curved diamond |p| + |q| <= 2 gd^-1(extent)."""
 
-    def __init__(self, surface: Scherk, step: float) -> None:
-        super().__init__(surface, step, _centred(surface.whole_length / step))
+    def __init__(self, surface: Scherk, step: float, pattern: Pattern = LAMELLAS) -> None:
+        super().__init__(surface, step, centred(surface.whole_length / step), pattern)
         self.scherk = surface
         self.limit = 2 * surface.outline.half_side
         self.reach = float(asymptotic_to_conformal(np.array([self.limit]))[0])
@@ -285,8 +320,8 @@ class ScherkDomain(PlaneDomain):
 class DiscDomain(PlaneDomain):
     """A disc around a regular point (Enneper's classical surface)."""
 
-    def __init__(self, surface: ClosedForm, step: float) -> None:
-        super().__init__(surface, step, _centred(surface.whole_length / step))
+    def __init__(self, surface: ClosedForm, step: float, pattern: Pattern = LAMELLAS) -> None:
+        super().__init__(surface, step, centred(surface.whole_length / step), pattern)
         assert isinstance(surface.outline, Disc)
         self.radius = surface.outline.radius
 
@@ -316,13 +351,13 @@ class StarDomain(Domain):
     exactly one ray, at a right angle, and is a line of that ray's sheet.
     """
 
-    def __init__(self, surface: ClosedForm, step: float) -> None:
-        super().__init__(surface, step)
+    def __init__(self, surface: ClosedForm, step: float, pattern: Pattern = LAMELLAS) -> None:
+        super().__init__(surface, step, pattern)
         assert isinstance(surface.outline, Disc)
         self.radius = surface.outline.radius
         self.sheets = 2 * (surface.hopf_order + 2)
         self.exponent = 2 / (surface.hopf_order + 2)
-        chi = (1 + 1j) * surface.isothermic(np.array([1 + 0j]))[0]
+        chi = pattern.factor * surface.isothermic(np.array([1 + 0j]))[0]
         self.unit, self.phase = abs(chi) / step, float(np.angle(chi))
         self.reach = self.unit * self.radius ** (1 / self.exponent)
 
@@ -331,14 +366,15 @@ class StarDomain(Domain):
         constants: Complexes = np.arange(1, int(np.floor(self.reach + RIM_TOLERANCE)) + 1).astype(np.complex128)
         half = np.sqrt(np.maximum(self.reach**2 - constants.real**2, 0))
         m = len(constants)
+        never, no = np.zeros(m, bool), np.zeros(1, bool)
         for k in range(self.sheets):
             ray, crossing = (A, B) if k % 2 == 0 else (B, A)
             one, unit = np.ones(1), np.ones(1, np.complex128)
             pieces[ray].append(
-                Lines(np.full(1, ray), np.full(1, k), 0 * unit, unit, 0 * one, self.reach * one, one > 0)
+                Lines(np.full(1, ray), np.full(1, k), 0 * unit, unit, 0 * one, self.reach * one, one > 0, no)
             )
             pieces[crossing].append(
-                Lines(np.full(m, crossing), np.full(m, k), constants, np.full(m, 1j), -half, half, np.zeros(m, bool))
+                Lines(np.full(m, crossing), np.full(m, k), constants, np.full(m, 1j), -half, half, never, never)
             )
         lines = _join(pieces[A] + pieces[B])
         # each family in order along the rim
@@ -369,15 +405,3 @@ class StarDomain(Domain):
             np.mod(np.angle(where) + FIRST, 2 * np.pi),
             np.exp(1j * (np.angle(where) + np.pi / 2)),
         )
-
-
-def domain_of(surface: ClosedForm, step: float) -> Domain:
-    """The domain of a closed-form surface for lamellas a step l0 = `step` (sqrt(m)) apart."""
-    if isinstance(surface.outline, Ring):
-        return Band(surface, step)
-    if isinstance(surface.outline, Rectangle):
-        return RectangleDomain(surface, step)
-    if isinstance(surface, Scherk):
-        return ScherkDomain(surface, step)
-    assert isinstance(surface.outline, Disc | Square)
-    return StarDomain(surface, step) if surface.hopf_order else DiscDomain(surface, step)

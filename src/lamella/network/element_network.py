@@ -13,10 +13,11 @@ from lamella.errors import InputError
 from lamella.network.cell_map import CellMap
 from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
 from lamella.network.gluing import FoldedError, integrate, with_shifts
-from lamella.network.holonomy import Holonomy, crossed, holonomies
+from lamella.network.holonomy import Holonomy, holonomies
 from lamella.network.isothermic import Isothermic, Transition
 from lamella.network.net_mesh import NetMesh, make_net_mesh
 from lamella.network.network import SINGULAR, Network, Period
+from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 from lamella.network.trace_elements import trace_elements
 from lamella.network.whole_shifts import nearest_whole
 from lamella.surface.element.quadrature import triangle_rule
@@ -114,6 +115,11 @@ class ElementNetwork:
             "joints": [joint._asdict() for joint in self.joints],
         }
 
+    def _even(self) -> str:
+        """Numbers of cells around a hole with two umbilics at opposite sides of it, that may make both nodes."""
+        kept = max(self.network.pattern.every)
+        return "even" if kept == 1 else f"a multiple of {2 * kept}"
+
     def warnings(self) -> Iterator[str]:
         """Where the net does not meet itself, and umbilics that are no nodes."""
         open_, rounded = (
@@ -136,8 +142,8 @@ class ElementNetwork:
             places = "; ".join(", ".join(f"{x:.3g}" for x in umbilic["point"]) for umbilic in missed)
             yield (
                 f"{len(missed)} of {len(self.umbilics.orders)} umbilics are no nodes of the net (at {places} m): "
-                "lamellas pass around them; another number of cells (even, where two lie on one principal line) makes "
-                "them nodes"
+                f"lamellas pass around them; another number of cells ({self._even()}, where two lie on one principal "
+                "line) makes them nodes"
             )
 
 
@@ -149,10 +155,11 @@ def element_network(
     closing: Closing = "open",
     step: float | None = None,
     minimum_length: float = 0.5,
+    pattern: Pattern = LAMELLAS,
     loop_names: tuple[str, ...] = (),
     progress: Progress = _silent,
 ) -> ElementNetwork:
-    """The network of lamellas on a surface of elements.
+    """The network of lamellas, or of principal lines, on a surface of elements.
 
     Parameters
     ----------
@@ -164,6 +171,8 @@ def element_network(
         coordinates.
     step : float, optional
         Spacing l0 of the lattice, sqrt(m), instead of the one that follows from cells or spacing.
+    pattern : Pattern
+        Which curves of the isothermic lattice the net has.
     loop_names : tuple of str
         Of the boundary loops.
     progress : callable
@@ -173,6 +182,13 @@ def element_network(
     InputError
     """
     refuse_umbilic(surface)
+    if pattern.normal_curvature not in (None, surface.mean_curvature):
+        raise InputError(
+            f"lines of normal curvature {pattern.normal_curvature:g} 1/m, other than H = {surface.mean_curvature:.6g} "
+            "1/m, are offered on closed forms of revolution",
+            "leave normal_curvature out",
+            "network.normal_curvature",
+        )
     umbilics = surface.umbilics
     told = ", ".join(f"order {m}" for m in umbilics.orders.tolist())
     progress(f"  {len(umbilics.orders)} umbilics" + (f" ({told})" if told else ""))
@@ -183,26 +199,24 @@ def element_network(
     )
     names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
     around = holonomies(iso)
-    lattice = choose_lattice(iso, around, umbilics, cells, spacing)
+    lattice = choose_lattice(iso, around, umbilics, cells, spacing, pattern=pattern, names=names)
     if step is not None:
         lattice = replace(lattice, step=step)
-    raw = CellMap.of(iso, lattice.origin, lattice.step)
+    raw = CellMap.of(iso, lattice.origin, lattice.step, pattern)
     near = nearest_whole(iso, raw.shifts, singular_nodes=closing == "round")
     off = np.maximum(np.abs((raw.shifts - near).real), np.abs((raw.shifts - near).imag))
     wanted = np.where((off <= CLOSES) | (closing == "round"), near, np.nan)
     iso = _closed(iso, raw, wanted, lattice)
     rim_loop = mesh.loop[mesh.connectivity.rim_nodes[:, 0]]
     network = trace_elements(
-        CellMap.of(iso, lattice.origin, lattice.step),
+        CellMap.of(iso, lattice.origin, lattice.step, pattern),
         iso.cut,
         umbilics.orders,
         mean_curvature=surface.mean_curvature,
         rim_loop=rim_loop,
         count=lattice.cells,
         periods=tuple(
-            Period(names[one.loop], *(part / lattice.step for part in crossed(one.shift)))
-            for one in around
-            if one.sign == 1
+            Period(names[one.loop], *pattern.crossed(one.shift, lattice.step)) for one in around if one.sign == 1
         ),
         minimum_length=minimum_length,
     )
@@ -218,7 +232,7 @@ def _closed(iso: Isothermic, raw: CellMap, wanted: Complexes, lattice: Lattice) 
     if np.isnan(wanted).all():
         return iso
     try:
-        return with_shifts(iso, wanted * lattice.step / (1 + 1j) - (raw.signs - 1) * lattice.origin)
+        return with_shifts(iso, raw.pattern.isothermic(wanted, lattice.step) - (raw.signs - 1) * lattice.origin)
     except FoldedError as folded:
         worst = float(np.nanmax(np.abs(raw.shifts - wanted)))
         raise InputError(
@@ -230,7 +244,14 @@ def _closed(iso: Isothermic, raw: CellMap, wanted: Complexes, lattice: Lattice) 
 
 
 def choose_lattice(
-    iso: Isothermic, around: tuple[Holonomy, ...], umbilics: Umbilics, cells: int | None, spacing: float | None
+    iso: Isothermic,
+    around: tuple[Holonomy, ...],
+    umbilics: Umbilics,
+    cells: int | None,
+    spacing: float | None,
+    *,
+    pattern: Pattern = LAMELLAS,
+    names: tuple[str, ...] = (),
 ) -> Lattice:
     """Origin and step: a singular node on the lattice, a whole number of cells around the first hole or across."""
     mesh = iso.mesh
@@ -242,9 +263,9 @@ def choose_lattice(
         odd = inside[umbilics.orders[inside] % 2 == 1]
         vertex = mesh.umbilics[odd[0] if len(odd) else inside[0]]
         origin = complex(corner[mesh.connectivity.faces == vertex].mean())
-    whole = _whole_length(iso, around)
+    whole, period = _whole_length(iso, around, pattern)
     points, weights = triangle_rule(8)
-    mu_area, edge = _cell_densities(iso, points, weights)
+    mu_area, edge = _cell_densities(iso, points, weights, pattern)
     requested = f"cells = {cells}"
     key = "network.cells"
     if cells is None and spacing is None:
@@ -263,10 +284,13 @@ def choose_lattice(
                 key,
             )
     assert cells is not None
+    if period:
+        name = repr(names[around[0].loop]) if names else "the first hole"
+        cells = fitting_cells(cells, pattern.multiple(period), name, given=spacing is None)
     if cells < LEAST_CELLS:
         raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
     step = whole / cells
-    estimate = float(mu_area.sum() / step**2)
+    estimate = float(mu_area.sum() / step**2) / (pattern.every[0] * pattern.every[1])
     if estimate > MOST_NODES:
         memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
         most = int(cells * np.sqrt(MOST_NODES / estimate))
@@ -281,8 +305,8 @@ def choose_lattice(
     return Lattice(origin, step, cells, requested, round(estimate))
 
 
-def _cell_densities(iso: Isothermic, points: Floats, weights: Floats) -> tuple[Floats, Floats]:
-    """Area of the cell plane, 2 |dw|^2, m, and cell edge over l0, 1 / (sqrt2 mu), at integration points."""
+def _cell_densities(iso: Isothermic, points: Floats, weights: Floats, pattern: Pattern) -> tuple[Floats, Floats]:
+    """Area of the cell plane, |factor dw|^2, m, and cell edge over l0, 1 / |factor mu|, at integration points."""
     connectivity = iso.mesh.connectivity
     basis = connectivity.basis
     x, y = basis.basis(points, 1, 0), basis.basis(points, 0, 1)
@@ -290,17 +314,21 @@ def _cell_densities(iso: Isothermic, points: Floats, weights: Floats) -> tuple[F
     area = np.abs(w_x.real * w_y.imag - w_x.imag * w_y.real) * weights
     corners = iso.mesh.nodes[connectivity.elements]
     flat = np.linalg.norm(np.cross(np.matmul(x, corners), np.matmul(y, corners)), axis=2) * weights
-    edge = np.sqrt(flat / np.maximum(2 * area, 1e-300))
-    return (2 * area).ravel(), edge.ravel()
+    area = area / pattern.edge**2
+    edge = np.sqrt(flat / np.maximum(area, 1e-300))
+    return area.ravel(), edge.ravel()
 
 
-def _whole_length(iso: Isothermic, around: tuple[Holonomy, ...]) -> float:
-    """What `cells` divides: the period around the first hole, or the longest principal line, sqrt(m)."""
+def _whole_length(iso: Isothermic, around: tuple[Holonomy, ...], pattern: Pattern) -> tuple[float, complex]:
+    """What `cells` divides, sqrt(m), and the period it is: around the first hole, or 0: the longest principal line."""
     corner = iso.value[:, :3]
     longest = float(max(np.ptp(corner.real), np.ptp(corner.imag)))
-    if around and around[0].sign == 1 and max(crossed(around[0].shift)) > LEAST_PERIOD * longest:
-        return max(crossed(around[0].shift))
-    return longest
+    if around and around[0].sign == 1:
+        chi = around[0].shift * pattern.factor
+        counted = max(abs(chi.real), abs(chi.imag))
+        if counted > LEAST_PERIOD * longest:
+            return counted, around[0].shift
+    return longest, 0j
 
 
 def _named(piece: Transition, mesh: NetMesh, names: tuple[str, ...]) -> str:

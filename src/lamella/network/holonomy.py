@@ -53,11 +53,6 @@ def tip_vertices(mesh: NetMesh, piece: Transition) -> tuple[int, int]:
     return int(first), int(last)
 
 
-def crossed(shift: complex) -> tuple[float, float]:
-    """|u + v| and |u - v| of a period: over l0 the A and the B lamellas that are crossed."""
-    return abs(shift.real + shift.imag), abs(shift.real - shift.imag)
-
-
 def vertex_relations(
     mesh: NetMesh, pieces: tuple[Transition, ...], across: Integers, odd: Integers
 ) -> dict[int, Integers]:

@@ -100,8 +100,7 @@ def build_lattice(domain: Domain, lines: Lines) -> Lattice:
     node_here = at_start | at_end | ((degree_a > 0) & (degree_b > 0))[crossing]
 
     # ends that are no lattice point
-    has_start = np.zeros(len(count), bool)
-    has_end = np.zeros(len(count), bool)
+    has_start, has_end = lines.closed.copy(), lines.closed.copy()
     has_start[line[at_start]] = True
     has_end[line[at_end]] = True
     free = np.r_[np.flatnonzero(~has_start), np.flatnonzero(~has_end)]

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.darboux import Darboux
 
 Floats = NDArray[np.float64]
@@ -37,7 +38,8 @@ class Network:
     mean_curvature : float
         H of the surface, 1/m, for the normals given here.
     step : float
-        l0, the distance of neighbouring lamellas in u + v and in u - v, sqrt(m).
+        l0, the distance of neighbouring lamellas in u + v and in u - v, or of principal lines in u and in v, before
+        any are left out, sqrt(m).
     cells : int
         Cells around the axis, or along the longest principal line.
     periods : tuple of Period
@@ -51,7 +53,8 @@ class Network:
     ids : tuple of str
         "A1", "A2", ..., "B1", ...
     families : (m,) str
-        "A" (geodesic torsion > 0) or "B" (< 0) of each lamella.
+        "A" (geodesic torsion > 0) or "B" (< 0) of each lamella; in a principal net "A" along the larger principal
+        curvature and "B" along the smaller one.
     closed : (m,) bool
         Whether the lamella returns to its start; its first sample and node are then repeated at the end.
     sample_offsets : (m + 1,) int
@@ -77,6 +80,8 @@ class Network:
         Faces, counter-clockwise about the normal.
     faces_left_out : (l,) int
         A node of each face with more corners than are written.
+    pattern : Pattern
+        Which curves of the isothermic lattice these are.
     """
 
     mean_curvature: float
@@ -104,6 +109,7 @@ class Network:
     face_offsets: Integers
     face_nodes: Integers
     faces_left_out: Integers
+    pattern: Pattern = LAMELLAS
 
     @property
     def lengths(self) -> Floats:

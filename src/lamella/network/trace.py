@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 from lamella.errors import InputError
 from lamella.network.arcs import ArcLengths, Segments
 from lamella.network.density import Density
-from lamella.network.domain import A, domain_of
+from lamella.network.domain import A
+from lamella.network.domain_of import domain_of
 from lamella.network.faces import trace_faces
 from lamella.network.lattice import Lattice, build_lattice, ragged_ranges
+from lamella.network.leaning_band import LeaningBand, line_darboux
 from lamella.network.network import BOUNDARY, Network
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.darboux import Darboux, lamella_darboux
@@ -64,6 +66,7 @@ def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, segment: 
         np.empty((3, count)),
         np.empty(count, np.complex128),
     )
+    leaning = isinstance(segments.domain, LeaningBand)
     for start in range(0, count, BLOCK):
         block = slice(start, start + BLOCK)
         zeta, derivative = segments.where(segment[block], arcs.parameter(segment[block], fraction[block]))
@@ -71,13 +74,13 @@ def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, segment: 
         heading = derivative / np.abs(derivative)
         samples.points[block], samples.normals[block] = at.position, at.normal
         samples.tangents[block] = at.vector(heading)
-        samples.darboux[:, block] = lamella_darboux(at, heading)
+        samples.darboux[:, block] = line_darboux(at, heading) if leaning else lamella_darboux(at, heading)
         samples.where[block] = zeta
     return samples
 
 
 def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: float = 0.5) -> Network:
-    """The network of a closed-form surface: lamellas u + v = i l0 and u - v = j l0, exactly on it.
+    """The network of a closed-form surface: lamellas u + v = i l0 and u - v = j l0, or principal lines, exactly on it.
 
     Parameters
     ----------
@@ -96,9 +99,11 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
     InputError
         No lamella crosses another one.
     """
-    domain = domain_of(surface, density.step)
-    lines = domain.lines()
+    domain = domain_of(surface, density.step, density.pattern)
+    lines = domain.lines().every(density.pattern)
     lines = lines.take(lines.end > lines.start)
+    # cells between the curves that cross those of A, and of B
+    wide = np.array(density.pattern.every[::-1])
     left_out = 0
     while True:
         lattice = build_lattice(domain, lines)
@@ -120,7 +125,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
                 "network.spacing",
                 "network.cells",
             )
-        whole = length[segments.span > 1 - 1e-9]
+        whole = length[segments.span > wide[lines.family[segments.owner]] - 1e-9]
         total = np.bincount(segments.owner, length, minlength=len(lines.family))
         short = total < minimum_length * np.median(whole if len(whole) else length)
         if not short.any():
@@ -136,7 +141,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
 
     per_cell = FINE if len(lattice.kinds) <= FINE_LIMIT else COARSE
     # a lamella shorter than a cell is sampled as finely as a whole cell
-    cells = np.minimum(np.bincount(segments.owner, segments.span), 1.0)[segments.owner]
+    cells = np.minimum(np.bincount(segments.owner, segments.span), wide[lines.family])[segments.owner]
     count = np.maximum(np.ceil(segments.span / cells * per_cell - 1e-6), 1).astype(np.int64)
     # every segment gives the samples from its start on; a line's last segment also gives its end
     last = np.r_[segments.owner[1:] != segments.owner[:-1], True]
@@ -179,7 +184,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         node_kinds=lattice.kinds,
         ids=_ids(lines.family),
         families=np.where(lines.family == A, "A", "B"),
-        closed=np.zeros(lines_count, bool),
+        closed=lines.closed,
         sample_offsets=offsets,
         sample_points=samples.points,
         sample_normals=normals,
@@ -194,6 +199,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         face_offsets=faces.offsets,
         face_nodes=faces.nodes,
         faces_left_out=faces.large,
+        pattern=density.pattern,
     )
 
 

@@ -247,6 +247,7 @@ def trace_elements(
         face_offsets=faces.offsets,
         face_nodes=faces.nodes,
         faces_left_out=faces.large,
+        pattern=cells.pattern,
     )
 
 

@@ -147,8 +147,13 @@ def make_lamellas(network: Network, section: Section, material: Material) -> Lam
     Raises
     ------
     InputError
-        The strip is so high that its circular development would reach its own centre.
+        The strip is so high that its circular development would reach its own centre; the net is one of curves that
+        no strips are made for.
     """
+    if network.pattern.no_strips:
+        raise InputError(
+            f"there are no strips for this net: {network.pattern.no_strips}", "make a net of lamellas", "network"
+        )
     limit = 2 / abs(network.mean_curvature) if network.mean_curvature else np.inf
     if section.height >= limit:
         raise InputError(

@@ -21,8 +21,8 @@ also what drawings that are rounded to micrometres leave at tangent joints.
 """
 
 CURVATURE_JUMP = 1e-2
-"""Over the loop's length. A larger jump of the curvature is a corner, tangent or not: where a line goes over into an arc
-the curvature of a film has a logarithm, which no polynomial follows, and no element may run across.
+"""Over the loop's length. A larger jump of the curvature is a corner, tangent or not: where a line goes over into an
+arc the curvature of a film has a logarithm, which no polynomial follows, and no element may run across.
 """
 
 _STANDSTILL = 1e-9
