@@ -29,7 +29,7 @@ height = [-1.0, 1.0]
 [network]
 cells = 8
 """
-COMMANDS = ("run", "new", "check", "examples", "schema")
+COMMANDS = ("run", "new", "check", "optimise", "examples", "schema")
 EXAMPLES = Path(__file__).parents[1] / "examples"
 # DESIGN section 7
 FILES = {

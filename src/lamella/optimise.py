@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast, get_args
@@ -12,17 +12,18 @@ import numpy as np
 
 from lamella.errors import InputError
 from lamella.files.quad_mesh_files import QuadFile, quad_mesh_bytes
-from lamella.optimise_wishes import USED, Wishes
+from lamella.optimise_wishes import Wishes
 from lamella.projection.foot_points import DirectedSurface, foot_surface
 from lamella.projection.mesh_figures import mesh_figures
 from lamella.projection.polylines import diagonal_ring, polylines
 from lamella.projection.problems.crossing import AngleForm
 from lamella.projection.problems.deform import deform
-from lamella.projection.problems.planar_strips import PlanarStrips, planar_strips
+from lamella.projection.problems.planar_strips import planar_strips
 from lamella.projection.problems.sphere_stars import sphere_stars
 from lamella.projection.problems.straighten import straighten
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.report import Iteration, Solution
+from lamella.projection.unknowns import Floats
 from lamella.wording import counted
 
 Tell = Callable[[str], None]
@@ -59,7 +60,7 @@ class Optimised:
     lamellas: QuadMesh | None = None
     told: dict[str, Any] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
-    faces: dict[str, Any] = field(default_factory=dict)
+    faces: dict[str, Floats] = field(default_factory=dict)
 
     @property
     def solved(self) -> bool:
@@ -229,7 +230,7 @@ def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell)
             f"no developable strip of this height exists at {figures['not developable']:.0%} of the vertices: rulings "
             f"jump there, by up to {figures['largest turn']:.3g} degrees"
         )
-    mesh, strip = strip_mesh(strips)
+    mesh, strip = strip_mesh(strips.lower, strips.upper)
     told = {
         "figures": figures,
         "strips": [
@@ -241,10 +242,10 @@ def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell)
     return Optimised(mesh, strips.solutions, same=False, told=told, remarks=tuple(remarks), faces=faces)
 
 
-def strip_mesh(strips: PlanarStrips) -> tuple[QuadMesh, Any]:
+def strip_mesh(lowers: Sequence[Floats], uppers: Sequence[Floats]) -> tuple[QuadMesh, Floats]:
     """Strips as one mesh, lower border before upper border, strip after strip; and the strip of each face, (f,)."""
     points, faces, strip, start = [], [], [], 0
-    for number, (lower, upper) in enumerate(zip(strips.lower, strips.upper, strict=True)):
+    for number, (lower, upper) in enumerate(zip(lowers, uppers, strict=True)):
         count = len(lower)
         k = start + np.arange(count - 1)
         faces.append(np.column_stack([k, k + 1, k + 1 + count, k + count]))
@@ -280,6 +281,3 @@ def _surface(given: QuadFile, wishes: Wishes, tell: Tell) -> DirectedSurface:
                 f"no surface of constant mean curvature fits the mesh: {error.message}",
                 "name a project with the surface: --surface PROJECT.toml",
             ) from None
-
-
-__all__ = ["USED", "Optimised", "Wishes", "about_mesh", "optimise", "strip_mesh", "told_mesh"]

@@ -262,5 +262,7 @@ def _picture(arguments: argparse.Namespace, given: QuadFile, result: Optimised) 
     from lamella.view.net_picture import NetPanel, draw_nets
 
     colour = _colour(arguments)
-    panels = [NetPanel("before", given.mesh, colour), NetPanel("after", result.mesh, colour)]
-    return lambda: draw_nets(panels, arguments.picture)
+    after = NetPanel("after", result.mesh, colour, edges="all" if result.same else "boundary")
+    # strips are no other state of the mesh they follow
+    before = NetPanel("before" if result.same else "polylines", given.mesh, colour if result.same else None)
+    return lambda: draw_nets([before, after], arguments.picture)

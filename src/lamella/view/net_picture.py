@@ -6,9 +6,9 @@ They need matplotlib, which comes with ``pip install lamella[pictures]``.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-PLAIN = (0.83, 0.87, 0.91)
+PLAIN, EDGE = (0.83, 0.87, 0.91), "#29303d"
+# how far lines are drawn nearer than they are, in edges
+LIFT = 0.3
 # parts each quad is drawn in, along and across: colours of vertices change inside it
 PARTS = 3
 # height of a panel over its width; pixels for title and scale; width of a panel, pixels
@@ -45,12 +47,15 @@ class NetPanel:
         None: plain.
     marked : tuple of ((k, 3), str)
         Lines to draw, m, with their colours.
+    edges : "all", "boundary" or "none"
+        Which edges are drawn as lines.
     """
 
     title: str
     mesh: QuadMesh
     colour: NetColour | None = None
     marked: tuple[tuple[Floats, str], ...] = ()
+    edges: Literal["all", "boundary", "none"] = "all"
 
 
 def draw_nets(
@@ -59,9 +64,8 @@ def draw_nets(
     *,
     view: tuple[float, float] = (-60.0, 24.0),
     width: int = WIDTH,
-    edges: bool = True,
 ) -> None:
-    """Draw nets side by side as a PNG file, all seen by one camera and at one scale.
+    """Draw nets side by side as a PNG file, all seen by one camera, at one scale and with one scale of colours.
 
     Parameters
     ----------
@@ -72,8 +76,6 @@ def draw_nets(
         Azimuth and elevation of the eye, degrees.
     width : int
         Of a panel, pixels.
-    edges : bool
-        Whether edges are drawn as lines.
 
     Raises
     ------
@@ -92,6 +94,9 @@ def draw_nets(
     height = int(width * np.clip(sizes[1] / sizes[0], FLATTEST, TALLEST))
     scale = 1.05 * max(sizes[0] / width, sizes[1] / height)
     whole = (width * len(panels), height + HEAD + FOOT)
+    found = _colours(panels)
+    # a line is in front of the faces it belongs to
+    reach = LIFT * float(np.median([panel.mesh.mean_edge for panel in panels]))
     with new_figure(whole) as figure:
         for k, (panel, flat) in enumerate(zip(panels, flats, strict=True)):
             axes = figure.add_axes((k / len(panels), FOOT / whole[1], 1 / len(panels), height / whole[1]))
@@ -99,7 +104,8 @@ def draw_nets(
             middle = (flat.min(0) + flat.max(0)) / 2
             axes.set_xlim(middle[0] - scale * width / 2, middle[0] + scale * width / 2)
             axes.set_ylim(middle[1] - scale * height / 2, middle[1] + scale * height / 2)
-            colours = _put(axes, panel, camera, edges)
+            colours = found[k]
+            _put(axes, panel, colours, camera, reach)
             middle_share = (k + 0.5) / len(panels)
             figure.text(
                 middle_share, 1 - HEAD / 2 / whole[1], panel.title, ha="center", va="center", fontsize=12, color=INK
@@ -109,42 +115,48 @@ def draw_nets(
         save(figure, path, shaded=True)
 
 
-def _put(axes: Axes, panel: NetPanel, camera: Camera, edges: bool) -> NetColours | None:
+def _colours(panels: Sequence[NetPanel]) -> list[NetColours | None]:
+    """Colours of all panels: one scale for all of a kind."""
+    found = [
+        None if panel.colour is None else net_colours(panel.mesh, mesh_figures(panel.mesh), panel.colour)
+        for panel in panels
+    ]
+    limits: dict[str, tuple[float, float]] = {}
+    for colours in found:
+        if colours is not None:
+            low, high = limits.get(colours.key, (colours.low, colours.high))
+            limits[colours.key] = min(low, colours.low), max(high, colours.high)
+    return [
+        None if colours is None else replace(colours, low=limits[colours.key][0], high=limits[colours.key][1])
+        for colours in found
+    ]
+
+
+def _put(axes: Axes, panel: NetPanel, colours: NetColours | None, camera: Camera, reach: float) -> None:
     """Draw a net from back to front."""
     from matplotlib.collections import PolyCollection
+    from matplotlib.colors import to_rgba
 
     mesh = panel.mesh
     parts, share = _parts(mesh)
     flat, away = camera.project(parts)
-    colours = None if panel.colour is None else net_colours(mesh, mesh_figures(mesh), panel.colour)
     paint = np.tile(PLAIN, (len(parts), 1)) if colours is None else _paint(mesh, colours, share)
     across = np.cross(parts[:, 2] - parts[:, 0], parts[:, 3] - parts[:, 1])
     normal = across / np.maximum(np.linalg.norm(across, axis=1), 1e-300)[:, None]
     light = camera.back - 0.5 * camera.right + 0.8 * camera.up
     light /= np.linalg.norm(light)
+    # on either side the same, darker where the light grazes
     shade = 0.68 + 0.32 * np.abs(normal @ light)
-    paint = np.column_stack([paint * shade[:, None], np.ones(len(paint))])
-    polygons = [flat]
-    depth = [away.mean(1)]
-    fill, line = [paint], [np.full(len(paint), 0.4)]
-    if edges:
-        ends = mesh.vertices[mesh.edges]
-        lines, lines_away = camera.project(ends)
-        # a line is in front of the faces it belongs to
-        reach = 0.5 * float(np.percentile(np.ptp(away, axis=1), 95)) if len(away) else 0.0
-        polygons.append(lines[:, [0, 1, 1, 0]])
-        depth.append(lines_away.mean(1) - reach)
-        fill.append(np.tile([0.16, 0.19, 0.24, 1.0], (len(lines), 1)))
-        line.append(np.full(len(lines), 0.7))
-    for points, colour in panel.marked:
-        from matplotlib.colors import to_rgba
-
-        pieces = np.stack([points[:-1], points[1:]], 1)
-        lines, lines_away = camera.project(pieces)
-        polygons.append(lines[:, [0, 1, 1, 0]])
-        depth.append(lines_away.mean(1) - 0.06 * float(np.ptp(away)))
-        fill.append(np.tile(to_rgba(colour), (len(lines), 1)))
-        line.append(np.full(len(lines), 2.6))
+    polygons, depth = [flat], [away.mean(1)]
+    fill, line = [np.column_stack([paint * shade[:, None], np.ones(len(paint))])], [np.full(len(paint), 0.4)]
+    step = np.linspace(0, 1, PARTS + 1)[:, None]
+    lines = [(a + step * (b - a), EDGE, 0.7) for a, b in _drawn(panel)]
+    for points, colour, wide in [*lines, *((points, colour, 2.6) for points, colour in panel.marked)]:
+        pieces, distance = camera.project(np.stack([points[:-1], points[1:]], 1))
+        polygons.append(pieces[:, [0, 1, 1, 0]])
+        depth.append(distance.mean(1) - (reach if wide < 1 else 2 * reach))
+        fill.append(np.tile(to_rgba(colour), (len(pieces), 1)))
+        line.append(np.full(len(pieces), wide))
     order = np.argsort(-np.concatenate(depth), kind="stable")
     painted = np.concatenate(fill)[order]
     collection = PolyCollection(
@@ -155,7 +167,17 @@ def _put(axes: Axes, panel: NetPanel, camera: Camera, edges: bool) -> NetColours
     )
     collection.set_snap(False)
     axes.add_collection(collection, autolim=False)
-    return colours
+
+
+def _drawn(panel: NetPanel) -> Floats:
+    """Ends of the edges that are drawn as lines, (e, 2, 3)."""
+    mesh = panel.mesh
+    if panel.edges == "all":
+        return np.asarray(mesh.vertices[mesh.edges])
+    if panel.edges == "boundary":
+        rim = mesh.twin < 0
+        return np.stack([mesh.vertices[mesh.tail[rim]], mesh.vertices[mesh.head[rim]]], 1)
+    return np.empty((0, 2, 3))
 
 
 def _parts(mesh: QuadMesh) -> tuple[Floats, Floats]:
