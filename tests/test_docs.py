@@ -81,7 +81,7 @@ def test_project_in_getting_started_is_good() -> None:
     assert lamella.parse_project(tomllib.loads(project)).name == "Pavilion"
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/getting-started.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/getting-started.md", "docs/projection.md"])
 def test_command_lines_parse(page: str, capsys: pytest.CaptureFixture[str]) -> None:
     lines = [line for block in blocks((ROOT / page).read_text()) for line in block.splitlines()]
     commands = [re.split(r"\s{3,}", line)[0] for line in lines if line.startswith("lamella ")]
