@@ -28,6 +28,8 @@ from lamella.wording import counted
 
 Tell = Callable[[str], None]
 
+# what the solutions of a problem with several are called
+STAGES = {"deform": "state", "planar": "round"}
 # points a strip needs at least
 STRIP_POINTS = 4
 
@@ -64,8 +66,8 @@ class Optimised:
 
     @property
     def solved(self) -> bool:
-        """Whether all conditions hold, in all steps."""
-        return all(solution.solved for solution in self.solutions)
+        """Whether all conditions hold in the end, whatever was met on the way."""
+        return self.solutions[-1].solved
 
 
 def about_mesh(mesh: QuadMesh) -> dict[str, Any]:
@@ -113,13 +115,15 @@ def optimise(given: QuadFile, problem: str, wishes: Wishes, *, tell: Tell = lamb
         A wish that is missing, of no use or out of range, and what the problem refuses.
     """
     wishes.check(problem)
-    mesh, begun = given.mesh, False
+    mesh, count = given.mesh, 0
 
     def on_iteration(state: Iteration) -> None:
-        nonlocal begun
-        if not begun:
+        nonlocal count
+        if not count:
             tell("iteration: root mean square residual by constraint, in edges or radians; step, damping")
-            begun = True
+        count += state.number == 0
+        if state.number == 0 and (count > 1 or problem in STAGES):
+            tell(f"{STAGES.get(problem, 'with the radius found')} {count if problem in STAGES else ''}".rstrip())
         tell(f"  {state}")
 
     common: dict[str, Any] = {"on_iteration": on_iteration}
@@ -150,9 +154,11 @@ def _stars(mesh: QuadMesh, problem: str, wishes: Wishes, common: dict[str, Any])
     told: dict[str, Any] = {"radius": float(net.radius) if np.isfinite(net.radius) else None, "radius_found": found}
     remarks: tuple[str, ...] = ()
     if found:
-        told["radius_uncertainty"] = float(net.radius_uncertainty)
+        told["radius_uncertainty"] = float(net.radius_uncertainty)  # infinite: null
         told["ill_determined"] = bool(net.ill_determined)
-        remarks = (f"radius found: {net.radius:.6g} m, standard deviation {net.radius_uncertainty:.2g} m",)
+        known = np.isfinite(net.radius_uncertainty)
+        doubt = f"standard deviation {net.radius_uncertainty:.2g} m" if known else "no limit to its uncertainty"
+        remarks = (f"radius found: {net.radius:.6g} m, {doubt}",)
         if net.ill_determined:
             remarks += ("the net says too little about the radius: others would do as well; give it with --radius",)
     return Optimised(net.mesh, (net.solution,), told=told, remarks=remarks)
@@ -199,7 +205,7 @@ def _deform(mesh: QuadMesh, wishes: Wishes, common: dict[str, Any]) -> Optimised
         f"ring of {len(ring)} vertices at {last.share:.4g} of its size in {len(states) - 1} steps; angles changed by "
         f"{last.angle_change.min():.3g} to {last.angle_change.max():.3g} degrees"
     ]
-    if not all(state.solution.solved for state in states):
+    if not last.solution.solved:
         remarks.append(
             "edge lengths and stars of given radius are 4 conditions on 3 coordinates of a vertex: only symmetric "
             "nets keep both, here the remainder is shared out"

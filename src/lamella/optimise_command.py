@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -129,7 +128,7 @@ def run_optimise(arguments: argparse.Namespace) -> int:
     _check_targets(arguments)
 
     from lamella.files.quad_mesh_files import read_quad_mesh, require_format
-    from lamella.files.whole import write_whole
+    from lamella.files.whole import write_all_whole
     from lamella.optimise import optimise, told_mesh
     from lamella.projection.mesh_figures import mesh_figures
 
@@ -146,11 +145,10 @@ def run_optimise(arguments: argparse.Namespace) -> int:
     figures = mesh_figures(result.mesh, given.mesh if result.same else None)
     figures.faces.update(result.faces)
     files = _files(arguments, given, result, figures)
-    draw = _picture(arguments, given, result)
-    for path, content in files.items():
-        write_whole(path, content)
-    draw()
-    last = next((solution for solution in result.solutions if not solution.solved), result.solutions[-1])
+    if arguments.picture is not None:
+        _draw(arguments, given, result)
+    write_all_whole(files)
+    last = result.solutions[-1]
     for remark in result.remarks:
         say(remark)
     if not result.solved:
@@ -169,7 +167,7 @@ def _not_solved(solution: Solution) -> str:
     remedy = {
         "iterations used up": "allow more with --iterations",
         "broken off": "start from a fairer mesh, without folds and flattened faces",
-    }.get(solution.verdict, "ask for less, or take this: it is the least remainder nearby")
+    }.get(solution.verdict, "ask for less, or take this, the least remainder nearby; --tolerance says what is met")
     return f"not all conditions hold: {solution.verdict} after {state.number} iterations; {what}\n  remedy: {remedy}"
 
 
@@ -255,14 +253,11 @@ def _figures(arguments: argparse.Namespace, given: QuadFile, result: Optimised, 
     return orjson.dumps(content, option=orjson.OPT_INDENT_2) + b"\n"
 
 
-def _picture(arguments: argparse.Namespace, given: QuadFile, result: Optimised) -> Callable[[], None]:
-    """What draws the picture, if one is asked for."""
-    if arguments.picture is None:
-        return lambda: None
+def _draw(arguments: argparse.Namespace, given: QuadFile, result: Optimised) -> None:
     from lamella.view.net_picture import NetPanel, draw_nets
 
     colour = _colour(arguments)
     after = NetPanel("after", result.mesh, colour, edges="all" if result.same else "boundary")
     # strips are no other state of the mesh they follow
     before = NetPanel("before" if result.same else "polylines", given.mesh, colour if result.same else None)
-    return lambda: draw_nets([before, after], arguments.picture)
+    draw_nets([before, after], arguments.picture)

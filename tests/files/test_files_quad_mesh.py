@@ -140,7 +140,7 @@ def test_compas_in_memory() -> None:
     mesh = InMemory({9: [0, 0, 0], 3: [1, 0, 0], 5: [1, 1, 0], 1: [0, 1, 0]}, {8: [9, 3, 5, 1]})
     found = quad_mesh_of_compas(mesh)
     assert found.faces.tolist() == [[0, 1, 2, 3]]
-    moved = compas_at(mesh, found.at([*found.vertices, 0, 0, 2]))
+    moved = compas_at(mesh, found.at(found.vertices + np.array([0.0, 0.0, 2.0])))
     assert moved.vertex_coordinates(5) == [1, 1, 2]
     assert mesh.vertex_coordinates(5) == [1, 1, 0]
     with pytest.raises(InputError, match="face 0 has 3 corners"):

@@ -151,7 +151,7 @@ def test_planar_strips(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
 
 def test_surface_of_the_mesh_itself(tmp_path: Path) -> None:
     """Without --surface it is the surface of constant mean curvature the mesh means: here that of H = 1/2."""
-    given = lamella_patch(UNDULOID, 15, 1.0, 0.5 * UNDULOID.period / 2)
+    given = lamella_patch(UNDULOID, 10, 0.8, 0.5 * UNDULOID.period / 2)
     path = put(tmp_path / "a.ply", given)
     out = tmp_path / "s.ply"
     options = ["--height", "0.03", "--rounds", "1", "--json", str(tmp_path / "s.json")]
