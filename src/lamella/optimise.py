@@ -205,6 +205,8 @@ def _deform(mesh: QuadMesh, wishes: Wishes, common: dict[str, Any]) -> Optimised
         f"ring of {len(ring)} vertices at {last.share:.4g} of its size in {len(states) - 1} steps; angles changed by "
         f"{last.angle_change.min():.3g} to {last.angle_change.max():.3g} degrees"
     ]
+    if abs(last.share - share) > 1e-9:
+        remarks.append(f"the way to {share:.4g} ended there: {last.solution.verdict}")
     if not last.solution.solved:
         remarks.append(
             "edge lengths and stars of given radius are 4 conditions on 3 coordinates of a vertex: only symmetric "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,9 +16,12 @@ if TYPE_CHECKING:
     from lamella.files.quad_mesh_files import QuadFile
     from lamella.optimise import Optimised
     from lamella.projection.mesh_figures import MeshFigures
+    from lamella.projection.quad_mesh import QuadMesh
     from lamella.projection.report import Solution
+    from lamella.projection.unknowns import Floats
 
 SCHEMA = "lamella/optimise/1"
+DRIVEN = "#d60000"
 NOT_SOLVED = 1
 """Exit code of a result that is written although not all conditions hold."""
 
@@ -143,7 +147,7 @@ def run_optimise(arguments: argparse.Namespace) -> int:
         say(f"  {note}")
     result = optimise(given, arguments.problem, wishes, tell=say)
     figures = mesh_figures(result.mesh, given.mesh if result.same else None)
-    figures.faces.update(result.faces)
+    figures = replace(figures, faces={**figures.faces, **result.faces})
     files = _files(arguments, given, result, figures)
     if arguments.picture is not None:
         _draw(arguments, given, result)
@@ -257,7 +261,14 @@ def _draw(arguments: argparse.Namespace, given: QuadFile, result: Optimised) -> 
     from lamella.view.net_picture import NetPanel, draw_nets
 
     colour = _colour(arguments)
-    after = NetPanel("after", result.mesh, colour, edges="all" if result.same else "boundary")
+    ring = result.told.get("ring", [])
+    if ring and not arguments.open_driver:
+        ring = [*ring, ring[0]]
+
+    def driven(mesh: QuadMesh) -> tuple[tuple[Floats, str], ...]:
+        return ((mesh.vertices[ring], DRIVEN),) if ring else ()
+
+    after = NetPanel("after", result.mesh, colour, driven(result.mesh), "all" if result.same else "boundary")
     # strips are no other state of the mesh they follow
-    before = NetPanel("before" if result.same else "polylines", given.mesh, colour if result.same else None)
-    draw_nets([before, after], arguments.picture)
+    title, own = ("before", colour) if result.same else ("polylines", None)
+    draw_nets([NetPanel(title, given.mesh, own, driven(given.mesh)), after], arguments.picture)

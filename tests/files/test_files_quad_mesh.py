@@ -160,7 +160,7 @@ SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
         ("a.obj", SQUARE + "f 1 2 3 4\nf 2 3 6 5\n", "both run from vertex 1 to vertex 2"),
         ("a.obj", SQUARE + "v 5 0 0\nv 5 1 0\nv 6 1 0\nv 6 0 0\nf 1 2 3 4\nf 2 5 6 3\nf 7 8 9 10\n", "2 pieces"),
         ("a.obj", SQUARE + "f 1 2 3 3\nf 2 5 6 3\n", "a vertex comes twice"),
-        ("a.obj", SQUARE.replace("2 0 0", "20000 0 0") + "f 1 2 3 4\nf 2 5 6 3\n", "in mm it is 20 m large"),
+        ("a.obj", SQUARE.replace("2 0 0", "20000 0 0") + "f 1 2 3 4\nf 2 5 6 3\n", "at most 5,000 m"),
         ("a.obj", SQUARE, "no faces"),
         ("a.obj", "", "empty"),
         ("a.stl", "solid", "holds no quad mesh"),

@@ -126,6 +126,10 @@ def test_not_all_conditions_exits_with_1(tmp_path: Path, capsys: pytest.CaptureF
     assert "not all conditions hold" in error
     assert "only symmetric nets keep both" in error
     patch = noisy(lamella_patch(UNDULOID, 12, 1.2), 0.02, 3)
+    diagonal = "13,26,39,52,65=0.97"
+    path = put(tmp_path / "c.ply", patch)
+    run(path, "deform", "--driver", diagonal, "--open-driver", "--radius", 2, "--iterations", 2, code=1)
+    assert "the way to 0.97 ended there: iterations used up" in capsys.readouterr().err
     run(put(tmp_path / "b.ply", patch), "sphere-stars", "--radius", 2, "--iterations", 1, code=1)
     assert "allow more with --iterations" in capsys.readouterr().err
 

@@ -129,7 +129,7 @@ def _check_size(mesh: QuadMesh, metres: float) -> tuple[str, ...]:
     if size > LARGEST_SIZE:
         raise InputError(
             f"the mesh is {size:,.0f} m large in {name_of(metres)} (at most {LARGEST_SIZE:,.0f} m)",
-            f"say its unit; in mm it is {size / metres * 1e-3:,.4g} m large",
+            f"say its unit: with --unit mm it is {size / metres * 1e-3:,.4g} m large",
         )
     return (f"the mesh is {size:.3g} m large: is its unit, {name_of(metres)}, right?",) if size < SMALLEST_SIZE else ()
 
