@@ -261,7 +261,12 @@ def test_examples(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["examples", "--copy", "one", "16_hall"]) == 0
     assert contents(here / "one") == {name: (EXAMPLES / name).read_bytes() for name in ("16_hall.obj", "16_hall.toml")}
     assert main(["examples", "--copy", "all"]) == 0
-    assert sorted(contents(here / "all")) == sorted(p.name for p in EXAMPLES.iterdir())
+    assert contents(here / "all") == contents(EXAMPLES)
+    assert main(["examples", "--copy", "meshes", "optimise"]) == 0
+    assert contents(here / "meshes") == {
+        f"optimise/{p.name}": p.read_bytes() for p in (EXAMPLES / "optimise").iterdir()
+    }
+    assert [line.split()[0] for line in told if line.startswith("optimise/")] == list(meshes)
 
 
 # of the surfaces that have to be found, one from curves and one from a mesh

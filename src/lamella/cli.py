@@ -167,13 +167,13 @@ def _new(arguments: argparse.Namespace) -> None:
 
 
 def _examples(arguments: argparse.Namespace) -> None:
-    from lamella.example_files import copy_examples, list_examples
+    from lamella.example_files import copy_examples, list_examples, list_meshes
 
     if arguments.copy is None and arguments.names:
         raise InputError("no folder to copy into", f"lamella examples --copy DIR {' '.join(arguments.names)}")
     if arguments.copy is None:
-        for name, title in list_examples():
-            print(f"{name:24s} {title}")
+        for name, title in [*list_examples(), *list_meshes()]:
+            print(f"{name:28s} {title}")
         print("\ncopy them with: lamella examples --copy DIR [NAME ...]")
         return
     for path in copy_examples(arguments.names, arguments.copy):
