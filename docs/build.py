@@ -7,6 +7,7 @@ tests/test_docs.py checks that the text has been generated from the present code
 from __future__ import annotations
 
 import json
+import runpy
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -313,6 +314,7 @@ def main() -> None:
     for path, text in pages(results).items():
         (DOCS / path).write_text(text, encoding="utf-8")
     make_pictures(results, DOCS / "pictures")
+    runpy.run_path(str(DOCS / "build_projection.py"))["make_pictures"](DOCS / "pictures")
     print(f"docs of lamella {__version__} are up to date")
 
 

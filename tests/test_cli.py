@@ -29,7 +29,7 @@ height = [-1.0, 1.0]
 [network]
 cells = 8
 """
-COMMANDS = ("run", "new", "check", "examples", "schema")
+COMMANDS = ("run", "new", "check", "optimise", "examples", "schema")
 EXAMPLES = Path(__file__).parents[1] / "examples"
 # DESIGN section 7
 FILES = {
@@ -261,7 +261,11 @@ def test_examples(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["examples", "--copy", "one", "16_hall"]) == 0
     assert contents(here / "one") == {name: (EXAMPLES / name).read_bytes() for name in ("16_hall.obj", "16_hall.toml")}
     assert main(["examples", "--copy", "all"]) == 0
-    assert sorted(contents(here / "all")) == sorted(p.name for p in EXAMPLES.iterdir())
+    assert contents(here / "all") == contents(EXAMPLES)
+    assert main(["examples", "--copy", "meshes", "optimise"]) == 0
+    meshes = {f"optimise/{name}": data for name, data in contents(EXAMPLES / "optimise").items()}
+    assert contents(here / "meshes") == meshes
+    assert [line.split()[0] for line in told if line.startswith("optimise/")] == list(meshes)
 
 
 # of the surfaces that have to be found, one from curves and one from a mesh

@@ -5,11 +5,13 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import re
+import runpy
 import shlex
 import tomllib
 from functools import cache
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -76,12 +78,60 @@ def test_examples_of_guided_projection_run(capsys: pytest.CaptureFixture[str]) -
     assert capsys.readouterr().out == "solved 2.0\n"
 
 
+@cache
+def projection_pictures() -> dict[str, Any]:
+    pytest.importorskip("matplotlib")
+    return runpy.run_path(str(DOCS / "build_projection.py"))
+
+
+@pytest.mark.parametrize(
+    ("picture", "quoted"),
+    [
+        ("figure_6", {r"off 90 degrees by (\d\.\d\d)": "are off by {} degrees at most at 24 cells"}),
+        (
+            "figure_7",
+            {
+                r"median before (\d\.\d+)": "(median {})",
+                r"largest tilt (\d\.\d)": "upright to {} degrees",
+                r"red after (\d)\b": None,
+            },
+        ),
+        (
+            "figure_8",
+            {r"90%.* by ([\d.]+ to [\d.]+) deg": "by\n{} and", r"80%.* by ([\d.]+ to [\d.]+) deg": "by {} deg"},
+        ),
+        pytest.param(
+            "figures_9_and_10",
+            {r"2 rounds.*largest tilt (\d\.\d\d)": "by {} degrees", r"2 rounds.*turn (\d\.\d)": "by up to {} degrees"},
+            marks=pytest.mark.slow,
+        ),
+    ],
+)
+def test_quoted_figures_of_the_papers_pictures(
+    picture: str, quoted: dict[str, str | None], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    projection_pictures()[picture](tmp_path)
+    said, page = capsys.readouterr().out, " ".join((DOCS / "projection.md").read_text().split())
+    assert "stagnated" not in said
+    assert "settled" not in said
+    for figure, words in quoted.items():
+        found = re.search(figure, said)
+        assert found, figure
+        if words is None:
+            assert found.group(1) == "0"
+        else:
+            assert words.format(found.group(1)) in page, found.group(0)
+    for made in tmp_path.iterdir():
+        assert 10_000 < made.stat().st_size < 400_000
+        assert (DOCS / "pictures" / made.name).exists()
+
+
 def test_project_in_getting_started_is_good() -> None:
     (project,) = blocks((DOCS / "getting-started.md").read_text(), "toml")
     assert lamella.parse_project(tomllib.loads(project)).name == "Pavilion"
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/getting-started.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/getting-started.md", "docs/projection.md"])
 def test_command_lines_parse(page: str, capsys: pytest.CaptureFixture[str]) -> None:
     lines = [line for block in blocks((ROOT / page).read_text()) for line in block.splitlines()]
     commands = [re.split(r"\s{3,}", line)[0] for line in lines if line.startswith("lamella ")]

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from lamella.errors import InputError as InputError
     from lamella.fabrication import make_parts as make_parts
     from lamella.fabrication import nest as nest
+    from lamella.files.compas_json import compas_at as compas_at
+    from lamella.files.compas_json import quad_mesh_of_compas as quad_mesh_of_compas
+    from lamella.files.quad_mesh_files import read_quad_mesh as read_quad_mesh
     from lamella.network.make import make_network as make_network
     from lamella.network.network import Network as Network
     from lamella.pipeline import Results as Results
@@ -66,6 +69,9 @@ if TYPE_CHECKING:
 # imported on first use: `lamella --help` must not wait for scipy
 _HOMES = {
     "InputError": "errors",
+    "compas_at": "files.compas_json",
+    "quad_mesh_of_compas": "files.compas_json",
+    "read_quad_mesh": "files.quad_mesh_files",
     "make_parts": "fabrication",
     "nest": "fabrication",
     "make_network": "network.make",

@@ -16,6 +16,7 @@ from typing import NoReturn
 
 from lamella import __version__
 from lamella.errors import InputError
+from lamella.optimise_command import add_optimise, run_optimise
 
 _ABOUT = """\
 lamella takes a designer from a surface of constant mean curvature to the net of lamellas on it,
@@ -26,6 +27,7 @@ twisting leave in the strips.
   lamella new form-found          the same for a film between boundary curves of your own
   lamella run unduloid.toml       compute it and write the folder out/unduloid
   lamella check unduloid.toml     only look for mistakes
+  lamella optimise net.obj ...    make a net of a quad mesh from elsewhere
 
 Open out/unduloid/report.html in a browser, model.3dm in Rhino, fabrication/*.dxf at the laser."""
 
@@ -81,6 +83,8 @@ def _parser() -> argparse.ArgumentParser:
     )
     check.add_argument("project", type=Path, help="project file (.toml)")
     _add_verbose(check)
+
+    add_optimise(commands)
 
     examples = commands.add_parser("examples", help="list the examples, or copy them")
     examples.add_argument("names", nargs="*", metavar="NAME", help="with --copy: the examples to copy (default: all)")
@@ -163,13 +167,13 @@ def _new(arguments: argparse.Namespace) -> None:
 
 
 def _examples(arguments: argparse.Namespace) -> None:
-    from lamella.example_files import copy_examples, list_examples
+    from lamella.example_files import copy_examples, list_examples, list_meshes
 
     if arguments.copy is None and arguments.names:
         raise InputError("no folder to copy into", f"lamella examples --copy DIR {' '.join(arguments.names)}")
     if arguments.copy is None:
-        for name, title in list_examples():
-            print(f"{name:24s} {title}")
+        for name, title in [*list_examples(), *list_meshes()]:
+            print(f"{name:28s} {title}")
         print("\ncopy them with: lamella examples --copy DIR [NAME ...]")
         return
     for path in copy_examples(arguments.names, arguments.copy):
@@ -186,7 +190,14 @@ def _schema(arguments: argparse.Namespace) -> None:
     print(json.dumps(schema(), indent=2))
 
 
-_COMMANDS = {"run": _run, "check": _check, "new": _new, "examples": _examples, "schema": _schema}
+_COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
+    "run": _run,
+    "check": _check,
+    "new": _new,
+    "optimise": run_optimise,
+    "examples": _examples,
+    "schema": _schema,
+}
 
 
 def _terminate(number: int, frame: FrameType | None) -> None:
@@ -215,7 +226,7 @@ def _mend(error: OSError) -> str:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; the exit code is 0, or 2 for what the user can mend."""
+    """Run the command line; the exit code is 0, 2 for what the user can mend, 1 as `optimise` says."""
     _one_blas_thread()
     with contextlib.suppress(ValueError):
         signal.signal(signal.SIGTERM, _terminate)
@@ -228,7 +239,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.print_help(sys.stderr)
         return 2
     try:
-        _COMMANDS[parsed.command](parsed)
+        code = _COMMANDS[parsed.command](parsed)
         sys.stdout.flush()
     except InputError as error:
         _say(f"lamella: {error}")
@@ -250,4 +261,4 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except MemoryError:
         _say("lamella: not enough memory; what was there before is unchanged\n  remedy: choose fewer cells")
         return 2
-    return 0
+    return code or 0

@@ -23,6 +23,14 @@ def _all() -> dict[str, Traversable]:
     }
 
 
+MESHES = "optimise"
+"""Folder of quad meshes for `lamella optimise`; its name stands for all of them."""
+
+
+def _meshes() -> dict[str, Traversable]:
+    return {f"{MESHES}/{item.name}": item for item in sorted((_folder() / MESHES).iterdir(), key=lambda i: i.name)}
+
+
 def _beside(name: str) -> list[str]:
     """Files that go with an example: those of its name with another ending."""
     stem = name.removesuffix(".toml")
@@ -30,8 +38,17 @@ def _beside(name: str) -> list[str]:
 
 
 def list_examples() -> list[tuple[str, str]]:
-    """File name and first comment line of every example."""
-    return [(name, item.read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")) for name, item in _all().items()]
+    """File name and first comment line of every project."""
+    return _titled(_all())
+
+
+def list_meshes() -> list[tuple[str, str]]:
+    """The same of the quad meshes."""
+    return _titled(_meshes())
+
+
+def _titled(files: dict[str, Traversable]) -> list[tuple[str, str]]:
+    return [(name, item.read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")) for name, item in files.items()]
 
 
 def copy_examples(names: list[str], target: Path) -> list[Path]:
@@ -43,22 +60,27 @@ def copy_examples(names: list[str], target: Path) -> list[Path]:
         Unknown name; a file of that name is there already.
     """
     known = _all()
-    wanted = [name if name.endswith(".toml") else f"{name}.toml" for name in names] or list(known)
+    names = names or [*known, MESHES]
+    meshes = _meshes() if MESHES in names else {}
+    wanted = [name if name.endswith(".toml") else f"{name}.toml" for name in names if name != MESHES]
     for name in wanted.copy():
         if name not in known:
             near = get_close_matches(Path(name).stem, [Path(one).stem for one in known], 1, 0.6)
             raise InputError(
                 f"no example {name[:80]!r}" + (f", did you mean {near[0] + '.toml'!r}?" if near else ""),
-                f"there are {', '.join(known)}",
+                f"there are {', '.join(known)}, {MESHES}",
             )
         wanted += _beside(name)
-    known = {item.name: item for item in _folder().iterdir()}
+    known = {item.name: item for item in _folder().iterdir()} | meshes
+    wanted += meshes
     for name in wanted:
         if (target / name).exists():
             raise InputError(f"{target / name} is there already", "name another folder with --copy")
     if target.exists() and not target.is_dir():
         raise InputError(f"{target} is a file", "name a folder with --copy")
     target.mkdir(parents=True, exist_ok=True)
+    if meshes:
+        (target / MESHES).mkdir(exist_ok=True)
     for name in wanted:
         write_whole(target / name, known[name].read_bytes())
     return [target / name for name in wanted]

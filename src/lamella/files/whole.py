@@ -1,9 +1,10 @@
-"""Writing one file whole or not at all."""
+"""Writing files whole or not at all."""
 
 from __future__ import annotations
 
 import os
 import secrets
+from collections.abc import Mapping
 from pathlib import Path
 
 
@@ -22,10 +23,18 @@ def write_whole(path: Path, content: bytes) -> None:
     OSError
         If the content could not be written in full (disk full, size limit, missing rights).
     """
-    part = path.with_name(f".{secrets.token_hex(6)}.part")
+    write_all_whole({path: content})
+
+
+def write_all_whole(files: Mapping[Path, bytes]) -> None:
+    """The same for several files: none appears before all are on the disk."""
+    parts = {path: path.with_name(f".{secrets.token_hex(6)}.part") for path in files}
     try:
-        part.write_bytes(content)
-        os.replace(part, path)
+        for path, content in files.items():
+            parts[path].write_bytes(content)
+        for path, part in parts.items():
+            os.replace(part, path)
     except BaseException:
-        part.unlink(missing_ok=True)
+        for part in parts.values():
+            part.unlink(missing_ok=True)
         raise

@@ -9,6 +9,8 @@ import pytest
 
 from lamella.errors import InputError
 from lamella.surface.boundary import make_loop
+from lamella.surface.boundary.arcs import arc_through
+from lamella.surface.boundary.pieces import lines, stack
 from lamella.surface.boundary.splines import closed_spline
 from lamella.surface.found.along_family import FoldError, to_curvature
 from lamella.surface.found.find import find_film
@@ -77,3 +79,22 @@ def test_unstable_film_that_the_search_does_not_find() -> None:
     ) as error:
         find_film((waving(0.2),), branch="unstable")
     assert error.value.where == "surface.branch"
+
+
+def test_tangent_joints_of_lines_and_arcs_keep_the_tolerance() -> None:
+    """A stadium of straight sides and half circles: at the joints the film's curvature has a logarithm, which no
+    element follows; everywhere else H is found to the tolerance, and the area settles.
+    """
+    sides = [lines(np.array([[-2.0, y, 0.0], [2.0, y, 0.0]]) * [-y, 1, 1], closed=False) for y in (-1.0, 1.0)]
+    bends = [
+        arc_through(*(np.array([x * (2 + np.cos(a)), x * np.sin(a), 0]) for a in (-TAU / 4, 0, TAU / 4)))
+        for x in (1, -1)
+    ]
+    loop = make_loop("stadium", stack([sides[0], bends[0], sides[1], bends[1]]))
+    assert len(loop.corners) == 4
+    assert loop.turns.max() < 1e-9
+    found = find_film((loop,), -0.2, tolerance=0.02, most_nodes=15_000)
+    assert found.deviation <= 0.02
+    finer = find_film((loop,), -0.2, tolerance=0.005, most_nodes=30_000)
+    areas = [one.surface("x").area() for one in (found, finer)]
+    assert areas[0] == pytest.approx(areas[1], rel=1e-5)

@@ -20,7 +20,7 @@ from lamella.sparse import Backend
 
 # weight of the given vertices and its fade: while it lasts the radius follows the whole net
 STAY, FADE = 0.1, 0.1
-# largest radius to start from, in sizes of the mesh
+# largest radius to look for, in sizes of the mesh: a flatter net is a plane, whose radius nothing determines
 FLATTEST = 1e3
 
 
@@ -62,7 +62,9 @@ def find_radius(
     normals = smoothed_normals(start)[inner]
     bend = star_curvature(start.vertices, inner, neighbours, normals)
     size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
-    radius = min(1 / max(abs(bend), 1e-300), FLATTEST * size)
+    if abs(bend) * FLATTEST * size < 1:
+        return StarRadius(FLATTEST * size, np.inf)
+    radius = 1 / abs(bend)
     more, angles = crossing(start, angle, form)
     blocks = [
         Block("vertices", start.vertices, edge, mesh.vertices),

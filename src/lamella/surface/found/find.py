@@ -69,8 +69,9 @@ def notes_on(found: Found) -> tuple[str, ...]:
     verdict = found.stability
     if verdict.verdict == "unstable":
         notes.append(
-            f"the surface is unstable as a film (lowest Jacobi eigenvalue {verdict.lowest:.4g} 1/m2, "
-            f"{verdict.negative} negative): a soap film would leave it; a stiff lamella net does not"
+            f"the surface is unstable as a film at this mean curvature (lowest Jacobi eigenvalue {verdict.lowest:.4g} "
+            f"1/m2, {verdict.negative} negative): a soap film would leave it unless its volume is held; a stiff net "
+            "need not"
         )
     elif verdict.verdict == "fold":
         notes.append(

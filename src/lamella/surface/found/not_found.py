@@ -79,6 +79,7 @@ def _no_volume(search: FirstFilm, went: str, volume: float) -> InputError:
             )
     return InputError(
         f"{wanted}: the search did not arrive at a surface; {MAY_EXIST}. {went}",
-        "choose a volume nearer to that of the film without pressure, or bring the loops closer together",
+        "try the other sign (volume is above 0 where the normal points out of it), or choose a volume nearer to that "
+        "of the film without pressure (a run with mean_curvature = 0 tells it)",
         "surface.volume",
     )

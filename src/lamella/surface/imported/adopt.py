@@ -252,7 +252,9 @@ def _near(film: Film, mean_curvature: float, free: bool, progress: Progress) -> 
     raise InputError(
         f"no surface of constant mean curvature {mean_curvature:.4g} 1/m was found near the mesh "
         f"({'; '.join(reasons)})",
-        "give mean_curvature, or mend the mesh",
+        "give another mean_curvature (its sign is that of the mesh's normals, see the fit above), or mend the mesh"
+        if not free
+        else "give mean_curvature, or mend the mesh",
         "surface.mean_curvature",
     )
 

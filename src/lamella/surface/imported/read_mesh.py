@@ -50,7 +50,7 @@ def read_mesh(path: Path, unit: str | None = None) -> RawMesh:
     if reader is None:
         raise mesh_error(f"{path.name}: the format {path.suffix!r} is not known", "take .obj, .ply, .stl or .3dm")
     found = reader(_bytes(path))
-    _check(found)
+    check_polygons(found)
     metres, notes = _metres(found, asked)
     with np.errstate(over="ignore"):
         points = found.points * metres
@@ -86,7 +86,7 @@ def _bytes(path: Path) -> bytes:
     return data
 
 
-def _check(found: Polygons) -> None:
+def check_polygons(found: Polygons) -> None:
     """Refuse what cannot be a mesh."""
     count = len(found.sizes)
     if not count:

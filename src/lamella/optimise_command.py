@@ -1,0 +1,274 @@
+"""`lamella optimise`: its options, its files, what it prints. Heavy parts are imported when it runs."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from lamella import __version__
+from lamella.errors import InputError
+from lamella.optimise_wishes import USED, Wishes, driver_of
+
+if TYPE_CHECKING:
+    from lamella.files.quad_mesh_files import QuadFile
+    from lamella.optimise import Optimised
+    from lamella.projection.mesh_figures import MeshFigures
+    from lamella.projection.quad_mesh import QuadMesh
+    from lamella.projection.report import Solution
+    from lamella.projection.unknowns import Floats
+
+SCHEMA = "lamella/optimise/1"
+DRIVEN = "#d60000"
+NOT_SOLVED = 1
+"""Exit code of a result that is written although not all conditions hold."""
+
+_ABOUT = """\
+Move the vertices of a quad mesh as little as needed until it is what was asked for. Edges of the mesh
+are the lamellas, vertices the nodes.
+
+problems, and the options they use:
+  asymptotic    planar vertex stars, right angles: straight lamellas, H = 0     [--angle] [--form]
+  sphere-stars  stars on spheres of one radius, right angles: circular lamellas [--radius] [--angle] [--form]
+                Without --radius the radius is found, with its uncertainty; H = 1 / radius.
+  angle         the same with another node angle: linear Weingarten surfaces    --angle [--radius] [--form]
+                --radius inf: straight lamellas.
+  straighten    principal mesh -> isothermic mesh (FILE) -> its edge middles, a net of lamellas
+                (FILE with -lamellas behind its name)                           [--surface]
+  deform        drive the size of a ring, keep edge lengths and stars           --driver [--open-driver] [--radius]
+  planar        upright strips of planar quads along all polylines              --height [--surface] [--rounds]
+
+examples:
+  lamella optimise net.obj --as asymptotic --out straight.obj
+  lamella optimise net.ply --as sphere-stars --radius 2 --out round.ply --json round.json
+  lamella optimise net.json --as angle --angle 80 --radius inf --out eighty.json
+  lamella optimise net.3dm --as deform --driver 42=0.9 --out narrower.3dm
+  lamella optimise net.obj --unit mm --as planar --height 0.1 --surface vault.toml --out strips.ply
+
+Radius and height are metres whatever the unit of the file; FILE has the unit of MESH. Vertices are counted
+from 0. Formats in and out: .obj, .ply (with figures and colours), .3dm, .json of COMPAS (with figures).
+
+exit codes: 0 all conditions hold; 1 written, but not all conditions hold (the message says which; FIGURES has
+the remainder); 2 refused, nothing written."""
+
+
+def add_optimise(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "optimise",
+        help="optimise a quad mesh: straight or circular lamellas, planar strips, deformation",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description=_ABOUT,
+    )
+    parser.add_argument("mesh", type=Path, metavar="MESH", help="quad mesh: .obj, .ply, .3dm or COMPAS .json")
+    parser.add_argument("--as", dest="problem", required=True, metavar="PROBLEM", help=f"one of {', '.join(USED)}")
+    parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="file to write; its ending says how")
+    parser.add_argument("--json", type=Path, metavar="FIGURES", help="JSON file with iterations and all figures")
+    parser.add_argument("--picture", type=Path, metavar="PNG", help="picture of the mesh before and after")
+    parser.add_argument(
+        "--colour",
+        default=None,
+        help="of .ply and picture: planarity, sphericity, radius or angle (default: sphericity; planarity for planar)",
+    )
+    parser.add_argument(
+        "--unit", help="unit of MESH: mm, cm, dm, m, km, in, ft or yd (default: m; a .3dm says its own)"
+    )
+    parser.add_argument("--radius", type=float, metavar="R", help="of the stars' spheres, m; inf: planes")
+    parser.add_argument("--angle", type=float, metavar="A", help="between polylines, degrees (default: 90)")
+    parser.add_argument(
+        "--form",
+        help="where angles are measured: circles (through a vertex and its neighbours, the default), chords, "
+        "faces (right angles only)",
+    )
+    parser.add_argument(
+        "--driver",
+        metavar="V[,V...]=SHARE",
+        help="ring to drive and its size at the end: a vertex of it (it runs from corner to corner of quads), or all "
+        "its vertices in order; 42=0.9 shrinks it by 10 %%",
+    )
+    parser.add_argument("--open-driver", action="store_true", default=None, help="the ring listed is open")
+    parser.add_argument("--height", type=float, metavar="H", help="of strips, m; below 0: to the other side")
+    parser.add_argument(
+        "--surface",
+        type=Path,
+        metavar="TOML",
+        help="project file with the reference surface, best larger than the mesh (default: the surface of constant "
+        "mean curvature that the mesh itself means)",
+    )
+    parser.add_argument("--rounds", type=int, metavar="N", help="of subdivision of strips (default: 2)")
+    parser.add_argument(
+        "--iterations",
+        type=int,
+        metavar="N",
+        help="most steps of a solution (default: 50; 100 for straighten, 20 a round for planar)",
+    )
+    parser.add_argument(
+        "--tolerance",
+        type=float,
+        metavar="T",
+        help="largest root mean square residual of a condition "
+        "that holds, in edges or radians (default: 1e-10; 1e-8 for straighten and planar)",
+    )
+    parser.add_argument("--quiet", action="store_true", help="print nothing but what went wrong")
+
+
+def run_optimise(arguments: argparse.Namespace) -> int:
+    """Do it; 0, or 1 where not all conditions hold."""
+    wishes = Wishes(
+        radius=arguments.radius,
+        angle=arguments.angle,
+        form=arguments.form,
+        driver=driver_of(arguments.driver) if arguments.driver is not None else None,
+        open_driver=arguments.open_driver,
+        surface=arguments.surface,
+        height=arguments.height,
+        rounds=arguments.rounds,
+        iterations=arguments.iterations,
+        tolerance=arguments.tolerance,
+    )
+    wishes.check(arguments.problem)
+    _check_targets(arguments)
+
+    from lamella.files.quad_mesh_files import read_quad_mesh, require_format
+    from lamella.files.whole import write_all_whole
+    from lamella.optimise import optimise, told_mesh
+    from lamella.projection.mesh_figures import mesh_figures
+
+    def say(line: str) -> None:
+        if not arguments.quiet:
+            print(line, file=sys.stderr, flush=True)
+
+    require_format(arguments.out)
+    given = read_quad_mesh(arguments.mesh, arguments.unit)
+    say(f"{arguments.mesh}: {told_mesh(given.mesh)}")
+    for note in given.notes:
+        say(f"  {note}")
+    result = optimise(given, arguments.problem, wishes, tell=say)
+    figures = mesh_figures(result.mesh, given.mesh if result.same else None)
+    figures = replace(figures, faces={**figures.faces, **result.faces})
+    files = _files(arguments, given, result, figures)
+    if arguments.picture is not None:
+        _draw(arguments, given, result)
+    write_all_whole(files)
+    last = result.solutions[-1]
+    for remark in result.remarks:
+        say(remark)
+    if not result.solved:
+        print(_not_solved(last), file=sys.stderr, flush=True)
+    if not arguments.quiet:
+        print(f"{last.verdict}; wrote " + ", ".join(str(path) for path in [*files, arguments.picture] if path))
+    return 0 if result.solved else NOT_SOLVED
+
+
+def _not_solved(solution: Solution) -> str:
+    state = solution.last
+    missing = ", ".join(
+        f"{name} by {state.residual[name]:.2g} (largest {state.largest[name]:.2g})" for name in solution.unmet
+    )
+    what = f"not met, in edges or radians: {missing}" if missing else "the steps had not ended"
+    remedy = {
+        "iterations used up": "allow more with --iterations",
+        "broken off": "start from a fairer mesh, without folds and flattened faces",
+    }.get(solution.verdict, "ask for less, or take this, the least remainder nearby; --tolerance says what is met")
+    return f"not all conditions hold: {solution.verdict} after {state.number} iterations; {what}\n  remedy: {remedy}"
+
+
+def _check_targets(arguments: argparse.Namespace) -> None:
+    """Refuse targets before anything is computed."""
+    taken = {arguments.mesh.resolve()}
+    for option in ("out", "json", "picture"):
+        path: Path | None = getattr(arguments, option)
+        if path is None:
+            continue
+        if not path.parent.is_dir():
+            raise InputError(f"{path.parent}: no such folder", f"make it first, or name another file with --{option}")
+        if path.is_dir():
+            raise InputError(f"--{option} {path} is a folder", "name a file")
+        if path.resolve() in taken:
+            raise InputError(f"--{option} {path} is in use already", "name another file: what is given stays")
+        taken.add(path.resolve())
+    if arguments.colour is not None and arguments.colour not in ("planarity", "sphericity", "radius", "angle"):
+        raise InputError(f"--colour {arguments.colour} is not known", "planarity, sphericity, radius or angle")
+    if arguments.picture is not None:
+        from lamella.view.figure import require_matplotlib
+
+        require_matplotlib()
+
+
+def _colour(arguments: argparse.Namespace) -> Any:
+    return arguments.colour or ("planarity" if arguments.problem == "planar" else "sphericity")
+
+
+def _files(
+    arguments: argparse.Namespace, given: QuadFile, result: Optimised, figures: MeshFigures
+) -> dict[Path, bytes]:
+    """Bytes of all files but the picture."""
+    from lamella.files.quad_mesh_files import quad_mesh_bytes
+    from lamella.projection.mesh_figures import mesh_figures
+    from lamella.view.net_colours import net_colours
+
+    out: Path = arguments.out
+    name = f"{arguments.mesh.name} as {arguments.problem}"
+    colours = net_colours(result.mesh, figures, _colour(arguments))
+    common: dict[str, Any] = {"like": given, "name": name, "version": __version__}
+    files = {out: quad_mesh_bytes(out.suffix, result.mesh, figures, colours={colours.on: colours.rgb}, **common)}
+    if result.lamellas is not None:
+        own = mesh_figures(result.lamellas)
+        target = out.with_name(f"{out.stem}-lamellas{out.suffix}")
+        files[target] = quad_mesh_bytes(out.suffix, result.lamellas, own, **common)
+    if arguments.json is not None:
+        files[arguments.json] = _figures(arguments, given, result, figures)
+    return files
+
+
+def _figures(arguments: argparse.Namespace, given: QuadFile, result: Optimised, figures: MeshFigures) -> bytes:
+    import orjson
+
+    from lamella.optimise import about_mesh
+    from lamella.projection.mesh_figures import mesh_figures
+
+    def named(solution: Solution) -> dict[str, Any]:
+        keys = ("number", "residual", "largest", "drift", "objective", "step", "length", "damping", "seconds")
+        return {
+            "verdict": solution.verdict,
+            "unmet": solution.unmet,
+            "iterations": [{key: getattr(state, key) for key in keys} for state in solution.iterations],
+        }
+
+    content: dict[str, Any] = {
+        "schema": SCHEMA,
+        "version": __version__,
+        "problem": arguments.problem,
+        "units": "m, degrees, 1/m; residuals, steps and drift in mean edges or radians; null: not defined there",
+        "given": {"file": arguments.mesh.name, "metres_per_unit": given.metres, **about_mesh(given.mesh)},
+        "solved": result.solved,
+        "result": result.told,
+        "remarks": result.remarks,
+        "solutions": [named(solution) for solution in result.solutions],
+        "before": mesh_figures(given.mesh).summary(),
+        "after": figures.summary(),
+        "vertices": {key: values.tolist() for key, values in figures.vertices.items()},
+        "faces": {key: values.tolist() for key, values in figures.faces.items()},
+    }
+    if result.lamellas is not None:
+        content["lamellas"] = mesh_figures(result.lamellas).summary()
+    return orjson.dumps(content, option=orjson.OPT_INDENT_2) + b"\n"
+
+
+def _draw(arguments: argparse.Namespace, given: QuadFile, result: Optimised) -> None:
+    from lamella.view.net_picture import NetPanel, draw_nets
+
+    colour = _colour(arguments)
+    ring = result.told.get("ring", [])
+    if ring and not arguments.open_driver:
+        ring = [*ring, ring[0]]
+
+    def driven(mesh: QuadMesh) -> tuple[tuple[Floats, str], ...]:
+        return ((mesh.vertices[ring], DRIVEN),) if ring else ()
+
+    after = NetPanel("after", result.mesh, colour, driven(result.mesh), "all" if result.same else "boundary")
+    # strips are no other state of the mesh they follow
+    title, own = ("before", colour) if result.same else ("polylines", None)
+    draw_nets([NetPanel(title, given.mesh, own, driven(given.mesh)), after], arguments.picture)
