@@ -9,10 +9,10 @@ demo: .venv/ready
 	@echo "open $(CURDIR)/out/01_unduloid/report.html in a browser"
 
 test: .venv/ready
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest -m "not slow" -n auto --dist loadfile
 
 slow: .venv/ready
-	$(BIN)/python -m pytest -m slow
+	$(BIN)/python -m pytest -m slow -n auto
 
 lint: .venv/ready
 	$(BIN)/ruff check .

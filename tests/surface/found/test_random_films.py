@@ -19,6 +19,11 @@ TOLERANCE, MOST_NODES = 2e-2, 20_000
 LONGEST = 180  # s, of one case on one busy core
 # drawn in every run of the suite; all 200 by CI
 FEW = [6, 18, 26, 44, 48, 82]
+# seeds whose films are known to be found: a search that refuses everything would keep all that is asserted below
+FOUND = {
+    *(0, 3, 4, 6, 7, 10, 14, 17, 19, 20, 33, 34, 36, 37, 38, 40, 41, 44, 48),
+    *(51, 52, 53, 54, 59, 60, 61, 62, 63, 66, 70, 72),
+}
 
 
 def judged(seed: int) -> str:
@@ -61,6 +66,7 @@ def judged(seed: int) -> str:
             ]
             assert max(off_rim) <= step, (seed, loop.name)
     if refusal is not None:
+        assert seed not in FOUND, (seed, "was found before", str(refusal))
         told = f"refused: {refusal.message}"
         assert refusal.remedy, seed
         assert "nan" not in str(refusal), (seed, told)
