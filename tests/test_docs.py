@@ -98,7 +98,7 @@ def projection_pictures() -> dict[str, Any]:
         ),
         (
             "figure_8",
-            {r"90%.* by ([\d.]+ to [\d.]+) deg": "by\n{} and", r"80%.* by ([\d.]+ to [\d.]+) deg": "by {} deg"},
+            {r"90%.* by ([\d.]+ to [\d.]+) deg": "by {} and", r"80%.* by ([\d.]+ to [\d.]+) deg": "by {} deg"},
         ),
         pytest.param(
             "figures_9_and_10",

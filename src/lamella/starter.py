@@ -52,7 +52,9 @@ def _key(name: str, field: FieldInfo) -> str:
     about = (field.description or "") + (f" [{unit}]" if unit else "")
     lines = textwrap.wrap(about, 98, initial_indent="# ", subsequent_indent="# ")
     required = field.is_required()
-    value: Any = field.examples[0] if field.examples else field.default
+    # a commented key stands at its default; what has none shows an example
+    shown = required or field.default is None or name == "scale"
+    value: Any = field.examples[0] if field.examples and shown else field.default
     if value is None:
         return "\n".join([*lines, f"# {name} ="])
     line = f"{name} = " + tomli_w.dumps({"x": value}, indent=0).partition(" = ")[2].strip().replace("\n", " ")
