@@ -17,12 +17,12 @@ from surface.found.random_loops import draw_case
 
 TOLERANCE, MOST_NODES = 2e-2, 20_000
 LONGEST = 180  # s, of one case on one busy core
-# drawn in every run of the suite; all 200 by CI
+# drawn in every run of the suite; 120 by CI, which takes a quarter of an hour
 FEW = [6, 18, 26, 44, 48, 82]
-# seeds whose films are known to be found: a search that refuses everything would keep all that is asserted below
+# films that were found, far from the limit of nodes: a search that refuses everything would keep all else asserted below
 FOUND = {
-    *(0, 3, 4, 6, 7, 10, 14, 17, 19, 20, 33, 34, 36, 37, 38, 40, 41, 44, 48),
-    *(51, 52, 53, 54, 59, 60, 61, 62, 63, 66, 70, 72),
+    int(seed)
+    for seed in "6 17 20 36 37 38 44 48 53 54 61 70 74 81 82 83 88 90 94 95 96 99 100 102 103 104 112 113 118".split()
 }
 
 
@@ -91,6 +91,6 @@ def test_film_or_reason(seed) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", sorted(set(range(200)) - set(FEW)))
+@pytest.mark.parametrize("seed", sorted(set(range(120)) - set(FEW)))
 def test_film_or_reason_of_more(seed) -> None:
     print(judged(seed))
