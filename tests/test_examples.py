@@ -343,7 +343,7 @@ SPLIT = r"\d+ of \d+ lamellas were split midway between nodes into \d+ pieces: \
 LEFT_OUT = r"\d+ lamellas? shorter than network.minimum_length (is|are) left out"
 SEAMS = (
     r"the net does not meet itself along \d+ seams?: it misses whole cells by up to 0\.\d+ \(summary: "
-    r"network\.joints\); another number of cells, closing = 'round' or a changed boundary may close it"
+    r"network\.joints\); another number of cells, closing = 'round' or 'adjust' may close it"
 )
 MISSED = (
     r"\d of \d umbilics are no nodes of the net \(at [-\d., e;]+ m\): lamellas pass around them; "

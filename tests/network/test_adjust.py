@@ -80,7 +80,7 @@ def test_rates_are_those_of_films_found_anew() -> None:
     search = _Search(freedom.table, HERE, freedom, lambda _: None)
     state = search.first(5e-2)
     step = 0.35
-    rates = search._cell_rates(state, step)
+    rates = search._cell_rates(state, step, state.misses(step)[0])
     size = np.abs(rates[:, :-1]).max()
     here = state.misses(step)[0]
 

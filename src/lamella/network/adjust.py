@@ -181,7 +181,6 @@ class _Search:
     def __init__(self, table: FormFoundTable, folder: Path, freedom: Freedom, progress: Progress) -> None:
         self.table, self.folder, self.freedom, self.progress = table, folder, freedom, progress
         self.steps = 0
-        self._rates: Complexes | None = None
 
     def loops(self, shares: Floats) -> tuple[Loop, ...]:
         return boundary_loops(self.freedom.changed(shares), self.folder)
@@ -242,8 +241,7 @@ class _Search:
             shifts, misses = state.misses(step)
             if _worst(misses) < CLOSED:
                 return state, step
-            self._rates = self._cell_rates(state, step)
-            shares, log_step = self._target(state, shifts, misses)
+            shares, log_step = self._target(state, self._cell_rates(state, step, shifts), misses)
             self.steps += 1
             reason = ""
             part = 1.0
@@ -265,33 +263,26 @@ class _Search:
         raise self._refusal(_worst(state.misses(step)[1]), f"not reached in {MOST_STEPS} steps")
 
     def polish(self, state: _State, step: float) -> tuple[_State, float]:
-        """The film as fine as was asked for, corrected with rates of the coarse one."""
-        if self._rates is None:
-            self._rates = self._cell_rates(state, step)
+        """The film as fine as was asked for: its own misses are a little different ones."""
+        shares = state.shares
         for _ in range(MOST_POLISHING):
-            state = self.found(state.shares, self.table.tolerance)
+            state = self.found(shares, self.table.tolerance)
             self._tell(state, step)
             shifts, misses = state.misses(step)
             if _worst(misses) < 3 * CLOSED:
                 return state, step
-            if len(self._rates) != len(misses):
-                self._rates = self._cell_rates(state, step)
-            # the pieces of another cut are others: their rates as well
-            self._rates = self._cell_rates(state, step)
-            shares, log_step = self._target(state, shifts, misses)
+            shares, log_step = self._target(state, self._cell_rates(state, step, shifts), misses)
             self.steps += 1
             step *= float(np.exp(log_step))
-            state = _State(shares, state.equilibrium, state.surface, state.umbilics, state.iso)
-        raise self._refusal(_worst(state.misses(step)[1]), "the finer surface does not follow")
+        raise self._refusal(_worst(misses), "the finer surface does not follow")
 
-    def _cell_rates(self, state: _State, step: float) -> Complexes:
-        """Rates of the shifts in cells, (t, p + 1), the logarithm of the spacing last."""
+    def _cell_rates(self, state: _State, step: float, shifts: Complexes) -> Complexes:
+        """Rates of the shifts in cells (t,), (t, p + 1), the logarithm of the spacing last."""
         film = state.equilibrium.film
         rim = self._rim_shifts(film, state.shares)
         curvature = self.freedom.curvature_rates()
         fields = jacobi_fields(film, state.surface.mean_curvature, rim, curvature)
         rates = shift_rates(state.surface, film, state.iso, fields, curvature)
-        shifts, _ = state.misses(step)
         return np.column_stack([state.cell_rates(rates, step), -shifts])
 
     def _rim_shifts(self, film: Film, shares: Floats) -> Floats:
@@ -309,10 +300,9 @@ class _Search:
                 result[number, nodes[mine]] = (new.at(t[mine]) - old.at(t[mine])) / SHARE
         return result
 
-    def _target(self, state: _State, shifts: Complexes, misses: Complexes) -> tuple[Floats, float]:
+    def _target(self, state: _State, cell_rates: Complexes, misses: Complexes) -> tuple[Floats, float]:
         """Shares and change of the logarithm of the spacing that undo the misses, to first order."""
-        assert self._rates is not None
-        rates = np.vstack([self._rates.real, self._rates.imag])
+        rates = np.vstack([cell_rates.real, cell_rates.imag])
         rates[:, -1] *= SPACING
         wanted = np.concatenate([misses.real, misses.imag])
         now = np.append(state.shares, 0.0)

@@ -130,7 +130,7 @@ class ElementNetwork:
             yield (
                 f"the net does not meet itself along {len(open_)} seam{'s' if len(open_) > 1 else ''}: it misses whole "
                 f"cells by up to {max(open_):.3g} (summary: network.joints); another number of cells, "
-                "closing = 'round' or a changed boundary may close it"
+                "closing = 'round' or 'adjust' may close it"
             )
         if rounded:
             yield (
