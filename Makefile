@@ -1,6 +1,8 @@
 # The two commands of the README are `make demo` and `make test`; both set up everything they need.
 PYTHON ?= python3
 BIN := .venv/bin
+# a process a core: threads of their own would only wait for each other
+ONE := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1
 
 .PHONY: demo test slow lint types bench docs clean
 
@@ -9,10 +11,10 @@ demo: .venv/ready
 	@echo "open $(CURDIR)/out/01_unduloid/report.html in a browser"
 
 test: .venv/ready
-	$(BIN)/python -m pytest -m "not slow" -n auto --dist loadfile
+	$(ONE) $(BIN)/python -m pytest -m "not slow" -n auto --dist loadfile
 
 slow: .venv/ready
-	$(BIN)/python -m pytest -m slow -n auto
+	$(ONE) $(BIN)/python -m pytest -m slow -n auto
 
 lint: .venv/ready
 	$(BIN)/ruff check .
@@ -22,10 +24,10 @@ types: .venv/ready
 	$(BIN)/mypy
 
 bench: .venv/ready
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/growth.py
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1 $(BIN)/python benchmarks/film.py
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1 $(BIN)/python benchmarks/projection.py
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1 $(BIN)/python benchmarks/network.py
+	$(ONE) $(BIN)/python benchmarks/growth.py
+	$(ONE) $(BIN)/python benchmarks/film.py
+	$(ONE) $(BIN)/python benchmarks/projection.py
+	$(ONE) $(BIN)/python benchmarks/network.py
 
 docs: .venv/ready
 	$(BIN)/python docs/build.py
