@@ -30,7 +30,7 @@ bench: .venv/ready
 	$(ONE) $(BIN)/python benchmarks/network.py
 
 docs: .venv/ready
-	$(BIN)/python docs/build.py
+	$(ONE) $(BIN)/python docs/build.py
 
 clean:
 	rm -rf .venv out build dist
