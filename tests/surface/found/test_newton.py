@@ -74,6 +74,19 @@ def test_rings_from_the_harmonic_start(distance) -> None:
     assert np.abs(radius - neck * np.cosh((at[:, 2] - distance / 2) / neck)).max() < 1e-5
 
 
+@pytest.mark.parametrize("share", [0.9, 0.99, 0.999])
+def test_steps_next_to_a_fold(share) -> None:
+    """A cap with H R = 0.999, rings at 0.999 of the limit, and further away: eight steps from the harmonic start, where
+    Newton's method alone halves the error ten times. Moves still fall quadratically at the end, with a constant that
+    grows as the other film comes nearer, at a distance like sqrt(1 - share).
+    """
+    for loops, h in (([ring(1.0, 0.0)], share), ([ring(1, share * 1.3254868387), ring(1, 0)], 0.0)):
+        found = find_equilibrium(start(loops, 4), h)
+        assert found.steps <= 8
+        before, last = np.array(found.moves[-2:]) / found.film.size
+        assert last < 3 / np.sqrt(1 - share) * before**2
+
+
 def test_unstable_film_is_kept_when_stability_is_not_asked_for() -> None:
     """From the exact thin-necked catenoid Newton's method stays there, with its one negative eigenvalue."""
     distance = 1.2

@@ -52,6 +52,8 @@ LEAST = 1e-9
 CRUMPLED = 0.8
 # largest distance between mesh and surface, over the size, at which the surface still is what the mesh means
 FAR = 0.05
+# typical distance between them, over the size, that the user is warned of
+OFF = 2e-4
 
 
 def _silent(message: str) -> None:
@@ -106,7 +108,11 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = _silen
         progress(f"  {note}")
     return found.surface(
         "mesh",
-        (*_doubts(fit, mean_curvature, nearest, given, exact), *notes_on(found)),
+        (
+            *_doubts(fit, mean_curvature, nearest, given, exact),
+            *_told_off(distance, found.equilibrium.film.size, fit),
+            *notes_on(found),
+        ),
         source=raw.source,
         treatment=[*mesh.notes, *notes],
         nearest_mean_curvature=nearest if given is None and not mean_curvature else mean_curvature,
@@ -188,6 +194,18 @@ def _refuse_far(distance: Floats, here: Equilibrium) -> None:
             "give another mean_curvature, or mend the mesh",
             "surface.file",
         )
+
+
+def _told_off(distance: Floats, size: float, fit: Fit) -> tuple[str, ...]:
+    """That the surface is not the mesh."""
+    typical = float(np.sqrt((distance**2).mean()))
+    if typical <= OFF * size:
+        return ()
+    return (
+        f"the surface is not the mesh, but the one of constant mean curvature next to it: vertices lie {typical:.2g} m "
+        f"off it (root mean square; up to {distance.max():.2g} m), their curvature varies by {fit.deviation:.1%} of "
+        "the curvature scale",
+    )
 
 
 def _told_zero(mean_curvature: float, nearest: float) -> tuple[str, ...]:
