@@ -18,14 +18,12 @@ from lamella.example_files import list_examples
 from lamella.files.network_json import network_schema
 from lamella.pipeline import Results
 from lamella.project import (
+    FURTHER_TABLES,
     SURFACE_TABLES,
     ArcTable,
     BoundaryTable,
     CircleTable,
-    FabricationTable,
-    LamellaTable,
     MaterialTable,
-    NetworkTable,
     PartTable,
     Project,
     SlideTable,
@@ -137,7 +135,7 @@ def project_file_page() -> str:
             for name, inner in INNER_TABLES.items():
                 about = " ".join((inner.__doc__ or "").split())
                 parts += [f"#### `{name}`\n", f"{about}\n", _table_of(inner.model_fields, inner)]
-    for name, model in (("network", NetworkTable), ("lamella", LamellaTable), ("fabrication", FabricationTable)):
+    for name, model in FURTHER_TABLES.items():
         parts += [f"## `[{name}]`\n", f"{model.__doc__}\n", _table_of(model.model_fields, model)]
     parts += [
         "## `[materials.NAME]`\n",

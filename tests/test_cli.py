@@ -17,7 +17,7 @@ import pytest
 from lamella import Unduloid, __version__
 from lamella.cli import main
 from lamella.files.mesh_files import write_surface_obj
-from lamella.project import SURFACE_TABLES, BoundaryTable, FabricationTable, LamellaTable, NetworkTable
+from lamella.project import FURTHER_TABLES, SURFACE_TABLES, BoundaryTable
 from lamella.project_file import parse_project
 
 UNDULOID = """name = "x"
@@ -155,12 +155,11 @@ def test_a_new_project_is_good_and_mentions_every_key(
     # comments taken off, each key stands in its table
     table, keys = "", set()
     for line in text.splitlines():
-        if header := re.fullmatch(r"(?:# )?\[+(surface|network|lamella|fabrication|materials)\b.*?\]+", line):
+        if header := re.fullmatch(r"(?:# )?\[+(surface|network|lamella|fabrication|files|materials)\b.*?\]+", line):
             table = "boundary" if "boundary" in line else header[1]
         elif key := re.match(r"(?:# *)?([a-z]\w*) =", line):
             keys.add(f"{table}.{key[1]}")
-    models = {"surface": SURFACE_TABLES[kind], "network": NetworkTable, "lamella": LamellaTable}
-    models["fabrication"] = FabricationTable
+    models = {"surface": SURFACE_TABLES[kind], **FURTHER_TABLES}
     wanted = {f"{name}.{key}" for name, model in models.items() for key in model.model_fields}
     wanted -= {"surface.boundary"}
     assert wanted <= keys

@@ -16,10 +16,9 @@ from hypothesis import strategies as st
 from conftest import run_of_example
 from lamella import InputError, parse_project, read_project
 from lamella.pipeline import plan
-from lamella.project import MATERIALS, SURFACE_TABLES, FabricationTable, LamellaTable, NetworkTable, project_schema
+from lamella.project import FURTHER_TABLES, MATERIALS, SURFACE_TABLES, project_schema
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
-TABLES = {"network": NetworkTable, "lamella": LamellaTable, "fabrication": FabricationTable}
 
 NUMBERS = st.one_of(
     st.sampled_from([0, 0.0, -0.0, -1, 1, 1e308, -1e308, 1e200, 1e-300, 5e-324, 10**30, 10**400, math.nan, math.inf]),
@@ -56,12 +55,12 @@ def projects(draw: st.DrawFn) -> dict[str, Any]:
     project: dict[str, Any] = {"name": draw(st.text(max_size=30)), "surface": {}}
     for name, field in SURFACE_TABLES[kind].model_fields.items():
         project["surface"][name] = kind if name == "kind" else draw(_value(name, field))
-    for table, model in TABLES.items():
+    for table, model in FURTHER_TABLES.items():
         names = draw(st.sets(st.sampled_from(list(model.model_fields)), max_size=3))
         if names:
             project[table] = {name: draw(_value(name, model.model_fields[name])) for name in sorted(names)}
     for _ in range(draw(st.integers(0, 3))):
-        table = draw(st.sampled_from([*TABLES, "surface", "materials", ""]))
+        table = draw(st.sampled_from([*FURTHER_TABLES, "surface", "materials", ""]))
         target: Any = project.setdefault(table, {}) if table else project
         if not isinstance(target, dict):
             continue
@@ -137,7 +136,7 @@ def test_defaults_filled_in_read_back_the_same(path: Path) -> None:
     assert again.lamella == project.lamella
     assert again.fabrication.slot_width == (given.fabrication.slot_width or 2 * given.lamella.thickness)
     # every key that can have a value has one
-    for table, model in TABLES.items():
+    for table, model in FURTHER_TABLES.items():
         unset = {"spacing"} if project.network.spacing is None else {"cells"}
         unset |= {"normal_curvature"} if project.network.normal_curvature is None else set()
         assert set(full[table]) == set(model.model_fields) - (unset if table == "network" else set())

@@ -257,7 +257,7 @@ def compute(
     surface, density, adjusted = _planned(project, until, folder, progress)
     project = fill_in(project, surface)
     progress("    sampling the surface for files and pictures")
-    mesh = surface.mesh()
+    mesh = surface.mesh(project.files.mesh_tolerance)
     loops = summary.loop_summary(surface, getattr(project.surface, "boundary", ()))
     figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh) | loops}
     clock.stop("surface", f"area {figures['surface']['area']:.4g} m2, H = {surface.mean_curvature:.6g} 1/m")

@@ -15,6 +15,7 @@ from lamella.strip.material import MATERIALS, Material, find_material
 from lamella.wording import shown
 
 __all__ = [
+    "FURTHER_TABLES",
     "LEAST_LENGTH",
     "MATERIALS",
     "SURFACE_TABLES",
@@ -23,6 +24,7 @@ __all__ = [
     "BoundaryTable",
     "CircleTable",
     "FabricationTable",
+    "FilesTable",
     "FormFoundTable",
     "LamellaTable",
     "MaterialTable",
@@ -238,6 +240,19 @@ class FabricationTable(Table):
         return self
 
 
+class FilesTable(Table):
+    """What is written."""
+
+    mesh_tolerance: float = number(
+        "Largest distance between the faces of surface.obj and surface.ply and the surface, over the diagonal of its "
+        "bounding box. The files say in metres what they keep, which is more where a million triangles would not do.",
+        "",
+        ge=1e-6,
+        le=0.1,
+        default=1e-3,
+    )
+
+
 class MaterialTable(Table):
     """A material of the project's own, SI units."""
 
@@ -250,6 +265,15 @@ class MaterialTable(Table):
     )
 
 
+# tables that may be left out, in the order of the documentation
+FURTHER_TABLES: dict[str, type[Table]] = {
+    "network": NetworkTable,
+    "lamella": LamellaTable,
+    "fabrication": FabricationTable,
+    "files": FilesTable,
+}
+
+
 class Project(Table):
     """A whole project file."""
 
@@ -258,6 +282,7 @@ class Project(Table):
     network: NetworkTable = NetworkTable()
     lamella: LamellaTable = LamellaTable()
     fabrication: FabricationTable = FabricationTable()
+    files: FilesTable = FilesTable()
     materials: dict[str, MaterialTable] = Field(default={}, description="Materials by name.")
 
     def material(self) -> Material:

@@ -9,12 +9,10 @@ from typing import Any, get_args
 from pydantic_core import ErrorDetails
 
 from lamella.project import (
+    FURTHER_TABLES,
     SURFACE_TABLES,
     BoundaryTable,
-    FabricationTable,
-    LamellaTable,
     MaterialTable,
-    NetworkTable,
     Project,
     Refusal,
     Table,
@@ -112,15 +110,12 @@ def _unknown(leaf: str, parent: dict[str, Any], at_top: bool) -> tuple[str, str]
         return "unknown key in this table", f"write {leaf} above all [tables]; keys of this table: {known}"
     if leaf in BoundaryTable.model_fields and "boundary" in parent:
         return "unknown key here: it belongs in a table [[surface.boundary]]", "move it below [[surface.boundary]]"
-    homes = [name for name, model in _TABLES.items() if leaf in model.model_fields]
+    homes = [name for name, model in FURTHER_TABLES.items() if leaf in model.model_fields]
     if homes:
         return f"unknown key here: it belongs in the table [{homes[0]}]", f"move it below [{homes[0]}]"
     if near:
         return "unknown key" + _meant(near), f"write {near}; keys here: {known}"
     return "unknown key", f"keys here: {known}"
-
-
-_TABLES: dict[str, type[Table]] = {"network": NetworkTable, "lamella": LamellaTable, "fabrication": FabricationTable}
 
 
 def _range(field: Any, unit: str) -> str:
@@ -183,8 +178,6 @@ def explain(error: ErrorDetails, values: dict[str, Any]) -> Told:
     if kind == "literal_error":
         return key, f"{told} is not one of {context['expected']}", f"choose one of {context['expected']}"
     if kind in ("model_type", "dict_type", "model_attributes_type", "union_tag_not_found"):
-        remedy = (
-            f"write {leaf} = {{...}} with its keys inside" if "[" in key else f"write [{cut(key)}] and its keys below"
-        )
-        return key, f"{told} is not a table", remedy
+        inside, below = f"{cut(leaf)} = {{...}} with its keys inside", f"[{cut(key)}] and its keys below"
+        return key, f"{told} is not a table", f"write {inside if '[' in key else below}"
     return key, cut(error["msg"], 200), f"see the keys of [{path[0]}] in `lamella new`"

@@ -64,7 +64,10 @@ def three_numbers(value: Any, called: str = "", most: float = MOST_LENGTH) -> tu
         if not -math.inf < x < math.inf:
             raise Refusal(f"{at} is not a finite number", "write finite numbers")
         if abs(x) > most:
-            raise Refusal(f"{at} m is out of range: has to be at most {most:g} m", "lengths are in metres")
+            raise Refusal(
+                f"{at} m is out of range: has to be at most {most:g} m",
+                "lengths are in metres; measure from a point of the project, not in survey coordinates",
+            )
     return float(value[0]), float(value[1]), float(value[2])
 
 

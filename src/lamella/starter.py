@@ -10,7 +10,7 @@ import tomli_w
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from lamella.project import SURFACE_TABLES, FabricationTable, LamellaTable, NetworkTable
+from lamella.project import FURTHER_TABLES, SURFACE_TABLES
 
 # the film between a saddle-shaped rim of 12 x 9 m and a ring
 _BOUNDARY = """\
@@ -88,9 +88,7 @@ def starter(kind: str, name: str) -> str:
         "# A lamella project. Lengths in metres, angles in degrees, stresses in Pa.\n"
         f"# Run it with:  lamella run FILE\n{tomli_w.dumps({'name': name}).strip()}",
         surface,
-        _table("network", NetworkTable),
-        _table("lamella", LamellaTable),
-        _table("fabrication", FabricationTable),
+        *(_table(name, model) for name, model in FURTHER_TABLES.items()),
         "# A material of your own (SI units), named in lamella.material:\n"
         '# [materials."my steel"]\n# density = 7850\n# youngs_modulus = 210e9\n# shear_modulus = 81e9\n'
         "# strength = 420e6",

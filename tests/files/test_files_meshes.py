@@ -53,6 +53,7 @@ def test_surface_obj(tmp_path: Path) -> None:
     write_surface_obj(tmp_path / "surface.obj", mesh, name="one\ntwo", version="1.2.3")
     head = (tmp_path / "surface.obj").read_text("utf-8").splitlines()[:3]
     assert head == ["# lamella 1.2.3", "# project one two", "# units: m"]
+    assert f"# faces within {mesh.sag():.1e} m of the surface" in (tmp_path / "surface.obj").read_text("utf-8")
     vertices, normals, elements = read_obj(tmp_path / "surface.obj")
     assert np.array_equal(vertices, mesh.points)
     assert np.array_equal(normals, mesh.normals)

@@ -47,8 +47,9 @@ def direction_of(points):
 @pytest.mark.parametrize("order", [3, 4])
 @pytest.mark.parametrize("name", PATCHES)
 def test_orders_of_position_curvature_and_direction(name: str, order: int) -> None:
-    """Three refinements of irregular elements, to a quarter of their size; errors are root mean squares over twelve points
-    an element.
+    """Three refinements of irregular elements, to a quarter of their size.
+
+    Errors are root mean squares over twelve points an element.
     """
     patch, size = PATCHES[name]
     wanted = patch.mean_curvature

@@ -24,6 +24,7 @@ def surface_obj_bytes(mesh: SurfaceMesh, *, name: str, version: str) -> bytes:
     return b"".join(
         (
             _obj_head(name, version),
+            f"# faces within {mesh.sag():.1e} m of the surface\n".encode(),
             b"o surface\n",
             rows(mesh.points, b"v "),
             rows(mesh.normals, b"vn "),
@@ -45,6 +46,8 @@ def surface_ply_bytes(mesh: SurfaceMesh, *, name: str, version: str) -> bytes:
         f"comment lamella {one_line(version)}",
         f"comment project {one_line(name)}",
         "comment units: x y z in m; H k1 k2 in 1/m; K in 1/m^2",
+        f"comment faces within {mesh.sag():.1e} m of the surface",
+        "comment H is measured from positions alone; k1 and k2 are those of the surface's own H, K = k1 k2",
         f"element vertex {len(vertices)}",
         *(f"property double {key}" for key in VERTEX_PROPERTIES),
         f"element face {len(quads) + len(triangles)}",

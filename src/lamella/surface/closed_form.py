@@ -77,17 +77,16 @@ class ClosedForm(ABC):
         """A grid over the whole outline."""
         return self.places(17, 17)[0]
 
-    def mesh(self, tolerance: float = 1e-3, limit: int = 400) -> SurfaceMesh:
-        """Mesh whose chords miss the surface by about `tolerance` times its size.
+    def mesh(self, tolerance: float = 1e-3) -> SurfaceMesh:
+        """The surface sampled for files and pictures.
 
         Parameters
         ----------
         tolerance : float
-            Sag of the longest mesh edges over the diagonal of the bounding box.
-        limit : int
-            Most vertices along either parameter.
+            Largest distance of the faces from the surface over the diagonal of the bounding box, as far as
+            `lamella.surface.sampling.MOST_LINES` vertices along either parameter allow.
         """
-        return sampling.surface_mesh(self, tolerance, limit)
+        return sampling.surface_mesh(self, tolerance)
 
     def area(self) -> float:
         """Area by quadrature, m^2."""

@@ -31,3 +31,16 @@ class SurfaceMesh:
     gaussian_curvature: Floats
     k1: Floats
     k2: Floats
+
+    def sag(self) -> float:
+        """Largest distance of the faces from the surface, estimated from the vertices' normals, m.
+
+        The chord e between two vertices misses the surface by |e . dn| / 8, dn being the difference of their normals;
+        inside of an equilateral triangle on a sphere it is 4 / 3 of that. Edges and diagonals are looked at.
+        """
+        most = 0.0
+        for i, j in ((0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3)):
+            one, other = self.faces[:, i], self.faces[:, j]
+            chord, turn = self.points[other] - self.points[one], self.normals[other] - self.normals[one]
+            most = max(most, float(np.abs((chord * turn).sum(1)).max(initial=0.0)))
+        return most / 6

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 Integers = NDArray[np.int64]
 
+# most vertices of a mesh along either parameter
+MOST_LINES = 1000
+
 
 def grid_faces(rows: int, columns: int, wrap: bool) -> Integers:
     """Quads of a rows x columns grid of vertices (row-major: U by rows, V by columns), closed in V if `wrap`."""
@@ -51,7 +54,7 @@ def grid(outline: Outline, rows: int, columns: int) -> tuple[Complexes, Integers
     return np.r_[0, rings], np.vstack([fan, 1 + grid_faces(rows - 1, columns, True)])
 
 
-def surface_mesh(surface: ClosedForm, tolerance: float, limit: int) -> SurfaceMesh:
+def surface_mesh(surface: ClosedForm, tolerance: float) -> SurfaceMesh:
     """Mesh of a closed form, see `lamella.surface.closed_form.ClosedForm.mesh`."""
     where, _ = surface.places(33, 33)
     rough = surface.at(where)
@@ -63,12 +66,18 @@ def surface_mesh(surface: ClosedForm, tolerance: float, limit: int) -> SurfaceMe
     lines = (points[-33 * 33 :] if len(points) >= 33 * 33 else points[1:]).reshape(-1, 33, 3)
     long_u = np.linalg.norm(np.diff(lines, axis=0), axis=2).sum(0).max()
     long_v = np.linalg.norm(np.diff(lines, axis=1, append=lines[:, :1]), axis=2).sum(1).max()
-    rows, columns = (int(np.clip(np.ceil(long / edge), 24, limit)) for long in (long_u, long_v))
-    # a multiple of 4, so that bodies of revolution have their full width along x and y
-    where, faces = surface.places(rows, 4 * -(-columns // 4))
-    at = surface.at(where)
-    k1, k2 = at.principal_curvatures
-    return SurfaceMesh(at.position, at.normal, faces, at.mean_curvature, k1 * k2, k1, k2)
+    for _ in range(3):
+        rows, columns = (int(np.clip(np.ceil(long / edge), 24, MOST_LINES)) for long in (long_u, long_v))
+        # a multiple of 4, so that bodies of revolution have their full width along x and y
+        where, faces = surface.places(rows, 4 * -(-columns // 4))
+        at = surface.at(where)
+        k1, k2 = at.principal_curvatures
+        mesh = SurfaceMesh(at.position, at.normal, faces, at.mean_curvature, k1 * k2, k1, k2)
+        left = mesh.sag() / (tolerance * size)
+        if left <= 1 or min(rows, columns) == MOST_LINES:
+            break
+        edge /= 1.02 * np.sqrt(left)
+    return mesh
 
 
 def measured_mean_curvature(at: Callable[[Complexes], SurfacePoints], where: Complexes, step: float) -> Floats:

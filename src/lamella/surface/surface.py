@@ -35,7 +35,7 @@ class Surface(Protocol[Where]):
         Parameters
         ----------
         tolerance : float
-            Sag of the longest mesh edges over the diagonal of the bounding box.
+            Largest distance of the faces from the surface over the diagonal of the bounding box.
         """
 
     def area(self) -> float:

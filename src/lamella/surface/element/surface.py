@@ -28,7 +28,8 @@ Integers = NDArray[np.int64]
 # order of the shape operator's continuous field, by that of the elements: that of the normals' derivatives
 SMOOTHED_ORDER = {2: 1, 3: 2, 4: 3}
 # most parts an element's edge is cut into for files and pictures
-MOST_PARTS = 12
+MOST_PARTS = 64
+MOST_TRIANGLES = 400_000
 # of a mesh's tolerance, the sag of its rim
 RIM_SHARE = 0.25
 
@@ -223,16 +224,24 @@ class ElementSurface:
         Parameters
         ----------
         tolerance : float
-            Sag of the mesh's edges over the diagonal of the bounding box; along the rim, which is what is seen, a
-            quarter of it.
+            Largest distance of the faces from the surface over the diagonal of the bounding box, as far as
+            `MOST_TRIANGLES` allow; along the rim, which is what is seen, a quarter of it.
         """
         size = float(np.linalg.norm(np.ptp(self.nodes, axis=0)))
         middle = self.measured(Places(np.arange(len(self._corners)), np.full((len(self._corners), 2), 1 / 3)))
         bend = np.abs(middle.mean_curvature) + np.abs(middle.deviator)
         edges = np.linalg.norm(self._corners[:, :3] - np.roll(self._corners[:, :3], -1, 1), axis=2).max(1)
         # an edge of length l over a curvature k sags by k l^2 / 8
-        parts = np.sqrt(np.percentile(bend * edges**2, 99) / (8 * tolerance * size))
-        return self.subdivided(int(np.clip(np.ceil(parts), 1, MOST_PARTS)), RIM_SHARE * tolerance * size)
+        parts = np.ceil(np.sqrt(np.percentile(bend * edges**2, 99) / (8 * tolerance * size)))
+        most = int(np.clip(np.sqrt(MOST_TRIANGLES / len(self._corners)), 1, MOST_PARTS))
+        parts = int(np.clip(parts, 1, most))
+        mesh = self.subdivided(parts, RIM_SHARE * tolerance * size)
+        left = mesh.sag() / (tolerance * size)
+        if left > 1 and parts < most:
+            # at a corner curvatures may have no bound: twice as fine at most
+            parts = int(np.clip(np.ceil(parts * np.sqrt(left)), parts + 1, min(2 * parts, most)))
+            mesh = self.subdivided(parts, RIM_SHARE * tolerance * size)
+        return mesh
 
     def subdivided(self, parts: int, rim_sag: float = np.inf) -> SurfaceMesh:
         """Every element's edges cut into `parts`, those on the rim finer where their sag (m) asks for it."""

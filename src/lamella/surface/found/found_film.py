@@ -51,6 +51,7 @@ class Found:
             "continuation": self.followed,
             "curvature_scale": self.scale,
             "mean_curvature_deviation": self.deviation,
+            "mean_curvature_deviation_max": self.deviation * self.scale,
             "volume": enclosed_volume(film),
         }
         rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
