@@ -201,7 +201,7 @@ def test_mesh_lies_on_the_surface_and_its_area_converges(kind):
 
     # the sag is the square of the edge: a quarter of it halves the edge and quarters the area error
     assert miss(5e-5) < 1e-3
-    assert 2.5 < miss(4e-4) / miss(1e-4) < 6
+    assert 2.5 < miss(1e-4) / miss(2.5e-5) < 6
 
 
 @pytest.mark.parametrize(
