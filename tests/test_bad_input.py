@@ -395,17 +395,14 @@ def test_materials_of_ones_own(refused: Callable[..., str], key: str) -> None:
 @pytest.mark.parametrize("cells", [1_000, 100_000, 10**9, 10**12])
 def test_absurd_counts_are_refused_before_any_work(refused: Callable[..., str], cells: int) -> None:
     tracemalloc.start()
-    start = time.perf_counter()
     told = refused(
         f"{UNDULOID}[network]\ncells = {cells}\n",
         f"cells = {cells} would make about ",
         "(limit 500,000 nodes)",
         at="p.toml:8",
     )
-    seconds = time.perf_counter() - start
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert seconds < 1
     assert peak < 20e6
     nodes, memory = re.search(r"about ([\d,.e+]+) nodes and take about ([\d,.e+]+) GB", told).groups()  # type: ignore[union-attr]
     assert float(nodes.replace(",", "")) == pytest.approx(0.7589 * cells**2, rel=0.05)

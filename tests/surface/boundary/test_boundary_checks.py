@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import time
 
 import numpy as np
 import pytest
@@ -234,19 +233,3 @@ def test_random_loops_against_all_pairs_of_chords() -> None:
             np.testing.assert_allclose(loop.at(np.array(touch.arcs) / loop.length), touch.points, atol=1e-9)
             assert touch.distance < 1e-6 * loop.size
     assert 6 <= crossed <= 18
-
-
-def test_five_loops_of_200_points_are_checked_at_once() -> None:
-    t = 2 * np.pi * np.arange(200) / 200
-    outer = np.stack([6 * np.cos(t), 4.5 * np.sin(t), 2.5 - 2.5 * np.cos(2 * t)], axis=1)
-    loops = [spline(outer, "outer")]
-    for k, (x, y) in enumerate([(-2, -1), (-2, 1), (2, -1), (2, 1)]):
-        loops.append(spline(0.1 * outer + [x, y, 2], f"hole {k + 1}"))
-    best = min(_seconds(loops) for _ in range(3))
-    assert best < 0.3
-
-
-def _seconds(loops: list[Loop]) -> float:
-    start = time.process_time()
-    check_loops(loops)
-    return time.process_time() - start

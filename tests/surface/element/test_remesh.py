@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -416,24 +415,3 @@ def test_bad_starts_are_refused(change, message) -> None:
     case = ring(0.5, 1.5, 20, 4, even(0.2))
     with pytest.raises(ValueError, match=message):
         replace(case, mesh=change(case.mesh)).run()
-
-
-@pytest.mark.parametrize(("size", "least", "seconds"), [(0.062, 11_000, 6.0), (0.39, 260, 0.3)])
-def test_speed(size: float, least: int, seconds: float) -> None:
-    case = catenoid(60, 6, even(size), skew=0.3, power=2.0)
-    inner, spent = case.project, [0.0]
-
-    def project(p):
-        start = time.process_time()
-        q = inner(p)
-        spent[0] += time.process_time() - start
-        return q
-
-    case.project = project
-    times = []
-    for _ in range(3):  # the quickest: other work on the machine only ever adds
-        start, spent[0] = time.process_time(), 0.0
-        mesh = case.run()
-        times.append(time.process_time() - start - spent[0])
-    assert len(mesh.faces) > least
-    assert min(times) < seconds
