@@ -19,6 +19,7 @@ from lamella.files.network_json import network_schema
 from lamella.pipeline import Results
 from lamella.project import (
     SURFACE_TABLES,
+    AdjustTable,
     ArcTable,
     BoundaryTable,
     CircleTable,
@@ -27,6 +28,7 @@ from lamella.project import (
     MaterialTable,
     NetworkTable,
     PartTable,
+    PlaceTable,
     Project,
     SlideTable,
     Table,
@@ -109,7 +111,9 @@ INNER_TABLES: dict[str, type[Table]] = {
     "[[surface.boundary.part]]": PartTable,
     "circle = {...}": CircleTable,
     "arc = {...}": ArcTable,
+    "place = {...}": PlaceTable,
     "slide = {...}": SlideTable,
+    "adjust = {...}": AdjustTable,
 }
 
 
