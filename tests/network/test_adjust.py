@@ -11,7 +11,8 @@ import pytest
 
 from conftest import EXAMPLES
 from lamella import InputError, compute, parse_project
-from lamella.network.adjust import Adjusted, Search, adjust_boundary
+from lamella.network.adjust import Adjusted, adjust_boundary
+from lamella.network.adjustable_films import Films
 from lamella.network.element_network import ElementNetwork, element_network
 from lamella.network.network import SEAM, SINGULAR
 from lamella.network.pattern import LAMELLAS, Pattern
@@ -98,16 +99,16 @@ def test_rates_are_those_of_films_found_anew(held: str) -> None:
     """First order by one Jacobi field each, against differences of shifts on both sides."""
     tables = sketch(1, move=0.3, scale=0.1, tilt=5.0)
     freedom = Freedom(table_of(of_volume(tables, -0.03) if held == "volume" else tables))
-    search = Search(freedom.table, HERE, freedom, LAMELLAS, lambda _: None)
-    net = search.first(5e-2)
+    films = Films(freedom.table, HERE, freedom, LAMELLAS)
+    net = films.first(5e-2)
     step = 0.35
-    rates = search.cell_rates(net, step)
+    rates = films.cell_rates(net, step)
     size = np.abs(rates[:, :-1]).max()
     here = net.cells(step)
     if held == "volume":
         film, h = net.equilibrium.film, net.surface.mean_curvature
         assert h == pytest.approx(-0.03, rel=1e-6)
-        rising = curvature_rates_of_volume(film, h, search._rim_shifts(film, net.shares))
+        rising = curvature_rates_of_volume(film, h, films.rim_shifts(film, net.shares))
 
     def matched(shifts: np.ndarray) -> np.ndarray:
         """In the order of the first film's: the cut may be told piece by piece in another one."""
@@ -117,7 +118,7 @@ def test_rates_are_those_of_films_found_anew(held: str) -> None:
 
     for number in (3, 10, 27, 30, 32):
         ahead = 0.02 * np.eye(freedom.count)[number]
-        there = [search.moved(net, sign * ahead) for sign in (1, -1)]
+        there = [films.moved(net, sign * ahead) for sign in (1, -1)]
         one, other = (matched(net.cells(step)) for net in there)
         assert np.abs((one - other) / 0.04 - rates[:, number]).max() < 1e-2 * size
         if held == "volume":

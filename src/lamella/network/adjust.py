@@ -17,23 +17,17 @@ from scipy.optimize import lsq_linear
 from scipy.spatial import cKDTree
 
 from lamella.errors import InputError
+from lamella.network.adjustable_films import Films, FollowError
 from lamella.network.carried_shifts import carried
 from lamella.network.element_lattice import Lattice, choose_lattice
 from lamella.network.film_net import FilmNet
 from lamella.network.holonomy import around_holes, holonomies
 from lamella.network.pattern import LAMELLAS, Pattern
-from lamella.network.shift_rates import curvature_rates_of_volume, jacobi_fields, shift_rates
 from lamella.surface.boundary.curve import Loop
 from lamella.surface.boundary.freedom import Freedom
 from lamella.surface.boundary.tables import boundary_loops
-from lamella.surface.element.placing import rim_parameters
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.found.film import Film
-from lamella.surface.found.find import find_film, notes_on
-from lamella.surface.found.loop_path import BreakError, along_loops
-from lamella.surface.found.newton import Equilibrium
 from lamella.surface.points import Complexes, Floats
-from lamella.surface.umbilic import refuse_umbilic
 
 if TYPE_CHECKING:
     from lamella.project import FormFoundTable
@@ -49,13 +43,11 @@ MOST_STEPS, MOST_POLISHING, MOST_HALVINGS = 14, 5, 5
 LONGEST = 0.04
 # range of the logarithm of the lattice's spacing
 SPACING = 0.1
-# difference of shares for the loops' movement
-SHARE = 1e-5
 # whole numbers near to the shifts among which those that ask for the smallest changes are tried
 MOST_LOOKED_AT, MOST_TRIED = 24, 4
 # a whole step has to take this part of the misses away at least
 LEAST_GAIN = 0.1
-# how much more a miss of a cell weighs than a full range
+# how much more a miss of a cell (by the energy of rounding it) weighs than a full range
 WEIGHT = 1e4
 SAMPLES = 2000
 
@@ -114,12 +106,13 @@ def adjust_boundary(
             "add adjust = {move = 0.3} to a loop that does not slide, or adjust_mean_curvature",
             "surface.boundary",
         )
-    search = Search(table, folder, freedom, pattern, progress)
+    films = Films(table, folder, freedom, pattern)
     progress(f"  adjusting {', '.join(freedom.names)}: {freedom.count} parameters")
-    first = search.first(max(table.tolerance, COARSE))
+    first = films.first(max(table.tolerance, COARSE))
     names = tuple(loop.name for loop in table.boundary)
     lattice = choose_lattice(first.iso, holonomies(first.iso), cells, spacing, pattern=pattern, names=names)
     before = _worst(first.whole.nearest(first.cells(lattice.step))[0] - first.cells(lattice.step))
+    search = _Search(films, progress)
     state, step, after = search.closed(first, lattice)
     final = freedom.changed(state.shares)
     moved = {
@@ -134,7 +127,7 @@ def adjust_boundary(
         "missed_after": after,
         "moved_max": farthest,
         "moved": moved,
-        "mean_curvature_change": state.surface.mean_curvature - first.surface.mean_curvature,
+        "mean_curvature_change": float(state.surface.mean_curvature - first.surface.mean_curvature),
         "steps": search.steps,
     }
     progress(f"  adjusted: the boundary moved by at most {1000 * farthest:.3g} mm, misses {after:.1e} cells")
@@ -160,64 +153,12 @@ class _Aim:
         return self.net.whole.size(self.misses)
 
 
-class Search:
+class _Search:
     """Gauss-Newton's method on one project's boundary."""
 
-    def __init__(
-        self, table: FormFoundTable, folder: Path, freedom: Freedom, pattern: Pattern, progress: Progress
-    ) -> None:
-        self.table, self.folder, self.freedom, self.pattern = table, folder, freedom, pattern
-        self.progress = progress
+    def __init__(self, films: Films, progress: Progress) -> None:
+        self.films, self.progress = films, progress
         self.steps = 0
-
-    def loops(self, shares: Floats) -> tuple[Loop, ...]:
-        """The boundary at some shares."""
-        return boundary_loops(self.freedom.changed(shares), self.folder)
-
-    def found(self, shares: Floats, tolerance: float) -> FilmNet:
-        """The film of some shares from nothing, to a tolerance."""
-        table = self.freedom.changed(shares)
-        found = find_film(
-            boundary_loops(table, self.folder),
-            table.mean_curvature or 0.0,
-            volume=table.volume,
-            order=table.order,
-            tolerance=tolerance,
-            branch=table.branch,
-            most_nodes=table.most_nodes,
-        )
-        surface = found.surface("form-found", notes_on(found), tolerance=table.tolerance)
-        return FilmNet.of(shares, found.equilibrium, surface, self.pattern)
-
-    def first(self, tolerance: float) -> FilmNet:
-        """The film of the sketch."""
-        net = self.found(np.zeros(self.freedom.count), tolerance)
-        refuse_umbilic(net.surface)
-        return net
-
-    def moved(self, net: FilmNet, shares: Floats) -> FilmNet:
-        """The film followed to other shares; its umbilics stay as many, of the same orders."""
-        start, table = net.shares, self.freedom.changed(shares)
-        curvature = net.surface.mean_curvature if table.mean_curvature is None else table.mean_curvature
-        try:
-            reached = along_loops(
-                Equilibrium(net.equilibrium.film, curvature, 0, 0, ()),
-                lambda share: self.loops(start + share * (shares - start)),
-                0.0,
-                self.loops(shares),
-                lambda _: None,
-                volume=table.volume,
-                stable=table.branch == "stable",
-            )
-        except BreakError as error:
-            raise _StepError(str(error)) from None
-        film, curvature = reached.equilibrium.film, reached.equilibrium.mean_curvature
-        rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
-        surface = ElementSurface("form-found", curvature, film.connectivity, film.nodes, rim_loop)
-        there = FilmNet.of(shares, reached.equilibrium, surface, self.pattern)
-        if there.orders != net.orders:
-            raise _StepError("umbilics come or go at the boundary")
-        return there
 
     def closed(self, first: FilmNet, lattice: Lattice) -> tuple[FilmNet, float, float]:
         """The net that closes, with the spacing of its lattice, sqrt(m), and what it still misses, cells.
@@ -244,7 +185,7 @@ class Search:
         """Whole shifts (t,) in the order of the change they ask for, to first order."""
         step = lattice.step
         near = net.whole.nearest(net.cells(step), MOST_LOOKED_AT)
-        rates = self.cell_rates(net, step)
+        rates = self.films.cell_rates(net, step)
         counted = self._counted(net, net.cells(step), lattice)
         near = [whole for whole in near if self._counted(net, whole, lattice) == counted]
         cost = [self._solved(net, rates, whole - net.cells(step))[1] for whole in near]
@@ -253,7 +194,7 @@ class Search:
     def _counted(self, net: FilmNet, shifts: Complexes, lattice: Lattice) -> int:
         """Cells on a loop around the first hole; 0: no cells are counted there."""
         for sign, factors in around_holes(net.iso)[:1]:
-            w = self.pattern.isothermic(np.array([factors @ shifts]), 1.0)[0] * self.pattern.factor
+            w = net.pattern.isothermic(np.array([factors @ shifts]), 1.0)[0] * net.pattern.factor
             count = int(np.rint(max(abs(w.real), abs(w.imag))))
             if sign == 1 and abs(count - lattice.cells) <= 1:
                 return count
@@ -272,15 +213,19 @@ class Search:
     def _step(self, aim: _Aim) -> _Aim:
         """A net nearer to its whole shifts."""
         net = aim.net
-        rates = self.cell_rates(net, aim.step)
-        change = self._shortened(net, self._solved(net, rates, aim.misses)[0])
+        rates = self.films.cell_rates(net, aim.step)
+        change = self._solved(net, rates, aim.misses)[0]
+        if net.whole.size(aim.misses - rates @ change) > (1 - LEAST_GAIN) * aim.size:
+            raise _LostError(aim, "the boundary may not change by more")
+        change = self._shortened(net, change)
         self.steps += 1
         part, reason = 1.0, ""
         for _ in range(MOST_HALVINGS):
             move = part * change
             try:
-                there = self._carried(aim, self.moved(net, net.shares + move[:-1]), aim.misses - rates @ move, move[-1])
-            except _StepError as error:
+                moved = self.films.moved(net, net.shares + move[:-1])
+                there = self._carried(aim, moved, aim.misses - rates @ move, move[-1])
+            except FollowError as error:
                 reason, part = str(error), part / 2
                 continue
             if there.size < (1 - LEAST_GAIN * part) * aim.size or _worst(there.misses) < 10 * CLOSED:
@@ -293,7 +238,7 @@ class Search:
         step = float(aim.step * np.exp(log_step))
         whole = carried(aim.net.iso, left, net.iso, net.cells(step), net.whole)
         if whole is None:
-            raise _StepError("the net changes too much in a step")
+            raise FollowError("the net changes too much in a step")
         return _Aim(net, whole, step)
 
     def polish(self, aim: _Aim) -> tuple[FilmNet, float, float]:
@@ -301,53 +246,27 @@ class Search:
         shares, log_step, left = aim.net.shares, 0.0, aim.misses
         for _ in range(MOST_POLISHING):
             try:
-                aim = self._carried(aim, self.found(shares, self.table.tolerance), left, log_step)
-            except _StepError as error:
+                aim = self._carried(aim, self.films.found(shares, self.films.table.tolerance), left, log_step)
+            except FollowError as error:
                 raise _LostError(aim, str(error)) from None
             self._tell(aim)
             if _worst(aim.misses) < 3 * CLOSED:
                 return aim.net, aim.step, _worst(aim.misses)
-            rates = self.cell_rates(aim.net, aim.step)
+            rates = self.films.cell_rates(aim.net, aim.step)
             change = self._shortened(aim.net, self._solved(aim.net, rates, aim.misses)[0])
             self.steps += 1
             shares, log_step, left = aim.net.shares + change[:-1], change[-1], aim.misses - rates @ change
         raise _LostError(aim, "the finer surface does not follow")
-
-    def cell_rates(self, net: FilmNet, step: float) -> Complexes:
-        """Rates of the shifts in cells, (t, p + 1), the logarithm of the spacing last."""
-        film = net.equilibrium.film
-        rim = self._rim_shifts(film, net.shares)
-        h = net.surface.mean_curvature
-        curvature = self.freedom.curvature_rates()
-        if self.table.volume is not None:
-            curvature = curvature_rates_of_volume(film, h, rim)
-        fields = jacobi_fields(film, h, rim, curvature)
-        rates = shift_rates(net.surface, film, net.iso, fields, curvature)
-        return np.column_stack([net.cell_rates(rates, step), -net.cells(step)])
-
-    def _rim_shifts(self, film: Film, shares: Floats) -> Floats:
-        """How the boundary's nodes move with each parameter, (p, n, 3), m."""
-        nodes = film.connectivity.rim_nodes
-        t = rim_parameters(film.connectivity, film.mesh.parameter)
-        of_loop = film.mesh.loop[nodes[:, 0]]
-        result = np.zeros((self.freedom.count, len(film.nodes), 3))
-        begin = self.loops(shares)
-        for number in range(self.freedom.count):
-            ahead = shares.copy()
-            ahead[number] += SHARE
-            for index, (old, new) in enumerate(zip(begin, self.loops(ahead), strict=True)):
-                mine = of_loop == index
-                result[number, nodes[mine]] = (new.at(t[mine]) - old.at(t[mine])) / SHARE
-        return result
 
     def _solved(self, net: FilmNet, cell_rates: Complexes, misses: Complexes) -> tuple[Floats, float]:
         """Change of the shares and of the logarithm of the spacing that undoes misses, to first order; what it costs.
 
         The least squares of the shares themselves, not of their change, with what they cannot undo weighing more.
         """
-        rates = np.vstack([cell_rates.real, cell_rates.imag])
+        measured, missed = net.whole.measured(cell_rates), net.whole.measured(misses)
+        rates = np.vstack([measured.real, measured.imag])
         rates[:, -1] *= SPACING
-        wanted = np.concatenate([misses.real, misses.imag])
+        wanted = np.concatenate([missed.real, missed.imag])
         now = np.append(net.shares, 0.0)
         system = np.vstack([WEIGHT * rates, np.eye(len(now))])
         right = np.concatenate([WEIGHT * (wanted + rates @ now), np.zeros(len(now))])
@@ -359,7 +278,7 @@ class Search:
     def _shortened(self, net: FilmNet, change: Floats) -> Floats:
         """A change no longer than the linear picture bears."""
         t = np.arange(200) / 200
-        begin, end = self.loops(net.shares), self.loops(net.shares + change[:-1])
+        begin, end = self.films.loops(net.shares), self.films.loops(net.shares + change[:-1])
         far = max(
             float(np.linalg.norm(new.at(t) - old.at(t), axis=1).max()) for old, new in zip(begin, end, strict=True)
         )
@@ -370,10 +289,6 @@ class Search:
             f"  {self.steps} steps: misses up to {_worst(aim.misses):.2e} cells, parameters up to "
             f"{100 * np.abs(aim.net.shares).max(initial=0.0):.0f} % of what they may change"
         )
-
-
-class _StepError(ArithmeticError):
-    """A step that cannot be taken."""
 
 
 class _LostError(ArithmeticError):

@@ -178,7 +178,7 @@ def element_network(
     around = holonomies(iso)
     lattice = choose_lattice(iso, around, cells, spacing, pattern=pattern, names=names)
     if step is not None:
-        lattice = replace(lattice, step=step)
+        lattice = replace(lattice, step=step, cells=round(lattice.cells * lattice.step / step))
     raw = CellMap.of(iso, lattice.origin, lattice.step, pattern)
     if closing == "round":
         iso, wanted = _rounded(iso, raw, lattice)

@@ -19,7 +19,7 @@ from lamella.surface.found.newton import Equilibrium
 from lamella.surface.points import Complexes, Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FilmNet:
     """A film at some shares of the boundary's parameters, with its coordinates.
 

@@ -49,15 +49,20 @@ class WholeShifts:
         return cls(*_reduced(basis, iso.gram))
 
     def coordinates(self, shifts: Complexes) -> Complexes:
-        """Shifts (t,) in the basis, (d,)."""
+        """Shifts (t, ...) in the basis, (d, ...)."""
+        columns = shifts.reshape(len(shifts), -1)
         if not len(self.basis):
-            return np.zeros(0, complex)
-        return np.asarray(np.linalg.lstsq(self.basis.T.astype(complex), shifts, rcond=None)[0], np.complex128)
+            return np.zeros((0, *shifts.shape[1:]), complex)
+        found = np.linalg.lstsq(self.basis.T.astype(complex), columns, rcond=None)[0]
+        return np.asarray(found.reshape(-1, *shifts.shape[1:]), np.complex128)
+
+    def measured(self, changes: Complexes) -> Complexes:
+        """Changes of the shifts (t, ...) as numbers (d, ...) whose sum of squares is their energy."""
+        return np.asarray(np.tensordot(np.linalg.cholesky(self.energy).T, self.coordinates(changes), 1), np.complex128)
 
     def size(self, change: Complexes) -> float:
         """Square root of the energy of a change of shifts (t,), in cells."""
-        a = self.coordinates(change)
-        return float(np.sqrt(max(float((a.conj() @ self.energy @ a).real), 0.0)))
+        return float(np.linalg.norm(self.measured(change)))
 
     def nearest(self, shifts: Complexes, count: int = 1) -> list[Complexes]:
         """The nearest whole shifts to given ones, (t,) each, by the energy of the change, the nearest first."""
