@@ -15,19 +15,22 @@ from lamella.network import gluing
 from lamella.network.carried_shifts import carried
 from lamella.network.cell_map import CellMap
 from lamella.network.cut import cut_edges
+from lamella.network.element_lattice import lattice_origin
 from lamella.network.element_network import element_network
 from lamella.network.gluing import integrate
-from lamella.network.holonomy import around_vertex, holonomies, origin_factors, tip_vertices, vertex_relations
+from lamella.network.holonomy import around_vertex, holonomies, tip_vertices, vertex_relations
 from lamella.network.isothermic import Isothermic
 from lamella.network.net_mesh import NetMesh, make_net_mesh
-from lamella.network.network import SEAM
+from lamella.network.network import SEAM, SINGULAR
+from lamella.network.pattern import LAMELLAS
 from lamella.network.whole_shifts import WholeShifts, _closest, _even, _kernel, _reduced
 from lamella.surface.boundary import boundary_loops
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.find import find_film
 from network.random_boundaries import sketch as random_sketch
 from network.test_adjust import HERE, sketch, table_of
-from network.test_found_network import euler, shaken_grid
+from network.test_found_network import elements_on, euler, shaken_grid
+from surface.found.exact_patches import disc
 
 STEP = 0.35
 
@@ -54,8 +57,7 @@ def cut_anew(surface: ElementSurface, monkeypatch: pytest.MonkeyPatch, seed: int
 
 
 def cells_of(iso: Isothermic) -> np.ndarray:
-    shifts = np.array([piece.shift for piece in iso.transitions])
-    return CellMap.of(iso, complex(origin_factors(iso) @ shifts), STEP).shifts
+    return CellMap.of(iso, lattice_origin(iso, STEP, LAMELLAS), STEP).shifts
 
 
 @pytest.fixture(scope="module")
@@ -123,7 +125,7 @@ def test_nearest_whole_shifts_close_the_net(
 def test_a_net_around_a_hole_that_was_an_umbilic(closing: Literal["open", "round"]) -> None:
     """Enneper's surface of order 3 without its hexagonal node: the net closes around the hole as around the node.
 
-    w comes back as -w + c, and the lattice has to lie on c / 2, wherever the hole's umbilic may be.
+    w comes back as -w + c, and c / 2 has to be in the middle of a cell or a node, wherever the hole's umbilic may be.
     """
     form = Enneper(3, 0.9, 2.0)
     corners, faces = shaken_grid((0, 2 * np.pi), (0.25, 0.9), 30, 8, around=True)
@@ -149,6 +151,24 @@ def test_a_net_around_a_hole_that_was_an_umbilic(closing: Literal["open", "round
     assert euler(network) == 0
     # six rays of each family, in turn, where the node was: as many curves of each
     assert sum(name.startswith("A") for name in network.ids) == sum(name.startswith("B") for name in network.ids)
+
+
+@pytest.mark.parametrize("closing", ["open", "round"])
+@pytest.mark.parametrize(("inside", "joints"), [(-0.002, 0), (0.002, 1), (0.005, 1)])
+def test_an_umbilic_next_to_the_rim(inside: float, joints: int, closing: Literal["open", "round"]) -> None:
+    """Enneper's surface of order 3, trimmed just beyond its node or just before it: no seam and no node."""
+    form = Enneper(3, 1.8, 2.0)
+    points, faces, _, _ = disc(8)
+    surface = elements_on(form, (0.8 * points[:, :2] + [0.8 - inside, 0.0])[faces], faces)
+    net = element_network(surface, cells=12, closing=closing, minimum_length=0.0)
+    assert len(net.umbilics.orders) == joints
+    assert net.on_rim.all()
+    assert len(net.joints) == joints
+    assert all(joint.closed and joint.off_cells < 1e-9 for joint in net.joints)
+    assert not np.isin(net.network.node_kinds, (SEAM, SINGULAR)).any()
+    # a disc, but for a face of more than six corners around the umbilic, which takes a bite out of it
+    assert euler(net.network) in (1 - len(net.network.faces_left_out), 1)
+    assert len(net.network.ids) >= 33
 
 
 def test_closest_vectors_are_those_of_all() -> None:

@@ -111,7 +111,7 @@ class Films:
                 curvature = curvature_rates_of_volume(film, h, rim)
             fields = jacobi_fields(film, h, rim, curvature)
             self._rates[net] = shift_rates(net.surface, film, net.iso, fields, curvature)
-        return np.column_stack([net.cell_rates(self._rates[net], step), -net.cells(step)])
+        return net.cell_rates(self._rates[net], step)
 
     def rim_shifts(self, film: Film, shares: Floats) -> Floats:
         """How the boundary's nodes move with each parameter, (p, n, 3), m."""

@@ -42,7 +42,7 @@ def carried(
     (s,) complex, or None where they are not told apart.
     """
     if not len(whole.basis):
-        return np.zeros(len(shifts), complex)
+        return whole.offset
     there, _, fields = _derivatives(old)
     here, area, own = _derivatives(new)
     _, nearest = cKDTree(there).query(here)
@@ -50,11 +50,11 @@ def carried(
     weight = np.sqrt(area)[:, None]
     system = (np.einsum("dt,tek->dek", whole.basis, own) * weight).reshape(len(whole.basis), -1).T
     found = np.linalg.lstsq(system.astype(complex), (wanted * weight).ravel(), rcond=None)[0]
-    place = whole.coordinates(shifts) + found
+    place = whole.coordinates(shifts - whole.offset) + found
     rounded = np.round(place)
     if np.abs(np.concatenate([(place - rounded).real, (place - rounded).imag])).max() > UNSURE:
         return None
-    return np.asarray(rounded @ whole.basis, np.complex128)
+    return np.asarray(whole.offset + rounded @ whole.basis, np.complex128)
 
 
 def _derivatives(iso: Isothermic) -> tuple[Floats, Floats, Floats]:

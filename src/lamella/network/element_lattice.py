@@ -8,7 +8,7 @@ import numpy as np
 
 from lamella.errors import InputError
 from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
-from lamella.network.holonomy import Holonomy, origin_factors
+from lamella.network.holonomy import Holonomy, fixed_point_factors
 from lamella.network.isothermic import Isothermic
 from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 from lamella.surface.element.quadrature import triangle_rule
@@ -16,6 +16,8 @@ from lamella.surface.points import Floats
 
 # of the longest principal line: a shorter period around a hole is none to count cells on
 LEAST_PERIOD = 1e-2
+# cells; where w turns around what is no umbilic of the net: no lamella ends there
+MIDDLE = 0.5 + 0.5j
 
 
 @dataclass(frozen=True)
@@ -46,19 +48,14 @@ def choose_lattice(
     cells: int | None,
     spacing: float | None,
     *,
+    step: float | None = None,
     pattern: Pattern = LAMELLAS,
     names: tuple[str, ...] = (),
 ) -> Lattice:
-    """Origin and step: a singular node on the lattice, a whole number of cells around the first hole or across."""
-    mesh = iso.mesh
-    corner = iso.value[:, :3]
-    factors = origin_factors(iso)
-    inside = mesh.umbilics[mesh.umbilics >= 0]
-    if factors.any():
-        origin = complex(factors @ np.array([piece.shift for piece in iso.transitions]))
-    else:
-        # nothing turns w: an umbilic of even order may be a node
-        origin = complex(corner[mesh.connectivity.faces == inside[0]].mean() if len(inside) else corner.mean())
+    """Origin and step: a singular node on the lattice, a whole number of cells around the first hole or across.
+
+    With a step, sqrt(m), that is taken, and the number of cells is what follows.
+    """
     whole, period = _whole_length(iso, around, pattern)
     points, weights = triangle_rule(8)
     mu_area, edge = _cell_densities(iso, points, weights, pattern)
@@ -85,7 +82,10 @@ def choose_lattice(
         cells = fitting_cells(cells, pattern.multiple(period), name, given=spacing is None)
     if cells < LEAST_CELLS:
         raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
-    step = whole / cells
+    if step is None:
+        step = whole / cells
+    else:
+        cells = round(whole / step)
     estimate = float(mu_area.sum() / step**2) / (pattern.every[0] * pattern.every[1])
     if estimate > MOST_NODES:
         memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
@@ -98,7 +98,19 @@ def choose_lattice(
             else f"choose a spacing of at least {spacing * cells / most:.3g} m",
             key,
         )
-    return Lattice(origin, step, cells, requested, round(estimate))
+    return Lattice(lattice_origin(iso, step, pattern), step, cells, requested, round(estimate))
+
+
+def lattice_origin(iso: Isothermic, step: float, pattern: Pattern) -> complex:
+    """w of a lattice point, sqrt(m): the first odd umbilic, or half a cell from where w turns around a hole."""
+    factors = fixed_point_factors(iso)
+    if factors.any():
+        place = complex(factors @ np.array([piece.shift for piece in iso.transitions]))
+        return place if len(iso.odd) else place - complex(pattern.isothermic(np.array([MIDDLE]), step)[0])
+    # nothing turns w: an umbilic of even order may be a node
+    corner = iso.value[:, :3]
+    inside = iso.mesh.umbilics[iso.mesh.umbilics >= 0]
+    return complex(corner[iso.mesh.connectivity.faces == inside[0]].mean() if len(inside) else corner.mean())
 
 
 def _cell_densities(iso: Isothermic, points: Floats, weights: Floats, pattern: Pattern) -> tuple[Floats, Floats]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -176,9 +176,7 @@ def element_network(
     )
     names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
     around = holonomies(iso)
-    lattice = choose_lattice(iso, around, cells, spacing, pattern=pattern, names=names)
-    if step is not None:
-        lattice = replace(lattice, step=step, cells=round(lattice.cells * lattice.step / step))
+    lattice = choose_lattice(iso, around, cells, spacing, step=step, pattern=pattern, names=names)
     raw = CellMap.of(iso, lattice.origin, lattice.step, pattern)
     if closing == "round":
         iso, wanted = _rounded(iso, raw, lattice)

@@ -8,8 +8,9 @@ from functools import cached_property
 import numpy as np
 
 from lamella.network.cell_map import CellMap
+from lamella.network.element_lattice import lattice_origin
 from lamella.network.gluing import integrate
-from lamella.network.holonomy import origin_factors
+from lamella.network.holonomy import fixed_point_factors
 from lamella.network.isothermic import Isothermic
 from lamella.network.net_mesh import make_net_mesh
 from lamella.network.pattern import Pattern
@@ -57,20 +58,13 @@ class FilmNet:
         """Orders of the umbilics off the rim, sorted."""
         return sorted(self.surface.umbilics.orders[self.iso.mesh.umbilics >= 0].tolist())
 
-    @property
-    def shifts(self) -> Complexes:
-        """Shifts of the pieces of the cut, (t,), sqrt(m)."""
-        return np.array([piece.shift for piece in self.iso.transitions], complex)
-
-    @cached_property
-    def _origin(self) -> Floats:
-        return origin_factors(self.iso)
-
     def cells(self, step: float) -> Complexes:
-        """Shifts of the pieces of the cut, (t,), in cells, the lattice's origin on the first odd umbilic."""
-        return CellMap.of(self.iso, complex(self._origin @ self.shifts), step, self.pattern).shifts
+        """Shifts of the pieces of the cut, (t,), in cells of a lattice with l0 = step, sqrt(m)."""
+        return CellMap.of(self.iso, lattice_origin(self.iso, step, self.pattern), step, self.pattern).shifts
 
     def cell_rates(self, rates: Complexes, step: float) -> Complexes:
-        """Change of the shifts in cells, (t, p), from that of the shifts in sqrt(m)."""
+        """Change of the shifts in cells, (t, p + 1), from that in sqrt(m), (t, p); the last by the logarithm of l0."""
         signs = np.array([piece.sign for piece in self.iso.transitions])
-        return self.pattern.cells(rates + np.outer(signs - 1, self._origin @ rates), step)
+        place = fixed_point_factors(self.iso) @ rates
+        in_cells = self.pattern.cells(rates + np.outer(signs - 1, place), step)
+        return np.column_stack([in_cells, self.whole.offset - self.cells(step)])

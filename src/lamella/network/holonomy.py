@@ -97,8 +97,8 @@ def around_vertex(mesh: NetMesh, pieces: tuple[Transition, ...], across: Integer
     return sign, factors
 
 
-def origin_factors(iso: Isothermic) -> Floats:
-    """The origin of a net's lattice is these factors (t,) times the shifts, sqrt(m); all 0 where any place will do.
+def fixed_point_factors(iso: Isothermic) -> Floats:
+    """Where a net's lattice hangs is these factors (t,) times the shifts, sqrt(m); all 0 where any place will do.
 
     It is where the first umbilic of odd order is. Without one, but with loops on which w comes back as -w + c, it is
     the fixed point of the first piece of the cut that does so: loops of that kind have to agree with each other alone.

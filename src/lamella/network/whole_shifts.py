@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.network.holonomy import around_vertex, origin_factors, vertex_relations
+from lamella.network.element_lattice import MIDDLE
+from lamella.network.holonomy import around_vertex, fixed_point_factors, vertex_relations
 from lamella.network.isothermic import Isothermic
 from lamella.surface.points import Complexes, Floats
 
@@ -26,12 +27,16 @@ class WholeShifts:
 
     Attributes
     ----------
+    offset : (t,) complex
+        Whole shifts to begin from.
     basis : (d, t) int
-        Of the shifts of t pieces, the same for their real and imaginary parts; the lattice's origin stays where it is.
+        Of the shifts of t pieces less the offset, the same for their real and imaginary parts; where the net's lattice
+        hangs (`fixed_point_factors`) does not change.
     energy : (d, d)
         Of corrections along the basis, see `Isothermic.gram`.
     """
 
+    offset: Complexes
     basis: Integers
     energy: Floats
 
@@ -39,22 +44,25 @@ class WholeShifts:
     def of(cls, iso: Isothermic) -> WholeShifts:
         """All whole shifts of a surface's coordinates."""
         conditions = [*vertex_relations(iso.mesh, iso.transitions, iso.across, iso.odd).values()]
-        origin = origin_factors(iso)
+        origin = fixed_point_factors(iso)
         if origin.any():
             conditions.append(np.rint(2 * origin).astype(np.int64))
         basis = _kernel(len(iso.transitions), conditions)
         for vertex in iso.odd.tolist():
             _, factors = around_vertex(iso.mesh, iso.transitions, iso.across, vertex)
             basis = _even(basis, factors)
-        return cls(*_reduced(basis, iso.gram))
+        turning = np.array([piece.sign < 0 for piece in iso.transitions], bool)
+        # twice the middle of a cell, where w turns around no umbilic of the net
+        offset = np.where(turning, 0 if len(iso.odd) else 2 * MIDDLE, 0)
+        return cls(offset.astype(complex), *_reduced(basis, iso.gram))
 
-    def coordinates(self, shifts: Complexes) -> Complexes:
-        """Shifts (t, ...) in the basis, (d, ...)."""
-        columns = shifts.reshape(len(shifts), -1)
+    def coordinates(self, changes: Complexes) -> Complexes:
+        """Changes of shifts (t, ...) in the basis, (d, ...)."""
         if not len(self.basis):
-            return np.zeros((0, *shifts.shape[1:]), complex)
+            return np.zeros((0, *changes.shape[1:]), complex)
+        columns = changes.reshape(len(changes), -1)
         found = np.linalg.lstsq(self.basis.T.astype(complex), columns, rcond=None)[0]
-        return np.asarray(found.reshape(-1, *shifts.shape[1:]), np.complex128)
+        return np.asarray(found.reshape(-1, *changes.shape[1:]), np.complex128)
 
     def measured(self, changes: Complexes) -> Complexes:
         """Changes of the shifts (t, ...) as numbers (d, ...) whose sum of squares is their energy."""
@@ -66,10 +74,10 @@ class WholeShifts:
 
     def nearest(self, shifts: Complexes, count: int = 1) -> list[Complexes]:
         """The nearest whole shifts to given ones, (t,) each, by the energy of the change, the nearest first."""
-        wanted = self.coordinates(shifts)
+        wanted = self.coordinates(shifts - self.offset)
         one, other = (_closest(self.energy, part, count) for part in (wanted.real, wanted.imag))
         pairs = sorted((e + f, j, k) for j, (e, _) in enumerate(one) for k, (f, _) in enumerate(other))
-        return [np.asarray((one[j][1] + 1j * other[k][1]) @ self.basis, np.complex128) for _, j, k in pairs[:count]]
+        return [self.offset + (one[j][1] + 1j * other[k][1]) @ self.basis for _, j, k in pairs[:count]]
 
 
 def _kernel(count: int, conditions: list[Integers]) -> Integers:
