@@ -20,11 +20,13 @@ from lamella.pipeline import Results
 from lamella.project import (
     FURTHER_TABLES,
     SURFACE_TABLES,
+    AdjustTable,
     ArcTable,
     BoundaryTable,
     CircleTable,
     MaterialTable,
     PartTable,
+    PlaceTable,
     Project,
     SlideTable,
     Table,
@@ -107,7 +109,9 @@ INNER_TABLES: dict[str, type[Table]] = {
     "[[surface.boundary.part]]": PartTable,
     "circle = {...}": CircleTable,
     "arc = {...}": ArcTable,
+    "place = {...}": PlaceTable,
     "slide = {...}": SlideTable,
+    "adjust = {...}": AdjustTable,
 }
 
 

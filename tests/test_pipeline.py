@@ -385,21 +385,7 @@ def test_without_until_spheres_and_planes_end_with_the_surface_and_say_why(
     assert not (tmp_path / "out" / "p" / "network.json").exists()
 
 
-def test_only_curves_of_given_mean_curvature_are_adjusted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    project = film(ring(0.0), ring(1.6), network={"cells": 10, "closing": "adjust"})
-    project = project.model_copy(
-        update={"surface": project.surface.model_copy(update={"volume": 3.0, "mean_curvature": None})}
-    )
-    with pytest.raises(InputError, match="a volume is given") as refused:
-        compute(project)
-    assert refused.value.where == "surface.volume"
-    (tmp_path / "p.toml").write_text(project.to_toml(), encoding="utf-8")
-    assert main(["run", "p.toml", "--quiet"]) == 2
-    assert "surface.volume" in capsys.readouterr().err
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["p.toml"]
+def test_only_curves_are_adjusted() -> None:
     # the surface alone has nothing to close
     held = film(ring(0.0), ring(1.6), network={"cells": 10, "closing": "adjust"})
     assert compute(held, until="surface").network is None

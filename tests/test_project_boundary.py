@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import tomllib
 from pathlib import Path
@@ -94,6 +95,27 @@ def loops_of(text: str) -> tuple[Loop, ...]:
             5,
             ["surface.boundary[0].slide: point, normal, direction is given"],
         ),
+        (
+            HEAD + RING + "place = {scale = 2}\n",
+            5,
+            ["boundary[0].place: place goes with file or part, not with circle"],
+        ),
+        (
+            NEXT + "file = 'a.dxf'\nslide = {direction = [0, 0, 1]}\nplace = {scale = 2}\n",
+            9,
+            ["surface.boundary[1].place: a loop that slides cannot be placed"],
+        ),
+        (
+            NEXT + "adjust = {move = 1}\n" + PART + LINE + "slide = {direction = [0, 0, 1]}\n" + PART + ARC,
+            7,
+            ["surface.boundary[1].adjust: a loop that slides cannot be adjusted", "hold the loop, or leave adjust out"],
+        ),
+        (NEXT + "file = 'a.dxf'\nplace = {scale = 0}\n", 8, ["surface.boundary[1].place.scale: 0 is out of range"]),
+        (
+            NEXT + "file = 'a.dxf'\nadjust = {points = 1}\n",
+            8,
+            ["boundary[1].adjust.points: a curve from a file has no points to shift", "write move, scale or tilt"],
+        ),
         (HEAD + RING + "name = 'a'\n" + RING + "name = 'a'\n", 3, ["boundary[0] and boundary[1] are both called 'a'"]),
         (HEAD + "points = [[1]]\n" + RING, 3, ["surface.points: unknown key here", "[[surface.boundary]]"]),
         (HEAD + "mean_curvature = 1\nvolume = 2\n" + RING, 4, ["mean_curvature = 1 1/m and volume = 2 m3 are both"]),
@@ -160,6 +182,7 @@ ALL = (
     + "slide = {point = [0, 0, 0], normal = [0, 0, 1]}\n"
     + "[[surface.boundary]]\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\ninterpolation = 'polyline'\n"
     + "[[surface.boundary]]\nname = 'c'\nfile = 'x.DXF'\nlayer = 'a'\nid = 'b'\nunit = 'mm'\n"
+    + "place = {shift = [1, 2, 3], scale = 0.5, turn = [0, 0, 90]}\nadjust = {move = 0.1}\n"
     + "[[surface.boundary]]\n"
     + PART
     + LINE
@@ -229,6 +252,27 @@ def test_parts_are_joined_with_their_slides() -> None:
     (loop,) = loops_of(HEAD + "[[surface.boundary]]\n" + PART + half + PART + ARC + "slide = {direction = [0, 0, 1]}\n")
     np.testing.assert_allclose(loop.corners, [0, 0.5], atol=1e-14)
     np.testing.assert_allclose(loop.turns, 0, atol=1e-9)
+
+
+def test_a_placed_loop_is_turned_scaled_and_shifted(tmp_path: Path) -> None:
+    """About the centroid of its length: half a circle of radius 2 over its diameter has that at 4 / (2 + pi)."""
+    half = PART + LINE + PART + ARC
+    place = "place = {shift = [1, 2, 3], scale = 0.5, turn = [0, 0, 90]}\n"
+    (loop,) = loops_of(HEAD + "[[surface.boundary]]\n" + half)
+    (placed,) = loops_of(HEAD + "[[surface.boundary]]\n" + place + half)
+    t = np.arange(16) / 16
+    x, y, z = (loop.at(t) - [2, 4 / (2 + math.pi), 0]).T
+    expected = 0.5 * np.column_stack([-y, x, z]) + [3, 2 + 4 / (2 + math.pi), 3]
+    np.testing.assert_allclose(placed.at(t), expected, atol=1e-5)
+    assert placed.length == pytest.approx(loop.length / 2, rel=1e-12)
+    np.testing.assert_allclose(placed.corners, loop.corners, atol=1e-12)
+    points = [[0, 0, 0], [3000, 0, 500], [3000, 2000, 0], [0, 2000, 500]]
+    (tmp_path / "c.json").write_text(json.dumps({"unit": "mm", "curves": {"a": {"points": points}}}))
+    both = [{"name": "a", "file": "c.json"}, {"name": "b", "file": "c.json", "place": {"shift": [0, 0, 4.0]}}]
+    table = parse_project({"surface": {"kind": "form-found", "boundary": both}}).surface
+    assert isinstance(table, FormFoundTable)
+    drawn, above = boundary_loops(table, tmp_path)
+    np.testing.assert_allclose(above.at(t), drawn.at(t) + np.array([0, 0, 4]), atol=1e-12)
 
 
 @pytest.mark.parametrize(

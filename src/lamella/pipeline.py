@@ -169,12 +169,6 @@ def _refuse_adjusting(project: Project) -> None:
             'write closing = "open" or "round", or find the surface from curves (kind = "form-found")',
             "network.closing",
         )
-    if project.surface.kind == "form-found" and project.surface.volume is not None:
-        raise InputError(
-            'closing = "adjust" looks among surfaces of given mean curvature, and a volume is given',
-            "give mean_curvature instead of volume (an earlier run's summary.json tells it)",
-            "surface.volume",
-        )
 
 
 def _planned(
@@ -189,7 +183,12 @@ def _planned(
 
     _refuse_adjusting(project)
     adjusted = adjust_boundary(
-        table, folder, cells=project.network.cells, spacing=project.network.spacing, progress=progress
+        table,
+        folder,
+        cells=project.network.cells,
+        spacing=project.network.spacing,
+        pattern=project.network.pattern,
+        progress=progress,
     )
     surface = adjusted.surface
     if depth >= STAGES.index("fabrication"):

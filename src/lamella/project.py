@@ -7,8 +7,16 @@ from typing import Annotated, Any, Literal
 import tomli_w
 from pydantic import Field, field_validator, model_validator
 
-from lamella.network.pattern import LAMELLAS, Pattern
-from lamella.project_boundary import AdjustTable, ArcTable, BoundaryTable, CircleTable, PartTable, SlideTable
+from lamella.network.pattern import Pattern
+from lamella.project_boundary import (
+    AdjustTable,
+    ArcTable,
+    BoundaryTable,
+    CircleTable,
+    PartTable,
+    PlaceTable,
+    SlideTable,
+)
 from lamella.project_surface import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
 from lamella.project_values import LEAST_LENGTH, Range, Refusal, Table, length, number, read_points, two_numbers
 from lamella.strip.material import MATERIALS, Material, find_material
@@ -31,6 +39,7 @@ __all__ = [
     "MeshTable",
     "NetworkTable",
     "PartTable",
+    "PlaceTable",
     "Project",
     "Refusal",
     "SlideTable",
@@ -135,12 +144,11 @@ class NetworkTable(Table):
                 "keep one of them",
                 "normal_curvature",
             )
-        if self.closing == "adjust" and self.pattern != LAMELLAS:
-            what = f"normal_curvature = {self.normal_curvature}" if self.kind == "lamellas" else f'kind = "{self.kind}"'
-            what = f"every = {shown(self.every)}" if self.every != 1 else what
+        if self.closing == "adjust" and self.normal_curvature is not None:
             raise Refusal(
-                f'closing = "adjust" moves the boundary for the whole net of lamellas, not for {what}',
-                'write closing = "open" or "round"',
+                f'closing = "adjust" moves the boundary of a surface that is found, and normal_curvature = '
+                f"{self.normal_curvature:g} 1/m is offered on closed forms of revolution",
+                'write closing = "open" or "round", or leave normal_curvature out',
                 "closing",
             )
         return self

@@ -111,7 +111,21 @@ class AdjustTable(Table):
     )
 
 
+class PlaceTable(Table):
+    """Where a curve is put: turned and scaled about its middle, the centroid of its length, then shifted."""
+
+    shift: Point = number("Shift [x, y, z].", "m", default=(0.0, 0.0, 0.0), examples=[[0.5, 0.0, 0.0]])
+    scale: float = number("Size over that in the file.", "", gt=0, le=1e6, default=1.0, examples=[1.05])
+    turn: Point = number(
+        "Turn, as a vector along its axis, counter-clockwise.",
+        "degrees",
+        default=(0.0, 0.0, 0.0),
+        examples=[[0.0, 0.0, 15.0]],
+    )
+
+
 _SHAPES = ("points", "circle", "file", "part")
+_OWN = {"circle": "a circle", "file": "a curve from a file", "part": "a loop of parts"}
 
 
 class BoundaryTable(Table):
@@ -154,6 +168,9 @@ class BoundaryTable(Table):
         description="Tables [[surface.boundary.part]] joined end to end.",
         json_schema_extra={"minItems": 1, "maxItems": MOST_PARTS},
     )
+    place: PlaceTable | None = Field(
+        default=None, description="Where a curve given by file or part is put; as it is given when not given."
+    )
     slide: SlideTable | None = Field(default=None, description="Where the loop may slide; fixed when not given.")
     adjust: AdjustTable | None = Field(
         default=None, description='How far the loop may be changed where network.closing = "adjust".'
@@ -189,11 +206,16 @@ class BoundaryTable(Table):
             if getattr(self, key) is not None and self.file is None:
                 remedy = "lengths here are in metres" if key == "unit" else f"leave {key} out"
                 raise Refusal(f"{key} goes with file", remedy, key)
-        if self.adjust is not None and (self.slide is not None or (self.points is None and self.circle is None)):
-            told = "a loop that slides" if self.slide is not None else f"a loop given by {given[0]}"
-            raise Refusal(f"{told} cannot be adjusted", "give it by points or as a circle, held", "adjust")
+        slides = self.slide is not None or any(part.slide is not None for part in self.part or ())
+        if slides:
+            for key in ("adjust", "place"):
+                if getattr(self, key) is not None:
+                    told = "adjusted" if key == "adjust" else "placed"
+                    raise Refusal(f"a loop that slides cannot be {told}", f"hold the loop, or leave {key} out", key)
+        if self.place is not None and self.file is None and self.part is None:
+            raise Refusal(f"place goes with file or part, not with {given[0]}", f"change {given[0]} itself", "place")
         if self.adjust is not None and self.adjust.points and self.points is None:
-            raise Refusal("a circle has no points to shift", "write move, scale or tilt", "adjust.points")
+            raise Refusal(f"{_OWN[given[0]]} has no points to shift", "write move, scale or tilt", "adjust.points")
         if self.slide is not None and self.part is not None:
             raise Refusal("a loop of parts slides by its parts", "move slide into the parts that slide", "slide")
         return self

@@ -29,6 +29,7 @@ circle = {{center = [0.0, 0.0, 2.0], radius = 1.3}} # [m]
 #   layer = "boundary"
 #   id = "oculus"
 #   unit = "mm" # when the file does not say
+#   place = {{shift = [0.0, 0.0, 1.0], scale = 1.0, turn = [0.0, 0.0, 0.0]}} # [m], [degrees]: the file's curve, moved
 #   adjust = {{move = 0.3, scale = 0.1, tilt = 5}} # at most [m], share, [degrees], for network.closing = "adjust"
 #   slide = {{point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0]}} # free to slide on a plane, or with {{direction = ..}}
 # A loop of several parts has a table [[surface.boundary.part]] for each, with points or arc, and slide."""

@@ -424,10 +424,12 @@ def test_every_refused(every: Any) -> None:
         parse_project({"surface": ENNEPER, "network": {"every": every}})
 
 
-def test_adjust_is_for_the_whole_net_of_lamellas() -> None:
+def test_adjust_is_not_for_lines_of_other_normal_curvature() -> None:
+    with pytest.raises(InputError, match='closing = "adjust" moves the boundary of a surface that is found') as refused:
+        parse_project({"surface": ENNEPER, "network": {"closing": "adjust", "normal_curvature": 0.5}})
+    assert refused.value.where == "network.closing"
     for more in ({"kind": "principal"}, {"every": 2}):
-        with pytest.raises(InputError, match='closing = "adjust" moves the boundary for the whole net'):
-            parse_project({"surface": ENNEPER, "network": {"closing": "adjust"} | more})
+        parse_project({"surface": ENNEPER, "network": {"closing": "adjust"} | more})
 
 
 def test_summary_of_lamellas_has_no_panels() -> None:

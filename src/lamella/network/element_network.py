@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -11,16 +11,15 @@ from numpy.typing import NDArray
 
 from lamella.errors import InputError
 from lamella.network.cell_map import CellMap
-from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
+from lamella.network.element_lattice import Lattice, choose_lattice
 from lamella.network.gluing import FoldedError, integrate, with_shifts
-from lamella.network.holonomy import Holonomy, holonomies
+from lamella.network.holonomy import holonomies
 from lamella.network.isothermic import Isothermic, Transition
 from lamella.network.net_mesh import NetMesh, make_net_mesh
 from lamella.network.network import SINGULAR, Network, Period
-from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
+from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.network.trace_elements import trace_elements
-from lamella.network.whole_shifts import nearest_whole
-from lamella.surface.element.quadrature import triangle_rule
+from lamella.network.whole_shifts import WholeShifts
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.points import Complexes, Floats
@@ -31,34 +30,12 @@ Closing = Literal["open", "round"]
 
 # of a cell: a shift nearer to whole numbers closes the net (docs/files.md)
 CLOSES = 1e-3
-# of the longest principal line: a shorter period around a hole is none to count cells on
-LEAST_PERIOD = 1e-2
+# rounding: the nearest whole numbers may put two umbilics on one node; then the next ones are tried
+MOST_WAYS = 8
 
 
 def _silent(message: str) -> None:
     """Tell nobody."""
-
-
-@dataclass(frozen=True)
-class Lattice:
-    """How the lattice of cells lies on a surface.
-
-    Attributes
-    ----------
-    origin : complex
-        w of a lattice point, sqrt(m).
-    step : float
-        l0, sqrt(m).
-    cells : int
-    requested : str
-    estimated_nodes : int
-    """
-
-    origin: complex
-    step: float
-    cells: int
-    requested: str
-    estimated_nodes: int
 
 
 class Joint(NamedTuple):
@@ -199,14 +176,16 @@ def element_network(
     )
     names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
     around = holonomies(iso)
-    lattice = choose_lattice(iso, around, umbilics, cells, spacing, pattern=pattern, names=names)
-    if step is not None:
-        lattice = replace(lattice, step=step)
+    lattice = choose_lattice(iso, around, cells, spacing, step=step, pattern=pattern, names=names)
     raw = CellMap.of(iso, lattice.origin, lattice.step, pattern)
-    near = nearest_whole(iso, raw.shifts, singular_nodes=closing == "round")
-    off = np.maximum(np.abs((raw.shifts - near).real), np.abs((raw.shifts - near).imag))
-    wanted = np.where((off <= CLOSES) | (closing == "round"), near, np.nan)
-    iso = _closed(iso, raw, wanted, lattice)
+    if closing == "round":
+        iso, wanted = _rounded(iso, raw, lattice)
+        off = _largest_part(raw.shifts - wanted)
+    else:
+        near = np.round(raw.shifts)
+        off = _largest_part(raw.shifts - near)
+        wanted = np.where(off <= CLOSES, near, np.nan)
+        iso = with_shifts(iso, _shifts(raw, wanted, lattice)) if (off <= CLOSES).any() else iso
     rim_loop = mesh.loop[mesh.connectivity.rim_nodes[:, 0]]
     network = trace_elements(
         CellMap.of(iso, lattice.origin, lattice.step, pattern),
@@ -227,108 +206,33 @@ def element_network(
     return ElementNetwork(network, umbilics, mesh.umbilics < 0, lattice, iso.residual, joints)
 
 
-def _closed(iso: Isothermic, raw: CellMap, wanted: Complexes, lattice: Lattice) -> Isothermic:
-    """The coordinates with whole shifts, nan: free."""
-    if np.isnan(wanted).all():
-        return iso
-    try:
-        return with_shifts(iso, raw.pattern.isothermic(wanted, lattice.step) - (raw.signs - 1) * lattice.origin)
-    except FoldedError as folded:
-        worst = float(np.nanmax(np.abs(raw.shifts - wanted)))
-        raise InputError(
-            f"closing the net by rounding takes up to {worst:.2g} cells, and folds it near "
-            f"({', '.join(f'{x:.4g}' for x in folded.place)}) m",
-            'raise network.cells, change the boundary, or choose closing = "open"',
-            "network.closing",
-        ) from None
+def _largest_part(shifts: Complexes) -> Floats:
+    """Larger one of the real and the imaginary part, (t,)."""
+    return np.maximum(np.abs(shifts.real), np.abs(shifts.imag))
 
 
-def choose_lattice(
-    iso: Isothermic,
-    around: tuple[Holonomy, ...],
-    umbilics: Umbilics,
-    cells: int | None,
-    spacing: float | None,
-    *,
-    pattern: Pattern = LAMELLAS,
-    names: tuple[str, ...] = (),
-) -> Lattice:
-    """Origin and step: a singular node on the lattice, a whole number of cells around the first hole or across."""
-    mesh = iso.mesh
-    corner = iso.value[:, :3]
-    origin = complex(corner.mean())
-    inside = np.flatnonzero(mesh.umbilics >= 0)
-    if len(inside):
-        # odd zeros are where the sheets meet: the first of them is a node
-        odd = inside[umbilics.orders[inside] % 2 == 1]
-        vertex = mesh.umbilics[odd[0] if len(odd) else inside[0]]
-        origin = complex(corner[mesh.connectivity.faces == vertex].mean())
-    whole, period = _whole_length(iso, around, pattern)
-    points, weights = triangle_rule(8)
-    mu_area, edge = _cell_densities(iso, points, weights, pattern)
-    requested = f"cells = {cells}"
-    key = "network.cells"
-    if cells is None and spacing is None:
-        cells, requested = 24, "cells = 24 (default)"
-    if spacing is not None:
-        key, requested = "network.spacing", f"spacing = {spacing:g} m"
-        order = np.argsort(edge)
-        running = np.cumsum(mu_area[order])
-        median = float(edge[order][np.searchsorted(running, running[-1] / 2)])
-        cells = max(round(whole * median / spacing), 1)
-        if cells < LEAST_CELLS:
-            raise InputError(
-                f"spacing = {spacing:g} m leaves {whole * median / spacing:.2g} cells across the surface, at least "
-                f"{LEAST_CELLS} are needed",
-                f"choose a spacing of at most {whole * median / LEAST_CELLS:.3g} m",
-                key,
-            )
-    assert cells is not None
-    if period:
-        name = repr(names[around[0].loop]) if names else "the first hole"
-        cells = fitting_cells(cells, pattern.multiple(period), name, given=spacing is None)
-    if cells < LEAST_CELLS:
-        raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
-    step = whole / cells
-    estimate = float(mu_area.sum() / step**2) / (pattern.every[0] * pattern.every[1])
-    if estimate > MOST_NODES:
-        memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
-        most = int(cells * np.sqrt(MOST_NODES / estimate))
-        raise InputError(
-            f"{requested} would make about {estimate:,.0f} nodes and take about {memory:,.0f} GB of memory (limit "
-            f"{MOST_NODES:,} nodes)",
-            f"at most {most} cells fit this surface"
-            if spacing is None
-            else f"choose a spacing of at least {spacing * cells / most:.3g} m",
-            key,
-        )
-    return Lattice(origin, step, cells, requested, round(estimate))
+def _shifts(raw: CellMap, wanted: Complexes, lattice: Lattice) -> Complexes:
+    """Shifts of w (t,), sqrt(m), of shifts in cells."""
+    return raw.pattern.isothermic(wanted, lattice.step) - (raw.signs - 1) * lattice.origin
 
 
-def _cell_densities(iso: Isothermic, points: Floats, weights: Floats, pattern: Pattern) -> tuple[Floats, Floats]:
-    """Area of the cell plane, |factor dw|^2, m, and cell edge over l0, 1 / |factor mu|, at integration points."""
-    connectivity = iso.mesh.connectivity
-    basis = connectivity.basis
-    x, y = basis.basis(points, 1, 0), basis.basis(points, 0, 1)
-    w_x, w_y = iso.value @ x.T, iso.value @ y.T
-    area = np.abs(w_x.real * w_y.imag - w_x.imag * w_y.real) * weights
-    corners = iso.mesh.nodes[connectivity.elements]
-    flat = np.linalg.norm(np.cross(np.matmul(x, corners), np.matmul(y, corners)), axis=2) * weights
-    area = area / pattern.edge**2
-    edge = np.sqrt(flat / np.maximum(area, 1e-300))
-    return area.ravel(), edge.ravel()
-
-
-def _whole_length(iso: Isothermic, around: tuple[Holonomy, ...], pattern: Pattern) -> tuple[float, complex]:
-    """What `cells` divides, sqrt(m), and the period it is: around the first hole, or 0: the longest principal line."""
-    corner = iso.value[:, :3]
-    longest = float(max(np.ptp(corner.real), np.ptp(corner.imag)))
-    if around and around[0].sign == 1:
-        chi = around[0].shift * pattern.factor
-        counted = max(abs(chi.real), abs(chi.imag))
-        if counted > LEAST_PERIOD * longest:
-            return counted, around[0].shift
-    return longest, 0j
+def _rounded(iso: Isothermic, raw: CellMap, lattice: Lattice) -> tuple[Isothermic, Complexes]:
+    """The coordinates with the nearest whole shifts that do not fold them, and these shifts (t,) in cells."""
+    folded: FoldedError | None = None
+    ways = WholeShifts.of(iso).nearest(raw.shifts, MOST_WAYS)
+    for wanted in ways:
+        try:
+            return with_shifts(iso, _shifts(raw, wanted, lattice)), wanted
+        except FoldedError as error:
+            folded = folded or error
+    assert folded
+    worst = float(_largest_part(raw.shifts - ways[0]).max())
+    raise InputError(
+        f"closing the net by rounding takes up to {worst:.2g} cells, and folds it near "
+        f"({', '.join(f'{x:.4g}' for x in folded.place)}) m",
+        'raise network.cells, change the boundary, or choose closing = "open"',
+        "network.closing",
+    )
 
 
 def _named(piece: Transition, mesh: NetMesh, names: tuple[str, ...]) -> str:

@@ -11,6 +11,7 @@ from lamella.network.isothermic import Isothermic, Transition
 from lamella.network.net_mesh import NetMesh
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.rim import element_rims
+from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
 
@@ -25,6 +26,14 @@ class Holonomy(NamedTuple):
 
 def holonomies(iso: Isothermic) -> tuple[Holonomy, ...]:
     """Of every hole of the surface, by the pieces of the cut that end on its rim."""
+    shifts = np.array([piece.shift for piece in iso.transitions], complex)
+    return tuple(
+        Holonomy(hole, sign, complex(factors @ shifts)) for hole, (sign, factors) in enumerate(around_holes(iso), 1)
+    )
+
+
+def around_holes(iso: Isothermic) -> list[tuple[int, Integers]]:
+    """Once around each hole w comes back as sign w + factors (t,) . shifts."""
     mesh = iso.mesh
     rims = element_rims(mesh.connectivity, mesh.nodes, mesh.loop[mesh.connectivity.rim_nodes[:, 0]])
     result = []
@@ -36,13 +45,15 @@ def holonomies(iso: Isothermic) -> tuple[Holonomy, ...]:
             for side, end in enumerate(piece.ends):
                 if end == -1 - hole:
                     passed.append((place[tips[side]], number, side == 0))
-        sign, shift = 1, 0j
+        sign, factors = 1, np.zeros(len(iso.transitions), np.int64)
         for _, number, inwards in sorted(passed):
-            s, c = iso.transitions[number].sign, iso.transitions[number].shift
             # from before the piece to behind it: left to right where it leads away from the rim
-            sign, shift = (s * sign, s * shift + c) if inwards else (s * sign, s * (shift - c))
-        result.append(Holonomy(hole, sign, shift))
-    return tuple(result)
+            s = iso.transitions[number].sign
+            factors = s * factors
+            factors[number] += 1 if inwards else -s
+            sign *= s
+        result.append((sign, factors))
+    return result
 
 
 def tip_vertices(mesh: NetMesh, piece: Transition) -> tuple[int, int]:
@@ -84,6 +95,22 @@ def around_vertex(mesh: NetMesh, pieces: tuple[Transition, ...], across: Integer
         factors[number] += -s if leaves else 1
         sign *= s
     return sign, factors
+
+
+def fixed_point_factors(iso: Isothermic) -> Floats:
+    """Where a net's lattice hangs is these factors (t,) times the shifts, sqrt(m); all 0 where any place will do.
+
+    It is where the first umbilic of odd order is. Without one, but with loops on which w comes back as -w + c, it is
+    the fixed point of the first piece of the cut that does so: loops of that kind have to agree with each other alone.
+    """
+    factors = np.zeros(len(iso.transitions))
+    turning = [number for number, piece in enumerate(iso.transitions) if piece.sign < 0]
+    if len(iso.odd):
+        _, twice = around_vertex(iso.mesh, iso.transitions, iso.across, int(iso.odd[0]))
+        factors += twice / 2
+    elif turning:
+        factors[turning[0]] = 0.5
+    return factors
 
 
 def _around(connectivity: Connectivity, across: Integers, vertex: int) -> list[tuple[int, bool]]:

@@ -17,6 +17,7 @@ from lamella.network.isothermic import Isothermic, sectors
 from lamella.network.net_mesh import shape_entries
 from lamella.network.poisson import Poisson
 from lamella.surface.element.surface import ElementSurface
+from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.film import Film
 from lamella.surface.found.variation import Variation
 from lamella.surface.points import Complexes, Floats
@@ -64,6 +65,28 @@ def jacobi_fields(film: Film, mean_curvature: float, rim_shifts: Floats, curvatu
     solved = pattern.factor(pattern.assemble(blocks)).solve(np.stack(right, 1)[free])
     fields[:, free] = solved.T
     return np.asarray(fields)
+
+
+def curvature_rates_of_volume(film: Film, mean_curvature: float, rim_shifts: Floats) -> Floats:
+    """Change of H, 1/m, with each of p parameters, (p,), that leaves the enclosed volume as it is, to first order.
+
+    Parameters
+    ----------
+    film, mean_curvature, rim_shifts
+        See `jacobi_fields`.
+    """
+    count = len(rim_shifts)
+    still = np.concatenate([rim_shifts, np.zeros((1, *film.nodes.shape))])
+    fields = jacobi_fields(film, mean_curvature, still, np.append(np.zeros(count), 1.0))
+    free = (film.unknowns >= 0)[:, None]
+    volume = np.empty(count + 1)
+    for number, (field, rim) in enumerate(zip(fields, still, strict=True)):
+        # the lids go with the rim, which moves in all directions
+        move = np.where(free, field[:, None] * film.directions(), rim)
+        step = STEP * film.size / max(float(np.abs(move).max()), 1e-12 * film.size)
+        ahead, behind = (enclosed_volume(film.at(film.nodes + way * step * move)) for way in (1, -1))
+        volume[number] = (ahead - behind) / (2 * step)
+    return np.asarray(-volume[:count] / volume[count])
 
 
 def shift_rates(

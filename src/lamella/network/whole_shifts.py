@@ -1,100 +1,157 @@
 """Whole numbers of cells for the pieces of a cut, such that a net can go on across all of them.
 
-Where pieces of the cut meet in an ordinary point of the surface, going around it changes nothing: the shifts of these
-pieces depend on each other. Those at the ends of the cut can be chosen, and the rest follows with them.
+A net closes where w goes over into +-w + whole cells on every loop of the surface, and umbilics are nodes where going
+around them is a half turn about a lattice point: shifts even. Neither depends on how the surface was cut; nor does the
+least energy of a correction with given shifts, by which one set of whole numbers is nearer than another. Rounding the
+pieces one by one would depend on the cut: they are sums of each other's.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.network.holonomy import tip_vertices, vertex_relations
+from lamella.network.element_lattice import MIDDLE
+from lamella.network.holonomy import around_vertex, fixed_point_factors, vertex_relations
 from lamella.network.isothermic import Isothermic
-from lamella.surface.points import Complexes
+from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
 
 
-def nearest_whole(iso: Isothermic, shifts: Complexes, *, singular_nodes: bool) -> Complexes:
-    """Whole shifts near to the given ones that do not contradict each other.
+@dataclass(frozen=True)
+class WholeShifts:
+    """The lattice of shifts (in cells) with which a net closes and its umbilics of odd order are nodes.
 
-    Parameters
+    Attributes
     ----------
-    iso : Isothermic
-        Its transitions say how the pieces hang together.
-    shifts : (t,) complex
-        Of the pieces, in cells; a lattice point is at 0.
-    singular_nodes : bool
-        Put umbilics where the cut ends on nodes of the lattice: their shifts, twice their places, are even then.
-
-    Returns
-    -------
-    (t,) complex
+    offset : (t,) complex
+        Whole shifts to begin from.
+    basis : (d, t) int
+        Of the shifts of t pieces less the offset, the same for their real and imaginary parts; where the net's lattice
+        hangs (`fixed_point_factors`) does not change.
+    energy : (d, d)
+        Of corrections along the basis, see `Isothermic.gram`.
     """
-    tips = [tip_vertices(iso.mesh, piece) for piece in iso.transitions]
-    relations = vertex_relations(iso.mesh, iso.transitions, iso.across, iso.odd)
-    count = np.bincount(np.array(tips, np.int64).ravel(), minlength=1) if tips else np.zeros(1, np.int64)
-    step = np.ones(len(tips))
-    if singular_nodes:
-        alone = [(a in iso.odd and count[a] == 1) or (b in iso.odd and count[b] == 1) for a, b in tips]
-        step[alone] = 2
-    free: Complexes = np.asarray(
-        step * np.round(shifts.real / step) + 1j * step * np.round(shifts.imag / step), np.complex128
-    )
-    result = free.copy()
-    for group in _groups(tips, relations):
-        # what follows from the others had better be at the rim: umbilics stay on nodes
-        at_rim = [piece for piece in group if (iso.mesh.loop[list(tips[piece])] >= 0).any()]
-        ways = [_settled(piece, group, tips, relations, free) for piece in at_rim or group]
-        result[group] = min(
-            (way for way in ways if way is not None), key=lambda way: float(np.abs(way - shifts[group]).max())
-        )
+
+    offset: Complexes
+    basis: Integers
+    energy: Floats
+
+    @classmethod
+    def of(cls, iso: Isothermic) -> WholeShifts:
+        """All whole shifts of a surface's coordinates."""
+        conditions = [*vertex_relations(iso.mesh, iso.transitions, iso.across, iso.odd).values()]
+        origin = fixed_point_factors(iso)
+        if origin.any():
+            conditions.append(np.rint(2 * origin).astype(np.int64))
+        basis = _kernel(len(iso.transitions), conditions)
+        for vertex in iso.odd.tolist():
+            _, factors = around_vertex(iso.mesh, iso.transitions, iso.across, vertex)
+            basis = _even(basis, factors)
+        turning = np.array([piece.sign < 0 for piece in iso.transitions], bool)
+        # twice the middle of a cell, where w turns around no umbilic of the net
+        offset = np.where(turning, 0 if len(iso.odd) else 2 * MIDDLE, 0)
+        return cls(offset.astype(complex), *_reduced(basis, iso.gram))
+
+    def coordinates(self, changes: Complexes) -> Complexes:
+        """Changes of shifts (t, ...) in the basis, (d, ...)."""
+        if not len(self.basis):
+            return np.zeros((0, *changes.shape[1:]), complex)
+        columns = changes.reshape(len(changes), -1)
+        found = np.linalg.lstsq(self.basis.T.astype(complex), columns, rcond=None)[0]
+        return np.asarray(found.reshape(-1, *changes.shape[1:]), np.complex128)
+
+    def measured(self, changes: Complexes) -> Complexes:
+        """Changes of the shifts (t, ...) as numbers (d, ...) whose sum of squares is their energy."""
+        return np.asarray(np.tensordot(np.linalg.cholesky(self.energy).T, self.coordinates(changes), 1), np.complex128)
+
+    def size(self, change: Complexes) -> float:
+        """Square root of the energy of a change of shifts (t,), in cells."""
+        return float(np.linalg.norm(self.measured(change)))
+
+    def nearest(self, shifts: Complexes, count: int = 1) -> list[Complexes]:
+        """The nearest whole shifts to given ones, (t,) each, by the energy of the change, the nearest first."""
+        wanted = self.coordinates(shifts - self.offset)
+        one, other = (_closest(self.energy, part, count) for part in (wanted.real, wanted.imag))
+        pairs = sorted((e + f, j, k) for j, (e, _) in enumerate(one) for k, (f, _) in enumerate(other))
+        return [self.offset + (one[j][1] + 1j * other[k][1]) @ self.basis for _, j, k in pairs[:count]]
+
+
+def _kernel(count: int, conditions: list[Integers]) -> Integers:
+    """Basis (d, t) of all whole vectors with condition . vector = 0, by Euclid's algorithm."""
+    basis = np.eye(count, dtype=np.int64)
+    for condition in conditions:
+        while True:
+            value = basis @ condition
+            left = np.flatnonzero(value)
+            if len(left) < 2:
+                break
+            least = left[np.abs(value[left]).argmin()]
+            times = value // value[least]
+            times[least] = 0
+            basis = basis - np.outer(times, basis[least])
+        basis = np.delete(basis, left, 0)
+    return basis
+
+
+def _even(basis: Integers, factors: Integers) -> Integers:
+    """Basis of those vectors of a lattice for which factors . vector is even."""
+    odd = np.flatnonzero(basis @ factors % 2)
+    result = basis.copy()
+    if len(odd):
+        result[odd] += basis[odd[0]]
     return result
 
 
-def _groups(tips: list[tuple[int, int]], relations: dict[int, Integers]) -> list[list[int]]:
-    """Pieces that hang together by ordinary vertices."""
-    left = set(range(len(tips)))
-    result = []
-    while left:
-        group, stack = [], [min(left)]
-        left.discard(stack[0])
-        while stack:
-            piece = stack.pop()
-            group.append(piece)
-            for vertex in tips[piece]:
-                for other in np.flatnonzero(relations[vertex]).tolist() if vertex in relations else []:
-                    if other in left:
-                        left.discard(other)
-                        stack.append(other)
-        if len(group) > 1:
-            result.append(sorted(group))
-    return result
+def _reduced(basis: Integers, gram: Floats) -> tuple[Integers, Floats]:
+    """A basis of the same lattice with vectors as short as pairs can make each other, and their energies."""
+    while True:
+        energy = basis @ gram @ basis.T
+        square = np.diagonal(energy)
+        times = np.rint(energy / square) if len(basis) else energy
+        np.fill_diagonal(times, 0)
+        gain = 2 * times * energy - times**2 * square
+        if not len(basis) or gain.max() <= 1e-9 * square.max():
+            return basis, energy
+        one, other = np.unravel_index(gain.argmax(), gain.shape)
+        basis = basis.copy()
+        basis[one] -= int(times[one, other]) * basis[other]
 
 
-def _settled(
-    root: int, group: list[int], tips: list[tuple[int, int]], relations: dict[int, Integers], free: Complexes
-) -> Complexes | None:
-    """Shifts of a group when those on the way to one of its ends follow from the others; none: it has no end."""
-    ends = [tip for tip in tips[root] if tip not in relations]
-    if not ends:
-        return None
-    result = free.copy()
-    order: list[tuple[int, int]] = []
-    stack = [(root, tips[root][1] if tips[root][0] == ends[0] else tips[root][0])]
-    seen = {root}
-    while stack:
-        piece, vertex = stack.pop()
-        if vertex not in relations:
-            continue
-        order.append((piece, vertex))
-        for number in np.flatnonzero(relations[vertex]).tolist():
-            if number not in seen:
-                seen.add(number)
-                stack.append((number, tips[number][1] if tips[number][0] == vertex else tips[number][0]))
-    for piece, vertex in reversed(order):
-        factors = relations[vertex]
-        rest = (factors * result).sum() - factors[piece] * result[piece]
-        result[piece] = -rest / factors[piece]
-    return np.asarray(result[group])
+def _closest(energy: Floats, wanted: Floats, count: int) -> list[tuple[float, Integers]]:
+    """The whole vectors (d,) of least (x - wanted) energy (x - wanted), with these, the least first.
+
+    Fincke and Pohst, Math. Comp. 44 (1985) 463: a sum of squares from the last coordinate to the first, each tried from
+    the nearest whole number outwards until the sum is larger than what was found.
+    """
+    d = len(wanted)
+    upper = np.linalg.cholesky(energy).T if d else energy
+    found: list[tuple[float, Integers]] = []
+    x = np.zeros(d, np.int64)
+
+    def limit() -> float:
+        return found[-1][0] if len(found) == count else np.inf
+
+    def descend(level: int, sum_above: float) -> None:
+        if level < 0:
+            found.append((sum_above, x.copy()))
+            found.sort(key=lambda one: one[0])
+            del found[count:]
+            return
+        above = upper[level, level + 1 :] @ (x[level + 1 :] - wanted[level + 1 :])
+        middle = wanted[level] - above / upper[level, level]
+        nearest = round(middle)
+        way = 1 if middle >= nearest else -1
+        for number in range(2 * count + 1000):
+            # 0, 1, -1, 2, -2, ... beginning on the side of the middle
+            x[level] = nearest + way * ((number + 1) // 2) * (1 if number % 2 else -1)
+            here = sum_above + (upper[level, level] * (x[level] - middle)) ** 2
+            if here >= limit():
+                return
+            descend(level - 1, here)
+
+    descend(d - 1, 0.0)
+    return found

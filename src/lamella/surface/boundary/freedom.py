@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from lamella.project_boundary import PlaceTable
 from lamella.surface.boundary.pieces import Floats
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ class Freedom:
     ----------
     table : FormFoundTable
         Loops with their `adjust`. Where no loop has one and H is held, all loops given by points and all circles may
-        change by a twentieth of their size.
+        change by a twentieth of their size; curves from files and loops of parts stay where they are.
 
     Attributes
     ----------
@@ -76,17 +77,17 @@ class Freedom:
 
 def _of_loop(index: int, loop: BoundaryTable, usual: bool) -> list[_Part]:
     """Parameters of one loop; waves first, so that shifts, sizes and tilts are those of the waved loop."""
-    if loop.slide is not None or (loop.points is None and loop.circle is None):
+    if loop.slide is not None:
         return []
+    size = 0.0
     if loop.points is not None:
         size = float(np.linalg.norm(np.ptp(np.array(loop.points), axis=0)))
-    else:
-        assert loop.circle is not None
+    elif loop.circle is not None:
         size = 2 * loop.circle.radius
     move = scale = tilt = points = 0.0
     if loop.adjust is not None:
         move, scale, tilt, points = loop.adjust.move, loop.adjust.scale, loop.adjust.tilt, loop.adjust.points
-    elif usual:
+    elif usual and size:
         move, scale, points = USUAL * size, USUAL, USUAL * size if loop.points is not None else 0.0
     parts = []
     if points and loop.points is not None:
@@ -125,9 +126,16 @@ def _mapped(table: FormFoundTable, index: int, turn: Floats, factor: float, shif
     if loop.points is not None:
         points = np.array(loop.points)
         middle = points.mean(0)
-        there = (points - middle) @ turn.T * factor + middle + shift
-        return _replaced(table, index, loop.model_copy(update={"points": _tuples(there)}))
-    assert loop.circle is not None
+        moved = (points - middle) @ turn.T * factor + middle + shift
+        return _replaced(table, index, loop.model_copy(update={"points": _tuples(moved)}))
+    if loop.circle is None:
+        place = loop.place or PlaceTable()
+        there = {
+            "shift": tuple((np.array(place.shift) + shift).tolist()),
+            "scale": place.scale * factor,
+            "turn": _degrees(turn @ Rotation.from_rotvec(np.radians(place.turn)).as_matrix()),
+        }
+        return _replaced(table, index, loop.model_copy(update={"place": place.model_copy(update=there)}))
     ring = {
         "center": tuple((np.array(loop.circle.center) + shift).tolist()),
         "radius": loop.circle.radius * factor,
@@ -135,6 +143,11 @@ def _mapped(table: FormFoundTable, index: int, turn: Floats, factor: float, shif
     }
     circle = loop.circle.model_copy(update=ring)
     return _replaced(table, index, loop.model_copy(update={"circle": circle}))
+
+
+def _degrees(turn: Floats) -> tuple[float, ...]:
+    """Vector along the axis of a rotation (3, 3), as long as its angle, degrees."""
+    return tuple(np.degrees(Rotation.from_matrix(turn).as_rotvec()).tolist())
 
 
 def _tuples(points: Floats) -> tuple[tuple[float, ...], ...]:

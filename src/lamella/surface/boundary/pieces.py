@@ -133,10 +133,11 @@ class Pieces:
         """The same curve run through backwards."""
         return Pieces(np.ascontiguousarray(self.controls[::-1, ::-1]))
 
-    def transformed(self, factor: float, shift: Floats) -> Pieces:
-        """The curve factor x + shift."""
-        w = self.controls[..., 3:]
-        return Pieces(np.concatenate([factor * self.controls[..., :3] + w * shift, w], axis=-1))
+    def transformed(self, factor: float, shift: Floats, turn: Floats | None = None) -> Pieces:
+        """The curve factor x + shift, turned first by a rotation (3, 3)."""
+        w, x = self.controls[..., 3:], self.controls[..., :3]
+        turned = x if turn is None else x @ turn.T
+        return Pieces(np.concatenate([factor * turned + w * shift, w], axis=-1))
 
     def from_to(self, start: Floats, end: Floats) -> Pieces:
         """The curve with its very first and last point moved, to close gaps of rounding."""

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from lamella.errors import InputError
 from lamella.surface.boundary.arcs import arc_through, circle
@@ -22,8 +23,10 @@ from lamella.surface.boundary.splines import closed_spline, open_spline
 from lamella.surface.boundary.units import metres_per_unit
 
 if TYPE_CHECKING:
-    from lamella.project import BoundaryTable, FormFoundTable, PartTable, SlideTable
+    from lamella.project import BoundaryTable, FormFoundTable, PartTable, PlaceTable, SlideTable
 
+# points of a loop for its middle
+SAMPLES = 1000
 _READERS = {".3dm": read_3dm, ".dxf": read_dxf, ".json": read_json}
 _HEADERS = {".3dm": "the model's unit system", ".dxf": "$INSUNITS in its header", ".json": 'its key "unit"'}
 
@@ -55,7 +58,8 @@ def boundary_loops(table: FormFoundTable, folder: Path) -> tuple[Loop, ...]:
 
 def _loop(table: BoundaryTable, folder: Path, where: str) -> Loop:
     if table.part is not None:
-        return _composed(table.name, table.part, where)
+        loop = _composed(table.name, table.part, where)
+        return loop if table.place is None else _placed(loop, table.place, where)
     if table.circle is not None:
         ring = table.circle
         pieces = circle(np.array(ring.center), ring.radius, np.array(ring.normal))
@@ -66,7 +70,17 @@ def _loop(table: BoundaryTable, folder: Path, where: str) -> Loop:
     else:
         pieces = _from_file(table, folder, f"{where}.file")
     sliding = () if table.slide is None else (_sliding(table.slide, 0, pieces.count),)
-    return make_loop(table.name, pieces, sliding, where=where)
+    loop = make_loop(table.name, pieces, sliding, where=where)
+    return loop if table.place is None else _placed(loop, table.place, where)
+
+
+def _placed(loop: Loop, place: PlaceTable, where: str) -> Loop:
+    """A held loop turned and scaled about the centroid of its length, and shifted."""
+    middle = loop.at(np.arange(SAMPLES) / SAMPLES).mean(0)
+    turn = Rotation.from_rotvec(np.radians(place.turn)).as_matrix()
+    # the pieces of a course are measured from its origin
+    shift = middle + np.array(place.shift) + place.scale * turn @ (loop.course.origin - middle)
+    return make_loop(loop.name, loop.course.pieces.transformed(place.scale, shift, turn), where=where)
 
 
 def _from_file(table: BoundaryTable, folder: Path, where: str) -> Pieces:

@@ -1,0 +1,129 @@
+"""Films of a boundary that may change, each with its net, and how the nets change with the boundary."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from lamella.network.film_net import FilmNet
+from lamella.network.pattern import Pattern
+from lamella.network.shift_rates import curvature_rates_of_volume, jacobi_fields, shift_rates
+from lamella.surface.boundary.curve import Loop
+from lamella.surface.boundary.freedom import Freedom
+from lamella.surface.boundary.tables import boundary_loops
+from lamella.surface.element.placing import rim_parameters
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.found.film import Film
+from lamella.surface.found.find import find_film, notes_on
+from lamella.surface.found.loop_path import BreakError, along_loops
+from lamella.surface.found.newton import Equilibrium
+from lamella.surface.points import Complexes, Floats
+from lamella.surface.umbilic import refuse_umbilic
+
+if TYPE_CHECKING:
+    from lamella.project import FormFoundTable
+
+# difference of shares for the loops' movement
+SHARE = 1e-5
+
+
+class FollowError(ArithmeticError):
+    """A net that cannot be followed to other shares."""
+
+
+class Films:
+    """The films of one project's boundary at any shares of what may change.
+
+    Parameters
+    ----------
+    table : FormFoundTable
+    folder : Path
+        Where relative paths of boundary files begin.
+    freedom : Freedom
+        What may change of the table.
+    pattern : Pattern
+        Which curves the nets have.
+    """
+
+    def __init__(self, table: FormFoundTable, folder: Path, freedom: Freedom, pattern: Pattern) -> None:
+        self.table, self.folder, self.freedom, self.pattern = table, folder, freedom, pattern
+        self._rates: WeakKeyDictionary[FilmNet, Complexes] = WeakKeyDictionary()
+
+    def loops(self, shares: Floats) -> tuple[Loop, ...]:
+        """The boundary at some shares."""
+        return boundary_loops(self.freedom.changed(shares), self.folder)
+
+    def found(self, shares: Floats, tolerance: float) -> FilmNet:
+        """The film of some shares from nothing, to a tolerance."""
+        table = self.freedom.changed(shares)
+        found = find_film(
+            boundary_loops(table, self.folder),
+            table.mean_curvature or 0.0,
+            volume=table.volume,
+            order=table.order,
+            tolerance=tolerance,
+            branch=table.branch,
+            most_nodes=table.most_nodes,
+        )
+        surface = found.surface("form-found", notes_on(found), tolerance=table.tolerance)
+        return FilmNet.of(shares, found.equilibrium, surface, self.pattern)
+
+    def first(self, tolerance: float) -> FilmNet:
+        """The film of the sketch."""
+        net = self.found(np.zeros(self.freedom.count), tolerance)
+        refuse_umbilic(net.surface)
+        return net
+
+    def moved(self, net: FilmNet, shares: Floats) -> FilmNet:
+        """The film followed to other shares; its umbilics stay as many, of the same orders."""
+        start, table = net.shares, self.freedom.changed(shares)
+        curvature = net.surface.mean_curvature if table.mean_curvature is None else table.mean_curvature
+        try:
+            reached = along_loops(
+                Equilibrium(net.equilibrium.film, curvature, 0, 0, ()),
+                lambda share: self.loops(start + share * (shares - start)),
+                0.0,
+                self.loops(shares),
+                lambda _: None,
+                volume=table.volume,
+                stable=table.branch == "stable",
+            )
+        except BreakError as error:
+            raise FollowError(str(error)) from None
+        film, curvature = reached.equilibrium.film, reached.equilibrium.mean_curvature
+        rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
+        surface = ElementSurface("form-found", curvature, film.connectivity, film.nodes, rim_loop)
+        there = FilmNet.of(shares, reached.equilibrium, surface, self.pattern)
+        if there.orders != net.orders:
+            raise FollowError("umbilics come or go at the boundary")
+        return there
+
+    def cell_rates(self, net: FilmNet, step: float) -> Complexes:
+        """Rates of the shifts in cells, (t, p + 1), the logarithm of the spacing last."""
+        if net not in self._rates:
+            film, h = net.equilibrium.film, net.surface.mean_curvature
+            rim = self.rim_shifts(film, net.shares)
+            curvature = self.freedom.curvature_rates()
+            if self.table.volume is not None:
+                curvature = curvature_rates_of_volume(film, h, rim)
+            fields = jacobi_fields(film, h, rim, curvature)
+            self._rates[net] = shift_rates(net.surface, film, net.iso, fields, curvature)
+        return net.cell_rates(self._rates[net], step)
+
+    def rim_shifts(self, film: Film, shares: Floats) -> Floats:
+        """How the boundary's nodes move with each parameter, (p, n, 3), m."""
+        nodes = film.connectivity.rim_nodes
+        t = rim_parameters(film.connectivity, film.mesh.parameter)
+        of_loop = film.mesh.loop[nodes[:, 0]]
+        result = np.zeros((self.freedom.count, len(film.nodes), 3))
+        begin = self.loops(shares)
+        for number in range(self.freedom.count):
+            ahead = shares.copy()
+            ahead[number] += SHARE
+            for index, (old, new) in enumerate(zip(begin, self.loops(ahead), strict=True)):
+                mine = of_loop == index
+                result[number, nodes[mine]] = (new.at(t[mine]) - old.at(t[mine])) / SHARE
+        return result
