@@ -58,7 +58,7 @@ VIEWS: dict[str, tuple[tuple[float, float], tuple[int, int]]] = {
     "14_three_columns": ((-65, 30), (1200, 900)),
     "15_vault": ((-52, 24), (1200, 900)),
     "16_hall": ((-52, 24), (1200, 900)),
-    "17_gridshell": ((-30, 38), (1200, 1000)),
+    "17_gridshell": ((160, 36), (1200, 1000)),
 }
 
 # azimuth and elevation of surfaces without a network
@@ -98,9 +98,10 @@ ABOUT: dict[str, str] = {
     "at 90 degrees, as half of a catenoid does.",
     "16_hall": "A coarse triangle mesh of an arched hall, its vertices off by a millimetre: the surface of constant "
     "mean curvature it means is a piece of an unduloid.",
-    "17_gridshell": "An uneven sketch of the Asymptotic Gridshell (Schling et al., AAG 2018): 12 x 9 m, two arches 5 m "
-    'high, an oculus for a tree. Its net would miss itself by an eighth of a cell. `closing = "adjust"` changes the '
-    "sketch by a few centimetres, until the net closes and both hexagonal nodes lie on one principal line.",
+    "17_gridshell": "An uneven sketch of the Asymptotic Gridshell (Schling et al., AAG 2018): 12 x 9 m on three "
+    "supports, two arches 5 m high, an oculus for a tree. Its net would miss itself by 0.84 of a cell. `closing = "
+    '"adjust"` changes the sketch in plan by up to 0.31 m, until the net closes and both hexagonal nodes lie on one '
+    "principal line. The third, low edge is drawn in towards the oculus: bulging outwards it brings a third umbilic.",
 }
 
 # tables inside the tables of a boundary, by their keys

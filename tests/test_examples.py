@@ -311,7 +311,14 @@ def _gridshell(results):
     for old, new in zip(before, after, strict=True):
         far = np.linalg.norm(old.at(t)[:, None] - new.at(t)[None, ::10], axis=2).min(0).max()
         assert far == pytest.approx(figures["moved"][old.name], rel=0.02)
-        assert 0.001 < far < 0.3
+        assert 0.001 < far < 0.4
+    # three supports that stay on the ground, two arches 5 m high, 12 x 9 m
+    drawn, built = (np.array(table.boundary[0].points) for table in (results.project.surface, results.adjusted.table))
+    assert np.array_equal(drawn[:, 2], built[:, 2])
+    assert (built[:, 2] == 0).sum() == 3
+    tops = np.flatnonzero((built[:, 2] > np.roll(built[:, 2], 1)) & (built[:, 2] > np.roll(built[:, 2], -1)))
+    assert sorted(built[tops, 2].round(1)) == [0.3, 5.0, 5.0]
+    assert np.ptp(built, axis=0) == pytest.approx([12, 9, 5], abs=0.35)
     return 2 * abs(apart.real) / cell, results.network.cells
 
 
@@ -362,7 +369,7 @@ WARNINGS = {
     "12_cushion": [SEAMS, MISSED, LEFT_OUT, BEYOND, SPLIT],
     "14_three_columns": [SEAMS, MISSED, LEFT_OUT, BEYOND],
     "16_hall": [LEFT_OUT, SPLIT],
-    "17_gridshell": [BEYOND],
+    "17_gridshell": [LEFT_OUT],
 }
 # three umbilics of the cushion and six of the canopy lie anywhere: their nets have seams
 OPEN = {"12_cushion", "14_three_columns"}

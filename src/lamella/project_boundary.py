@@ -109,6 +109,19 @@ class AdjustTable(Table):
         default=0.0,
         examples=[0.3],
     )
+    keep_height: bool = Field(
+        default=False, description="Shifts of loop and points in x and y only: supports stay on their ground."
+    )
+
+    @model_validator(mode="after")
+    def _possible(self) -> AdjustTable:
+        if self.keep_height and (self.scale or self.tilt):
+            raise Refusal(
+                "scale and tilt change heights, which keep_height holds",
+                "leave scale and tilt out, or keep_height",
+                "keep_height",
+            )
+        return self
 
 
 class PlaceTable(Table):

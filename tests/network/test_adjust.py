@@ -84,6 +84,14 @@ def test_parameters_change_what_they_name() -> None:
     for number in range(27):
         there = np.array(freedom.changed(np.eye(freedom.count)[number]).boundary[0].points)
         assert 0.34 < np.abs(there - np.array(table.boundary[0].points)).max() < 0.4 + 1e-12
+    # at their height: two parameters for each shift
+    level = sketch(0)
+    level["surface"]["boundary"][0]["adjust"] = {"points": 0.4, "move": 0.2, "keep_height": True}
+    in_plan = Freedom(table_of(level))
+    assert in_plan.count == 2 * 8 + 2
+    there = np.array(in_plan.changed(np.linspace(-1, 1, in_plan.count)).boundary[0].points)
+    assert np.array_equal(there[:, 2], np.array(table.boundary[0].points)[:, 2])
+    assert np.abs(there - np.array(table.boundary[0].points)).max() > 0.2
     # without a word both loops may change by a twentieth of their size
     assert Freedom(table_of(sketch(0))).count == 3 * 8 + 3 + 1 + 3 + 1
 

@@ -85,6 +85,8 @@ def _of_loop(index: int, loop: BoundaryTable, usual: bool) -> list[_Part]:
     elif loop.circle is not None:
         size = 2 * loop.circle.radius
     move = scale = tilt = points = 0.0
+    # x, y and z, or the plan only
+    axes = 2 if loop.adjust is not None and loop.adjust.keep_height else 3
     if loop.adjust is not None:
         move, scale, tilt, points = loop.adjust.move, loop.adjust.scale, loop.adjust.tilt, loop.adjust.points
     elif usual and size:
@@ -93,10 +95,10 @@ def _of_loop(index: int, loop: BoundaryTable, usual: bool) -> list[_Part]:
     if points and loop.points is not None:
         waves = _waves(len(loop.points))
         first = 1 if move else 0
-        ranges = np.full(3 * (len(waves) - first), points)
+        ranges = np.full(axes * (len(waves) - first), points)
         parts.append(_Part(f"points of {loop.name!r}", ranges, _waved(index, waves[first:])))
     if move:
-        parts.append(_Part(f"place of {loop.name!r}", np.full(3, move), _placed(index)))
+        parts.append(_Part(f"place of {loop.name!r}", np.full(axes, move), _placed(index)))
     if scale:
         parts.append(_Part(f"size of {loop.name!r}", np.array([scale]), _sized(index)))
     if tilt:
@@ -154,8 +156,13 @@ def _tuples(points: Floats) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(point) for point in points.tolist())
 
 
+def _in_space(shifts: Floats) -> Floats:
+    """Shifts (..., 3) of shifts in plan (..., 2), or those of three already."""
+    return np.concatenate([shifts, np.zeros((*shifts.shape[:-1], 3 - shifts.shape[-1]))], axis=-1)
+
+
 def _placed(index: int) -> Callable[[FormFoundTable, Floats], FormFoundTable]:
-    return lambda table, values: _mapped(table, index, np.eye(3), 1.0, values)
+    return lambda table, values: _mapped(table, index, np.eye(3), 1.0, _in_space(values))
 
 
 def _sized(index: int) -> Callable[[FormFoundTable, Floats], FormFoundTable]:
@@ -169,7 +176,7 @@ def _tilted(index: int) -> Callable[[FormFoundTable, Floats], FormFoundTable]:
 def _waved(index: int, waves: Floats) -> Callable[[FormFoundTable, Floats], FormFoundTable]:
     def apply(table: FormFoundTable, values: Floats) -> FormFoundTable:
         loop = table.boundary[index]
-        points = np.array(loop.points) + waves.T @ values.reshape(len(waves), 3)
+        points = np.array(loop.points) + waves.T @ _in_space(values.reshape(len(waves), -1))
         return _replaced(table, index, loop.model_copy(update={"points": _tuples(points)}))
 
     return apply
