@@ -71,13 +71,14 @@ def films() -> list[ElementSurface]:
     ]
 
 
-@pytest.mark.parametrize("number", [0, 1])
+@pytest.mark.parametrize(("number", "norm"), [(0, "weighted"), (0, "plain"), (1, "plain")])
 def test_near_whole_shifts_do_not_depend_on_the_cut(
-    films: list[ElementSurface], monkeypatch: pytest.MonkeyPatch, number: int
+    films: list[ElementSurface], monkeypatch: pytest.MonkeyPatch, number: int, norm: str
 ) -> None:
     """The energies of the corrections to the nearest closed nets are properties of the surface."""
     first = cut_anew(films[number], monkeypatch, 0)
-    whole = WholeShifts.of(first)
+    energy = (lambda iso: iso.dirichlet) if norm == "plain" else (lambda iso: iso.gram)
+    whole = WholeShifts.of(first, energy(first))
     shifts = cells_of(first)
     near = whole.nearest(shifts, 6)
     sizes = [whole.size(one - shifts) for one in near]
@@ -85,7 +86,7 @@ def test_near_whole_shifts_do_not_depend_on_the_cut(
     different = 0
     for seed in (1, 2, 3):
         other = cut_anew(films[number], monkeypatch, seed)
-        there = WholeShifts.of(other)
+        there = WholeShifts.of(other, energy(other))
         assert there.basis.shape[0] == whole.basis.shape[0]
         assert np.linalg.det(there.energy) == pytest.approx(np.linalg.det(whole.energy), rel=2e-2)
         here = cells_of(other)
@@ -109,7 +110,7 @@ def test_nearest_whole_shifts_close_the_net(
 ) -> None:
     iso = cut_anew(films[number], monkeypatch, 0)
     shifts = cells_of(iso)
-    for whole in WholeShifts.of(iso).nearest(shifts, 4):
+    for whole in WholeShifts.of(iso, iso.gram).nearest(shifts, 4):
         assert np.array_equal(whole, np.round(whole))
         for factors in vertex_relations(iso.mesh, iso.transitions, iso.across, iso.odd).values():
             assert factors @ whole == 0
@@ -182,6 +183,21 @@ def test_closest_vectors_are_those_of_all() -> None:
         assert [one for one, _ in found] == pytest.approx(cost[:5])
         for cost_of_one, x in found:
             assert (x - wanted) @ energy @ (x - wanted) == pytest.approx(cost_of_one)
+
+
+def test_easiest_whole_shifts_are_those_of_least_effort() -> None:
+    """Of all whole shifts around, by the smallest parameters that make up for each."""
+    rng = np.random.default_rng(2)
+    basis = np.array([[1, 0, 1], [0, 2, 1]])
+    whole = WholeShifts(np.array([0, 1 + 1j, 0]), basis, np.eye(2))
+    rates = (rng.normal(size=(2, 5)) + 1j * rng.normal(size=(2, 5))).T @ basis
+    shifts = (rng.normal(size=2) + 1j * rng.normal(size=2)) @ basis + whole.offset
+    places = np.array(list(product(range(-6, 7), repeat=4)))
+    every = whole.offset + (places[:, :2] + 1j * places[:, 2:]) @ basis
+    missed = (every - shifts).T
+    parameters = np.linalg.pinv(np.vstack([rates.T.real, rates.T.imag])) @ np.vstack([missed.real, missed.imag])
+    best = every[np.argsort((parameters**2).sum(0))[:6]]
+    assert np.allclose(np.array(whole.easiest(shifts, rates.T, 6)), best)
 
 
 def test_lattices_of_whole_vectors() -> None:

@@ -43,11 +43,11 @@ MOST_STEPS, MOST_POLISHING, MOST_HALVINGS = 14, 5, 5
 LONGEST = 0.04
 # range of the logarithm of the lattice's spacing
 SPACING = 0.1
-# whole numbers near to the shifts among which those that ask for the smallest changes are tried
-MOST_LOOKED_AT, MOST_TRIED = 24, 4
+# whole numbers that ask for the smallest changes, were there no limits to them; of these are tried, with the limits
+MOST_LOOKED_AT, MOST_TRIED = 60, 4
 # a whole step has to take this part of the misses away at least
 LEAST_GAIN = 0.1
-# how much more a miss of a cell (by the energy of rounding it) weighs than a full range
+# how much more a miss of a cell (see `Isothermic.dirichlet`) weighs than a full range
 WEIGHT = 1e4
 SAMPLES = 2000
 
@@ -149,7 +149,7 @@ class _Aim:
 
     @property
     def size(self) -> float:
-        """Square root of the energy that rounding would take: it does not depend on the cut."""
+        """Square root of the integral of |change of dw|^2 if they were rounded: it does not depend on the cut."""
         return self.net.whole.size(self.misses)
 
 
@@ -184,8 +184,8 @@ class _Search:
     def _targets(self, net: FilmNet, lattice: Lattice) -> list[Complexes]:
         """Whole shifts (t,) in the order of the change they ask for, to first order."""
         step = lattice.step
-        near = net.whole.nearest(net.cells(step), MOST_LOOKED_AT)
         rates = self.films.cell_rates(net, step)
+        near = net.whole.easiest(net.cells(step), rates * np.append(np.ones(len(net.shares)), SPACING), MOST_LOOKED_AT)
         counted = self._counted(net, net.cells(step), lattice)
         near = [whole for whole in near if self._counted(net, whole, lattice) == counted]
         cost = [self._solved(net, rates, whole - net.cells(step))[1] for whole in near]

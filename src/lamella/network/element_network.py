@@ -219,7 +219,7 @@ def _shifts(raw: CellMap, wanted: Complexes, lattice: Lattice) -> Complexes:
 def _rounded(iso: Isothermic, raw: CellMap, lattice: Lattice) -> tuple[Isothermic, Complexes]:
     """The coordinates with the nearest whole shifts that do not fold them, and these shifts (t,) in cells."""
     folded: FoldedError | None = None
-    ways = WholeShifts.of(iso).nearest(raw.shifts, MOST_WAYS)
+    ways = WholeShifts.of(iso, iso.gram).nearest(raw.shifts, MOST_WAYS)
     for wanted in ways:
         try:
             return with_shifts(iso, _shifts(raw, wanted, lattice)), wanted

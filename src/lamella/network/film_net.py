@@ -51,7 +51,7 @@ class FilmNet:
     @cached_property
     def whole(self) -> WholeShifts:
         """The shifts with which the net closes."""
-        return WholeShifts.of(self.iso)
+        return WholeShifts.of(self.iso, self.iso.dirichlet)
 
     @property
     def orders(self) -> list[int]:

@@ -9,6 +9,7 @@ Across a cut w = u + i v goes over into +-w + c; these c are the periods.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,6 +90,15 @@ class Isothermic:
     gram: Floats
     residual: float
     plain: Poisson
+
+    @cached_property
+    def dirichlet(self) -> Floats:
+        """The integral of |change of dw|^2 per pair of shifts, (t, t): without the weight, how large a change is.
+
+        Where two zeros are close `gram` is large for what pulls them apart, however little that is.
+        """
+        stiff = np.matmul(self.plain.blocks, self.moves[..., None])[..., 0]
+        return np.asarray(np.einsum("tek,sek->ts", self.moves, stiff))
 
 
 # middles of the local edges and the edges' directions in local coordinates

@@ -20,6 +20,11 @@ from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
 
+# of the sum of all squared rates: what is reached more slowly is not
+UNREACHED = 1e-9
+# partial sums looked at, at most: near the closest vector the first ones are good ones
+MOST_SUMS = 100_000
+
 
 @dataclass(frozen=True)
 class WholeShifts:
@@ -33,7 +38,7 @@ class WholeShifts:
         Of the shifts of t pieces less the offset, the same for their real and imaginary parts; where the net's lattice
         hangs (`fixed_point_factors`) does not change.
     energy : (d, d)
-        Of corrections along the basis, see `Isothermic.gram`.
+        Of corrections along the basis.
     """
 
     offset: Complexes
@@ -41,8 +46,15 @@ class WholeShifts:
     energy: Floats
 
     @classmethod
-    def of(cls, iso: Isothermic) -> WholeShifts:
-        """All whole shifts of a surface's coordinates."""
+    def of(cls, iso: Isothermic, gram: Floats) -> WholeShifts:
+        """All whole shifts of a surface's coordinates.
+
+        Parameters
+        ----------
+        iso : Isothermic
+        gram : (t, t)
+            Energy of corrections, per pair of shifts: `Isothermic.gram`, or `Isothermic.dirichlet`.
+        """
         conditions = [*vertex_relations(iso.mesh, iso.transitions, iso.across, iso.odd).values()]
         origin = fixed_point_factors(iso)
         if origin.any():
@@ -54,7 +66,7 @@ class WholeShifts:
         turning = np.array([piece.sign < 0 for piece in iso.transitions], bool)
         # twice the middle of a cell, where w turns around no umbilic of the net
         offset = np.where(turning, 0 if len(iso.odd) else 2 * MIDDLE, 0)
-        return cls(offset.astype(complex), *_reduced(basis, iso.gram))
+        return cls(offset.astype(complex), *_reduced(basis, gram))
 
     def coordinates(self, changes: Complexes) -> Complexes:
         """Changes of shifts (t, ...) in the basis, (d, ...)."""
@@ -78,6 +90,28 @@ class WholeShifts:
         one, other = (_closest(self.energy, part, count) for part in (wanted.real, wanted.imag))
         pairs = sorted((e + f, j, k) for j, (e, _) in enumerate(one) for k, (f, _) in enumerate(other))
         return [self.offset + (one[j][1] + 1j * other[k][1]) @ self.basis for _, j, k in pairs[:count]]
+
+    def easiest(self, shifts: Complexes, rates: Complexes, count: int) -> list[Complexes]:
+        """The whole shifts (t,) that parameters reach from given ones with the least sum of squares, to first order.
+
+        Parameters
+        ----------
+        shifts : (t,) complex
+        rates : (t, p) complex
+            Change of the shifts with each parameter.
+        count : int
+            How many, the easiest first.
+        """
+        d = len(self.basis)
+        now, moved = self.coordinates(shifts - self.offset), self.coordinates(rates)
+        reach = np.vstack([moved.real, moved.imag])
+        square = reach @ reach.T
+        # p parameters need not reach everything: what they do not is far away
+        effort = np.linalg.inv(square + UNREACHED * np.trace(square) * np.eye(2 * d))
+        short, energy = _reduced(np.eye(2 * d, dtype=np.int64), effort)
+        wanted = np.linalg.solve(short.T.astype(float), np.concatenate([now.real, now.imag]))
+        ways = [x @ short for _, x in _closest(energy, wanted, count)]
+        return [self.offset + (x[:d] + 1j * x[d:]) @ self.basis for x in ways]
 
 
 def _kernel(count: int, conditions: list[Integers]) -> Integers:
@@ -131,11 +165,14 @@ def _closest(energy: Floats, wanted: Floats, count: int) -> list[tuple[float, In
     upper = np.linalg.cholesky(energy).T if d else energy
     found: list[tuple[float, Integers]] = []
     x = np.zeros(d, np.int64)
+    looked_at = 0
 
     def limit() -> float:
         return found[-1][0] if len(found) == count else np.inf
 
     def descend(level: int, sum_above: float) -> None:
+        nonlocal looked_at
+        looked_at += 1
         if level < 0:
             found.append((sum_above, x.copy()))
             found.sort(key=lambda one: one[0])
@@ -149,7 +186,7 @@ def _closest(energy: Floats, wanted: Floats, count: int) -> list[tuple[float, In
             # 0, 1, -1, 2, -2, ... beginning on the side of the middle
             x[level] = nearest + way * ((number + 1) // 2) * (1 if number % 2 else -1)
             here = sum_above + (upper[level, level] * (x[level] - middle)) ** 2
-            if here >= limit():
+            if here >= limit() or (found and looked_at > MOST_SUMS):
                 return
             descend(level - 1, here)
 
