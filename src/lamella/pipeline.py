@@ -14,6 +14,7 @@ from lamella.errors import InputError
 from lamella.fabrication import Nesting, Parts, make_parts, nest
 from lamella.fabrication.rules import LEAST_END, LEAST_HUB, Rules, clear_hub, edge_scale
 from lamella.network.density import Density, choose_density
+from lamella.network.lines import check_traced, ground_of, is_traced
 from lamella.network.network import Network
 from lamella.network.trace import trace_closed_form
 from lamella.project import Project
@@ -28,6 +29,7 @@ from lamella.surface.umbilic import umbilic_reason
 if TYPE_CHECKING:
     from lamella.network.adjust import Adjusted
     from lamella.network.element_network import ElementNetwork
+    from lamella.network.traced_network import TracedNetwork
 
 STAGES = ("surface", "network", "lamellas", "fabrication", "structure")
 LAST_STAGE = "fabrication"
@@ -153,9 +155,12 @@ def plan(
     surface = make_surface(project, folder, progress)
     if depth >= STAGES.index("fabrication"):
         _check_fabrication(fill_in(project, surface), surface.mean_curvature)
+    table = project.network
+    if depth and is_traced(surface, table.pattern):
+        check_traced(surface, table.pattern, table.closing)
+        return surface, None
     if not isinstance(surface, ClosedForm):
         return surface, None
-    table = project.network
     return surface, choose_density(surface, cells=table.cells, spacing=table.spacing, pattern=table.pattern)
 
 
@@ -272,16 +277,19 @@ def compute(
     network = lamellas = parts = nesting = None
     if depth >= STAGES.index("network"):
         table = project.network
-        if isinstance(surface, ClosedForm):
-            assert density
+        if density:
+            assert isinstance(surface, ClosedForm)
             clock.start(f"network: {density.requested}, about {density.estimated_nodes:,} nodes")
             network = trace_closed_form(surface, density, minimum_length=table.minimum_length)
             figures["network"] = f = summary.network_summary(network, density.requested)
         else:
-            clock.start("network: umbilics, isothermic coordinates, lamellas")
-            woven = _weave(surface, project, adjusted, progress)
+            traced = is_traced(surface, table.pattern)
+            clock.start(
+                f"network: {'lines from even seeds' if traced else 'umbilics, isothermic coordinates, lamellas'}"
+            )
+            woven = _trace(surface, project, progress) if traced else _weave(surface, project, adjusted, progress)
             network = woven.network
-            figures["network"] = f = summary.network_summary(network, woven.lattice.requested) | woven.describe()
+            figures["network"] = f = summary.network_summary(network, woven.requested) | woven.describe()
             if adjusted:
                 figures["network"]["adjustment"] = adjusted.figures
             warnings += woven.warnings()
@@ -332,6 +340,22 @@ def _weave(surface: Surface[Any], project: Project, adjusted: Adjusted | None, p
         minimum_length=table.minimum_length,
         pattern=table.pattern,
         loop_names=tuple(loop.name for loop in boundary),
+        progress=progress,
+    )
+
+
+def _trace(surface: Surface[Any], project: Project, progress: Progress) -> TracedNetwork:
+    """The network of lines that follow from no lattice."""
+    from lamella.network.traced_network import traced_network
+
+    table = project.network
+    return traced_network(
+        ground_of(surface),
+        table.pattern,
+        mean_curvature=surface.mean_curvature,
+        cells=table.cells,
+        spacing=table.spacing,
+        minimum_length=table.minimum_length,
         progress=progress,
     )
 

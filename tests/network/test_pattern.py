@@ -532,11 +532,11 @@ def test_such_lines_with_some_left_out() -> None:
             0.76,
             r"run from -0.7864 to 0.7864 1/m, and lines have to cross at 20 deg or more",
         ),
-        (Enneper(3, 0.9), 0.1, "are offered on unduloid, nodoid, catenoid and cylinder"),
+        (Enneper(2, 0.9), 5.0, r"no direction of the surface has it, its normal curvatures run from k2 = -2 to k1 = 2"),
     ],
 )
 def test_normal_curvatures_that_are_refused(surface: Any, wanted: float, told: str) -> None:
-    """The catenoid's principal curvatures at the rim: +-1 / cosh(0.5)^2 = 0.7864."""
+    """The catenoid's principal curvatures at the rim: +-1 / cosh(0.5)^2 = 0.7864; Enneper's are 2 in the middle."""
     with pytest.raises(InputError, match=told) as refused:
         make_network(surface, cells=24, normal_curvature=wanted)
     assert refused.value.where == "network.normal_curvature"
@@ -549,11 +549,6 @@ def test_the_remedy_of_a_refused_normal_curvature_works() -> None:
     low, high = re.findall(r"from (\S+) to (\S+) 1/m", refused.value.remedy)[0]
     for value in (float(low), float(high)):
         assert make_network(surface, cells=24, normal_curvature=value).node_angles.min() > 20
-
-
-def test_normal_curvature_on_elements_is_refused() -> None:
-    with pytest.raises(InputError, match="closed forms of revolution"):
-        on_elements("unduloid", Pattern(normal_curvature=0.1))
 
 
 def test_normal_curvature_in_the_project_file() -> None:
