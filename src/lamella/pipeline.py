@@ -14,7 +14,7 @@ from lamella.errors import InputError
 from lamella.fabrication import Nesting, Parts, make_parts, nest
 from lamella.fabrication.rules import LEAST_END, LEAST_HUB, Rules, clear_hub, edge_scale
 from lamella.network.density import Density, choose_density
-from lamella.network.lines import check_traced, ground_of, is_traced
+from lamella.network.lines import check_traced, ground_of, is_traced, told_mean_curvature
 from lamella.network.network import Network
 from lamella.network.trace import trace_closed_form
 from lamella.project import Project
@@ -154,7 +154,7 @@ def plan(
         _refuse_adjusting(project)
     surface = make_surface(project, folder, progress)
     if depth >= STAGES.index("fabrication"):
-        _check_fabrication(fill_in(project, surface), surface.mean_curvature)
+        _check_fabrication(fill_in(project, surface), _normal_curvature(project, surface))
     table = project.network
     if depth and is_traced(surface, table.pattern):
         check_traced(surface, table.pattern, table.closing)
@@ -198,7 +198,7 @@ def _planned(
     )
     surface = adjusted.surface
     if depth >= STAGES.index("fabrication"):
-        _check_fabrication(fill_in(project, surface), surface.mean_curvature)
+        _check_fabrication(fill_in(project, surface), _normal_curvature(project, surface))
     return surface, None, adjusted
 
 
@@ -208,7 +208,7 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
     slot_width = 2 * strip.thickness if cut.slot_width is None else cut.slot_width
     end_distance = cut.end_distance
     if end_distance is None:
-        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(surface.mean_curvature, strip.height))
+        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(_normal_curvature(project, surface), strip.height))
     hub_radius = cut.hub_radius
     if hub_radius is None:
         rays = max((2 * (order + 2) for order in surface.singular_orders()), default=0)
@@ -218,7 +218,13 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
     return project.model_copy(update={"fabrication": filled})
 
 
-def _check_fabrication(project: Project, mean_curvature: float) -> None:
+def _normal_curvature(project: Project, surface: Surface[Any]) -> float:
+    """Of the lamellas, 1/m."""
+    wanted = project.network.normal_curvature
+    return surface.mean_curvature if wanted is None else wanted
+
+
+def _check_fabrication(project: Project, curvature: float) -> None:
     """Refuse measures that no part can be made with, by the key in the project."""
     strip, cut = project.lamella, project.fabrication
     rules = Rules(
@@ -226,7 +232,7 @@ def _check_fabrication(project: Project, mean_curvature: float) -> None:
         offset=strip.offset,
         height=strip.height,
         thickness=strip.thickness,
-        curvature=float(mean_curvature),
+        curvature=float(curvature),
         density=project.material().density,
         **cut.model_dump(),
     )
@@ -352,7 +358,7 @@ def _trace(surface: Surface[Any], project: Project, progress: Progress) -> Trace
     return traced_network(
         ground_of(surface),
         table.pattern,
-        mean_curvature=surface.mean_curvature,
+        mean_curvature=told_mean_curvature(surface, table.pattern),
         cells=table.cells,
         spacing=table.spacing,
         minimum_length=table.minimum_length,
@@ -361,15 +367,15 @@ def _trace(surface: Surface[Any], project: Project, progress: Progress) -> Trace
 
 
 def _last_of(project: Project, until: str | None) -> int:
-    """Number of the last stage; of principal lines, and of lamellas that cross askew, that is the network."""
+    """Number of the last stage; of principal lines that is the network."""
     depth, last = _depth(LAST_STAGE if until is None else until), STAGES.index("network")
     if not project.network.pattern.no_strips or depth <= last:
         return depth
     if until is not None:
         raise InputError(
-            f"stage {until!r} needs a net of lamellas at right angles: {project.network.pattern.no_strips}",
-            'write --until network, kind = "lamellas" and no normal_curvature',
-            "network.kind" if project.network.kind == "principal" else "network.normal_curvature",
+            f"stage {until!r} needs a net of lamellas: {project.network.pattern.no_strips}",
+            'write --until network, or kind = "lamellas"',
+            "network.kind",
         )
     return last
 

@@ -25,6 +25,16 @@ def is_traced(surface: Surface[Any], pattern: Pattern) -> bool:
     return not isinstance(surface, SurfaceOfRevolution)
 
 
+def told_mean_curvature(surface: Surface[Any], pattern: Pattern) -> float:
+    """What a net tells as its surface's mean curvature, 1/m: where that varies, the lamellas' normal curvature.
+
+    So the radius of the unrolled strips is 1 / |mean_curvature| for those who know of nothing else.
+    """
+    if isinstance(surface, ElementSurface) and not surface.constant and pattern.normal_curvature is not None:
+        return pattern.normal_curvature
+    return surface.mean_curvature
+
+
 def ground_of(surface: Surface[Any]) -> Ground:
     """The surface as lines are traced on it."""
     if isinstance(surface, ClosedForm):

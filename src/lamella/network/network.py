@@ -36,7 +36,8 @@ class Network:
     Attributes
     ----------
     mean_curvature : float
-        H of the surface, 1/m, for the normals given here; where it varies, its mean.
+        H of the surface, 1/m, for the normals given here; where it varies, the normal curvature that was asked for, in
+        a principal net the mean of H.
     step : float
         l0, the distance of neighbouring lamellas in u + v and in u - v, or of principal lines in u and in v, before
         any are left out, sqrt(m); of lines from seeds, the distance of these along their first guide, m.

@@ -147,7 +147,7 @@ def seeded_lines(ground: Ground, field: LineField, guide: Guide, distance: float
         index = np.tile(np.arange(count), 2)
         lines = how.accepted(around[0][index], np.repeat(both, count), None)
     else:
-        seeds, family = how.along(guide.where[np.zeros(2, np.int64)], both, distance)
+        seeds, family = how.along(guide.where[np.zeros(2, np.int64)], both, distance, centred=True)
         lines = how.accepted(seeds, family, None)
         count = int(max(family.sum(), (~family).sum()))
     guides = 1 if guide.around_hole else 2
@@ -199,16 +199,28 @@ class _How:
     def lines(self, seeds: Places, is_a: Booleans) -> Flow:
         return trace(self.ground, self.field, seeds, is_a, step=self.spacing / STEPS, longest=LONGEST * self.size)
 
-    def along(self, places: Places, is_a: Booleans, distance: float) -> tuple[Places, Booleans]:
-        """Seeds of families on lines of the other ones through places, from these outwards on both sides."""
-        guides = self.lines(places, ~is_a)
-        back, ahead = np.floor(guides.length.reshape(-1, 2) / distance + 1e-9).astype(np.int64).T
-        count = back + ahead + 1
+    def along(
+        self, places: Places, is_a: Booleans, distance: float, *, centred: bool = False
+    ) -> tuple[Places, Booleans]:
+        """Seeds of families on lines of the other ones through places, from these outwards on both sides.
+
+        Centred ones leave the same rest at both ends of a line, a quarter to three quarters of a distance, instead.
+        """
+        guides = finished(self.lines(places, ~is_a))
+        back, ahead = guides.length.reshape(-1, 2).T
+        if centred:
+            count = np.maximum(np.rint((back + ahead) / distance), 1).astype(np.int64)
+            first = (back + ahead - (count - 1) * distance) / 2
+            middle = (back + ahead) / 2
+        else:
+            before = np.floor(back / distance + 1e-9).astype(np.int64)
+            count = before + np.floor(ahead / distance + 1e-9).astype(np.int64) + 1
+            first, middle = back - before * distance, back
         guide = np.repeat(np.arange(len(places)), count)
-        step = ragged_ranges(count) - back[guide]
-        order = np.lexsort((np.abs(step), guide))
-        guide, step = guide[order], step[order]
-        where, _, _ = guides.at(guide, guides.length[2 * guide] + step * distance)
+        s = first[guide] + ragged_ranges(count) * distance
+        order = np.lexsort((np.abs(s - middle[guide]), guide))
+        guide, s = guide[order], s[order]
+        where, _, _ = guides.at(guide, s)
         return where, is_a[guide]
 
     def accepted(self, seeds: Places, is_a: Booleans, others: Flow | None) -> Flow | None:

@@ -148,7 +148,7 @@ def traced_network(
     pattern : Pattern
         With a normal curvature, or of kind "principal".
     mean_curvature : float
-        H of the surface, 1/m; of one whose H varies its mean.
+        What the net tells as its surface's H, 1/m, see `lamella.network.lines.told_mean_curvature`.
     cells : int, optional
         Lamellas of a family around the first hole; without a hole cells along the longer lamella through the middle.
         24 when spacing is not given either.
