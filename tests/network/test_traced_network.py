@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import cumulative_simpson
+from scipy.interpolate import CubicSpline
 
 from conftest import run_of_example
 from exact_elements import catenoid_map, on_map
 from lamella import Enneper, Helicoid, InputError, Scherk, make_network, parse_project
 from lamella.files.network_json import network_bytes
 from lamella.network.flow import finished, trace
-from lamella.network.ground import ElementGround, PlaneGround
+from lamella.network.ground import ElementGround
 from lamella.network.line_field import LEAST_ANGLE, LineField
 from lamella.network.network import BOUNDARY, REGULAR, Network
 from lamella.network.pattern import Pattern
@@ -90,7 +91,7 @@ def test_the_net_of_a_film_is_that_of_its_lattice() -> None:
     assert isinstance(surface, ElementSurface)
     size = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
     ground, field = ElementGround(surface), LineField(0.0, 1.0)
-    regular = np.flatnonzero(lattice.node_kinds == REGULAR)[::7]
+    regular = np.flatnonzero(lattice.node_kinds == REGULAR)[::17]
     seeds, _ = surface.closest(lattice.node_points[regular])
     owner = lattice.stop_owner
     for family in "AB":
@@ -108,34 +109,36 @@ def test_the_net_of_a_film_is_that_of_its_lattice() -> None:
             assert apart.max() < 3e-4 * size
 
 
-@pytest.mark.parametrize("wanted", [0.0, 0.2])
-def test_lines_of_a_helicoid(wanted: float) -> None:
-    """kn = sin(2 theta) / (c cosh^2 U), theta from the ruling, an asymptotic line: dV / dU = tan theta."""
-    surface = Helicoid(4.0, 0.5, 3.0, 0.5)
+def off_the_helicoid(wanted: float, cells: int) -> float:
+    """Largest error of lines of kn = `wanted` on a helicoid, rad.
+
+    kn = sin(2 theta) / (c cosh^2 U), theta from the ruling, an asymptotic line: dV / dU = tan theta.
+    """
     c = 4 / (2 * np.pi)
-    network = traced_network(
-        PlaneGround(surface),
-        Pattern(normal_curvature=wanted),
-        mean_curvature=0.0,
-        cells=12,
-    ).network
+    network = make_network(Helicoid(4.0, 0.5, 3.0, 0.5), cells=cells, normal_curvature=wanted)
     is_sound(network)
-    u = np.linspace(np.arcsinh(0.5 / c), np.arcsinh(3 / c), 20_001)
+    u = np.linspace(np.arcsinh(0.5 / c), np.arcsinh(3 / c), 100_001)
     sine = wanted * c * np.cosh(u) ** 2
     # up to where they are no more
     u, sine = u[np.abs(sine) < 1], sine[np.abs(sine) < 1]
-    v = cumulative_simpson(np.tan(np.arcsin(sine) / 2), x=u, initial=0)
-    checked = 0
+    v = CubicSpline(u, cumulative_simpson(np.tan(np.arcsin(sine) / 2), x=u, initial=0))
+    errors = []
     for family in "AB":
         for points in lamellas(network, family):
-            at_u = np.arcsinh(np.hypot(points[:, 0], points[:, 1]) / c)
-            at_v = points[:, 2] / c
+            at_u, at_v = np.arcsinh(np.hypot(points[:, 0], points[:, 1]) / c), points[:, 2] / c
             # the family that leaves the rulings
             if np.abs(np.diff(at_v)).max() < np.abs(np.diff(at_u)).max():
-                off = at_v - np.sign((at_v[-1] - at_v[0]) * (at_u[-1] - at_u[0])) * np.interp(at_u, u, v)
-                assert np.ptp(off) < 1e-6
-                checked += 1
-    assert checked > 5
+                way = np.sign((at_v[-1] - at_v[0]) * (at_u[-1] - at_u[0]))
+                errors.append(np.ptp(at_v - way * v(at_u)))
+    assert len(errors) > 5
+    return float(max(errors))
+
+
+def test_lines_of_a_helicoid() -> None:
+    """Runge and Kutta's error falls by the fourth power of the step; lines of 0.2 end inside, where it is shortened."""
+    assert off_the_helicoid(0.2, 12) < 1e-6
+    errors = [off_the_helicoid(0.05, cells) for cells in (24, 48)]
+    assert np.log2(errors[0] / errors[1]) > 3.5
 
 
 @pytest.mark.parametrize(
@@ -145,7 +148,9 @@ def test_the_ruler_on_closed_forms(surface: Any) -> None:
     network = make_network(surface, cells=12, normal_curvature=0.02)
     is_sound(network)
     figures = ruled(network)
-    assert figures["normal_curvature_error_rel_max"] < 5e-4
+    # next to a flat point lines turn within a few of the ruler's samples
+    assert figures["normal_curvature_error_rel_max"] < (1e-2 if surface.hopf_order else 5e-5)
+    assert figures["normal_curvature_error_p95"] < 1e-5 * figures["curvature_scale"]
     assert figures["family_sign_errors"] == 0
     assert figures["node_angle_measured"] == (network.node_kinds == REGULAR).sum()
     assert np.abs(network.sample_darboux.kn - 0.02).max() < 1e-12
@@ -174,7 +179,7 @@ def test_where_directions_stop_being_real() -> None:
     radius = np.hypot(*network.node_points[:, :2].T)
     last = c * np.sqrt(5 * np.cos(np.radians(LEAST_ANGLE)) / c - 1)
     assert radius.max() == pytest.approx(last, rel=1e-4)
-    inner = np.abs(radius - last) < 1e-3 * last
+    inner = (np.abs(radius - last) < 1e-3 * last) & (network.node_kinds == BOUNDARY)
     assert told["inner_ends"] == inner.sum()
     # the area between two radii: c^2 (U + sinh U cosh U) pi
     u = np.arcsinh(np.array([4.0, np.sqrt(5 / c - 1) * c, last]) / c)

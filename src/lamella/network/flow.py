@@ -28,6 +28,8 @@ MOST_STEPS = 20_000
 HALVINGS = 46
 # turn of a line in a step, rad
 MOST_TURN = 0.1
+# of the way on which directions would stop being real if they went on as in the last step; least step over the longest
+APPROACH, SLOWEST = 0.5, 16
 
 
 @dataclass(frozen=True)
@@ -161,20 +163,26 @@ def trace(ground: Ground, field: LineField, seeds: Places, is_a: Booleans, *, st
     ends = np.full(2 * m, ENDLESS)
     left = np.arange(2 * m)
     kept: list[tuple[Integers, Floats, Places, Floats, Floats]] = []
+    margin, most = field.margin(look.mean, look.deviator), np.full(2 * m, step / SLOWEST)
     for _ in range(MOST_STEPS):
         velocity = _velocity(field, look, family[left], tangent)
         # the principal curvatures bound how a line turns
         bend = np.abs(look.mean) + np.abs(look.deviator)
         ds = np.minimum(ground.reach(where) / np.linalg.norm(velocity, axis=1), step)
-        ds = np.minimum(ds, MOST_TURN / np.maximum(bend, 1e-300))
+        ds = np.minimum(np.minimum(ds, most), MOST_TURN / np.maximum(bend, 1e-300))
         kept.append((left, way, where, tangent, look.position))
         ahead = ground.settle(_step(ground, field, where, tangent, family[left], ds))
         seen = ground.look(ahead)
-        on = (ground.gap(ahead) >= 0) & (field.margin(seen.mean, seen.deviator) >= 0)
+        before, margin = margin, field.margin(seen.mean, seen.deviator)
+        # a step must not pass over a place without directions, around a flat point for instance
+        fall = np.maximum(before - margin, 1e-300) / ds
+        most = np.maximum(APPROACH * margin / fall, step / SLOWEST)
+        on = (ground.gap(ahead) >= 0) & (margin >= 0)
         length[left], tail[left[~on]] = way, ds[~on]
         on &= way + ds < longest
         tangent = _tangent(field, seen, family[left], tangent)[on]
         left, way, where, look = left[on], (way + ds)[on], ahead[on], seen.take(on)
+        margin, most = margin[on], most[on]
         if not len(left):
             break
     length[left] = way

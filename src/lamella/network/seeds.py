@@ -74,9 +74,8 @@ def choose_guide(ground: Ground, field: LineField, size: float) -> Guide:
             crossing = field.crossing_sine(look.mean, look.deviator)
             return Guide(True, where, length, float(np.median((sines / crossing)[usable])))
     middle = _middle(ground, field, size)
-    lines = trace(
-        ground, field, middle[np.zeros(2, np.int64)], np.array([True, False]), step=size / 50, longest=LONGEST * size
-    )
+    twice, families = middle[np.zeros(2, np.int64)], np.array([True, False])
+    lines = finished(trace(ground, field, twice, families, step=size / 50, longest=LONGEST * size))
     return Guide(False, middle, float(lines.lengths.max()), 1.0)
 
 
