@@ -103,7 +103,7 @@ ABOUT: dict[str, str] = {
     'high, an oculus for a tree. Its net would miss itself by an eighth of a cell. `closing = "adjust"` changes the '
     "sketch by a few centimetres, until the net closes and both hexagonal nodes lie on one principal line.",
     "18_saddle_roof": "A roof of 12 x 8 m, a mesh whose mean curvature varies, kept as it is: its lamellas follow the "
-    "asymptotic lines, where a straight strip stands upright, though they do not cross at 90 degrees. On this hyperbolic "
+    "asymptotic lines, where a straight strip stands upright; they do not cross at 90 degrees. On this hyperbolic "
     "paraboloid they are the straight rulings: the strips twist and do not bend.",
 }
 
