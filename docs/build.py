@@ -59,6 +59,7 @@ VIEWS: dict[str, tuple[tuple[float, float], tuple[int, int]]] = {
     "15_vault": ((-52, 24), (1200, 900)),
     "16_hall": ((-52, 24), (1200, 900)),
     "17_gridshell": ((160, 36), (1200, 1000)),
+    "18_saddle_roof": ((-62, 26), (1200, 900)),
 }
 
 # azimuth and elevation of surfaces without a network
@@ -102,6 +103,9 @@ ABOUT: dict[str, str] = {
     "supports, two arches 5 m high, an oculus for a tree. Its net would miss itself by 0.84 of a cell. `closing = "
     '"adjust"` changes the sketch in plan by up to 0.31 m, until the net closes and both hexagonal nodes lie on one '
     "principal line. The third, low edge is drawn in towards the oculus: bulging outwards it brings a third umbilic.",
+    "18_saddle_roof": "A roof of 12 x 8 m, a mesh whose mean curvature varies, kept as it is: its lamellas follow the "
+    "asymptotic lines, where a straight strip stands upright; they do not cross at 90 degrees. On this hyperbolic "
+    "paraboloid they are the straight rulings: the strips twist and do not bend.",
 }
 
 # tables inside the tables of a boundary, by their keys

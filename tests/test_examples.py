@@ -322,6 +322,21 @@ def _gridshell(results):
     return 2 * abs(apart.real) / cell, results.network.cells
 
 
+def _saddle_roof(results):
+    """Straight lamellas on z = 3 + x^2 / 18 - y^2 / 12; in the middle tg^2 = -K = 1/9 . 1/6 (Beltrami and Enneper)."""
+    x, y, z = results.network.sample_points.T
+    assert np.abs(z - 3 - x**2 / 18 + y**2 / 12).max() < 2e-4
+    pieces = np.split(results.network.sample_points, results.network.sample_offsets[1:-1])
+    for points in pieces:
+        along = (points[-1] - points[0]) / np.linalg.norm(points[-1] - points[0])
+        off = points - points[0]
+        assert np.linalg.norm(off - (off @ along)[:, None] * along, axis=1).max() < 5e-3
+        # rulings of the plan: dy / dx = +-sqrt(12 / 18)
+        assert abs(along[1] / along[0]) == pytest.approx(np.sqrt(12 / 18), rel=5e-3)
+    assert {part.curvature for part in results.parts.parts} == {0.0}
+    return results.summary["lamellas"]["geodesic_torsion_max"], 1 / np.sqrt(54)
+
+
 NUMBERS = {
     "01_unduloid": (_delaunay, 1e-12),
     "02_nodoid": (_nodoid, 1e-9),
@@ -342,6 +357,8 @@ NUMBERS = {
     # a coarse mesh whose vertices are off by a millimetre
     "16_hall": (_hall, 0.005),
     "17_gridshell": (_gridshell, 1e-4),
+    # no node lies just in the middle
+    "18_saddle_roof": (_saddle_roof, 5e-3),
 }
 
 
@@ -370,9 +387,12 @@ WARNINGS = {
     "14_three_columns": [SEAMS, MISSED, LEFT_OUT, BEYOND],
     "16_hall": [LEFT_OUT, SPLIT],
     "17_gridshell": [LEFT_OUT],
+    "18_saddle_roof": [LEFT_OUT, SPLIT],
 }
 # three umbilics of the cushion and six of the canopy lie anywhere: their nets have seams
 OPEN = {"12_cushion", "14_three_columns"}
+# lines from even seeds: no joints, no right angles
+ASKEW = {"18_saddle_roof"}
 
 
 def test_every_example_has_its_number():
@@ -399,7 +419,10 @@ def test_example(name):
     assert ruler["family_sign_errors"] == 0
     assert ruler["node_angle_measured"] == ruler["regular_nodes"] > 200
     assert ruler["normal_curvature_error_p95"] <= 1e-3 * ruler["curvature_scale"]
-    if name not in OPEN:
+    if name in ASKEW:
+        told = figures["network"]["node_angle_deviation_max_deg"]
+        assert ruler["node_angle_deviation_max_deg"] == pytest.approx(told, abs=0.1)
+    elif name not in OPEN:
         assert ruler["node_angle_deviation_max_deg"] <= 0.1
         assert all(joint["closed"] for joint in figures["network"]["joints"])
         assert all(umbilic["node"] or umbilic["boundary"] for umbilic in figures["network"]["umbilics"])

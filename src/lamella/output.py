@@ -104,8 +104,13 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
         figures.append((section, label, format(value * scale if scale != 1 else value, form), unit))
 
     s, n, m, f = (summary[stage] for stage in ("surface", "network", "lamellas", "fabrication"))
-    add("Surface", "Mean curvature H0", s["mean_curvature"], "1/m")
-    add("Surface", "|H − H0|, at check places", s["mean_curvature_deviation_max"], "1/m", form=".2g")
+    if "mean_curvature_range" in s:
+        low, high = s["mean_curvature_range"]
+        add("Surface", "Mean curvature, its mean H0", s["mean_curvature"], "1/m")
+        figures.append(("Surface", "Mean curvature, from and to", f"{low:.4g} … {high:.4g}", "1/m"))
+    else:
+        add("Surface", "Mean curvature H0", s["mean_curvature"], "1/m")
+        add("Surface", "|H − H0|, at check places", s["mean_curvature_deviation_max"], "1/m", form=".2g")
     add("Surface", "Area", s["area"], "m²")
     figures.append(("Surface", "Size", " × ".join(f"{x:.3g}" for x in s["size"]), "m"))
     add("Surface", "Largest k1", s["k1_max"], "1/m")
@@ -133,11 +138,15 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
         add("Network", "Cell edge, largest", n["cell_edge_max"], "m")
         if "adjustment" in n:
             add("Network", "Boundary adjusted by, at most", n["adjustment"]["moved_max"], "mm", 1e3, ".3g")
+        if n.get("unreal_area_share"):
+            add("Network", "Surface without such directions", n["unreal_area_share"], "%", 100, ".3g")
         if n["normal_curvature"] in (None, s["mean_curvature"]):
             add("Network", "Node angle off 90°, largest", n["node_angle_deviation_max_deg"], "°", form=".2g")
         else:
             add("Network", "Node angle, smallest", n["node_angle_min_deg"], "°")
             add("Network", "Node angle, largest", n["node_angle_max_deg"], "°")
+            if "node_angle_mean_deg" in n:
+                add("Network", "Node angle, mean", n["node_angle_mean_deg"], "°")
             add("Network", "Normal curvature of all lamellas", n["normal_curvature"], "1/m")
         if n["kind"] == "lamellas":
             of = "H" if n["normal_curvature"] == s["mean_curvature"] else "it"

@@ -14,6 +14,7 @@ from lamella.errors import InputError
 from lamella.fabrication import Nesting, Parts, make_parts, nest
 from lamella.fabrication.rules import LEAST_END, LEAST_HUB, Rules, clear_hub, edge_scale
 from lamella.network.density import Density, choose_density
+from lamella.network.lines import check_traced, ground_of, is_traced, told_mean_curvature
 from lamella.network.network import Network
 from lamella.network.trace import trace_closed_form
 from lamella.project import Project
@@ -28,6 +29,7 @@ from lamella.surface.umbilic import umbilic_reason
 if TYPE_CHECKING:
     from lamella.network.adjust import Adjusted
     from lamella.network.element_network import ElementNetwork
+    from lamella.network.traced_network import TracedNetwork
 
 STAGES = ("surface", "network", "lamellas", "fabrication", "structure")
 LAST_STAGE = "fabrication"
@@ -152,10 +154,13 @@ def plan(
         _refuse_adjusting(project)
     surface = make_surface(project, folder, progress)
     if depth >= STAGES.index("fabrication"):
-        _check_fabrication(fill_in(project, surface), surface.mean_curvature)
+        _check_fabrication(fill_in(project, surface), _normal_curvature(project, surface))
+    table = project.network
+    if depth and is_traced(surface, table.pattern):
+        check_traced(surface, table.pattern, table.closing)
+        return surface, None
     if not isinstance(surface, ClosedForm):
         return surface, None
-    table = project.network
     return surface, choose_density(surface, cells=table.cells, spacing=table.spacing, pattern=table.pattern)
 
 
@@ -192,7 +197,7 @@ def _planned(
     )
     surface = adjusted.surface
     if depth >= STAGES.index("fabrication"):
-        _check_fabrication(fill_in(project, surface), surface.mean_curvature)
+        _check_fabrication(fill_in(project, surface), _normal_curvature(project, surface))
     return surface, None, adjusted
 
 
@@ -202,7 +207,7 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
     slot_width = 2 * strip.thickness if cut.slot_width is None else cut.slot_width
     end_distance = cut.end_distance
     if end_distance is None:
-        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(surface.mean_curvature, strip.height))
+        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(_normal_curvature(project, surface), strip.height))
     hub_radius = cut.hub_radius
     if hub_radius is None:
         rays = max((2 * (order + 2) for order in surface.singular_orders()), default=0)
@@ -212,7 +217,13 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
     return project.model_copy(update={"fabrication": filled})
 
 
-def _check_fabrication(project: Project, mean_curvature: float) -> None:
+def _normal_curvature(project: Project, surface: Surface[Any]) -> float:
+    """Of the lamellas, 1/m."""
+    wanted = project.network.normal_curvature
+    return surface.mean_curvature if wanted is None else wanted
+
+
+def _check_fabrication(project: Project, curvature: float) -> None:
     """Refuse measures that no part can be made with, by the key in the project."""
     strip, cut = project.lamella, project.fabrication
     rules = Rules(
@@ -220,7 +231,7 @@ def _check_fabrication(project: Project, mean_curvature: float) -> None:
         offset=strip.offset,
         height=strip.height,
         thickness=strip.thickness,
-        curvature=float(mean_curvature),
+        curvature=float(curvature),
         density=project.material().density,
         **cut.model_dump(),
     )
@@ -271,16 +282,19 @@ def compute(
     network = lamellas = parts = nesting = None
     if depth >= STAGES.index("network"):
         table = project.network
-        if isinstance(surface, ClosedForm):
-            assert density
+        if density:
+            assert isinstance(surface, ClosedForm)
             clock.start(f"network: {density.requested}, about {density.estimated_nodes:,} nodes")
             network = trace_closed_form(surface, density, minimum_length=table.minimum_length)
             figures["network"] = f = summary.network_summary(network, density.requested)
         else:
-            clock.start("network: umbilics, isothermic coordinates, lamellas")
-            woven = _weave(surface, project, adjusted, progress)
+            traced = is_traced(surface, table.pattern)
+            clock.start(
+                f"network: {'lines from even seeds' if traced else 'umbilics, isothermic coordinates, lamellas'}"
+            )
+            woven = _trace(surface, project, progress) if traced else _weave(surface, project, adjusted, progress)
             network = woven.network
-            figures["network"] = f = summary.network_summary(network, woven.lattice.requested) | woven.describe()
+            figures["network"] = f = summary.network_summary(network, woven.requested) | woven.describe()
             if adjusted:
                 figures["network"]["adjustment"] = adjusted.figures
             warnings += woven.warnings()
@@ -335,16 +349,32 @@ def _weave(surface: Surface[Any], project: Project, adjusted: Adjusted | None, p
     )
 
 
+def _trace(surface: Surface[Any], project: Project, progress: Progress) -> TracedNetwork:
+    """The network of lines that follow from no lattice."""
+    from lamella.network.traced_network import traced_network
+
+    table = project.network
+    return traced_network(
+        ground_of(surface),
+        table.pattern,
+        mean_curvature=told_mean_curvature(surface, table.pattern),
+        cells=table.cells,
+        spacing=table.spacing,
+        minimum_length=table.minimum_length,
+        progress=progress,
+    )
+
+
 def _last_of(project: Project, until: str | None) -> int:
-    """Number of the last stage; of principal lines, and of lamellas that cross askew, that is the network."""
+    """Number of the last stage; of principal lines that is the network."""
     depth, last = _depth(LAST_STAGE if until is None else until), STAGES.index("network")
     if not project.network.pattern.no_strips or depth <= last:
         return depth
     if until is not None:
         raise InputError(
-            f"stage {until!r} needs a net of lamellas at right angles: {project.network.pattern.no_strips}",
-            'write --until network, kind = "lamellas" and no normal_curvature',
-            "network.kind" if project.network.kind == "principal" else "network.normal_curvature",
+            f"stage {until!r} needs a net of lamellas: {project.network.pattern.no_strips}",
+            'write --until network, or kind = "lamellas"',
+            "network.kind",
         )
     return last
 

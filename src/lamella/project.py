@@ -85,7 +85,8 @@ class NetworkTable(Table):
     )
     normal_curvature: float | None = number(
         "Normal curvature of all lamellas where it is not to be H: 0 for asymptotic lines. They cross at other angles "
-        "than 90 deg then. On closed forms of revolution; the run ends with the network.",
+        "than 90 deg then, and where the surface has no such direction there are none. On closed forms of revolution "
+        "the net closes around the axis; elsewhere its lines start from even seeds.",
         "1/m",
         ge=-1e6,
         le=1e6,

@@ -287,7 +287,7 @@ class FormFoundTable(Table):
 
 
 class MeshTable(Table):
-    """The surface of constant mean curvature that a mesh means: its border kept, its mean curvature fitted or given."""
+    """The surface of constant mean curvature that a mesh means, its border kept; or the mesh's own surface."""
 
     kind: Literal["mesh"]
     file: Annotated[str, file_name(MESH_FILES)] = Field(
@@ -300,8 +300,9 @@ class MeshTable(Table):
         description="Unit of the file; when not given m, of a .3dm file the one in its header.",
         examples=["mm"],
     )
-    mean_curvature: Literal["fit"] | float = number(
-        'Mean curvature with respect to the mesh\'s normal, or "fit": that of the surface nearest to the mesh.',
+    mean_curvature: Literal["fit", "varying"] | float = number(
+        'Mean curvature with respect to the mesh\'s normal, or "fit": that of the surface nearest to the mesh. '
+        '"varying" keeps the mesh\'s own surface, smooth through its vertices, for nets of a given normal_curvature.',
         "1/m",
         default="fit",
         union_mode="left_to_right",
@@ -324,10 +325,12 @@ class MeshTable(Table):
     @field_validator("mean_curvature", mode="before")
     @classmethod
     def _fit_or_number(cls, value: Any) -> Any:
-        if value == "fit":
+        if value in ("fit", "varying"):
             return value
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise Refusal(f'{shown(value)} is not "fit" or a number', 'write "fit", or a number in 1/m')
+            raise Refusal(
+                f'{shown(value)} is not "fit", "varying" or a number', 'write "fit", "varying" or a number in 1/m'
+            )
         if not abs(value) <= 1e6:
             raise Refusal(f"{shown(value)} 1/m is out of range: has to be from -1e6 to 1e6 1/m", "check the unit")
         return float(value)

@@ -78,9 +78,7 @@ def network_summary(network: Network, requested: str) -> dict[str, Any]:
     """The network's figures."""
     angles = network.node_angles
     deviation = np.abs(90 - angles)
-    wanted = network.pattern.normal_curvature
-    if wanted is None:
-        wanted = network.mean_curvature
+    wanted = network.normal_curvature
     edges = network.cell_edges
     a, b = network.node_degrees()
     rays = a + b
@@ -141,7 +139,7 @@ def lamella_summary(network: Network, lamellas: Lamellas, name: str, material: M
     quads = np.ones(len(lamellas.planarity), bool)
     quads[network.sample_offsets[1:] - 1] = False
     deviation = development_deviation(
-        network.sample_points, network.sample_normals, network.sample_offsets, network.mean_curvature
+        network.sample_points, network.sample_normals, network.sample_offsets, network.normal_curvature
     )
     return {
         "total_length": float(network.lengths.sum()),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from lamella.network.network import BOUNDARY, REGULAR, SINGULAR, Network
+from lamella.network.pattern import LAMELLAS
 from lamella.strip.lamellas import Lamellas, Section
 from lamella.surface.darboux import Darboux
 
@@ -87,7 +88,7 @@ def build(strips, curvature=0.0, *, layers=2, height=0.1, thickness=0.0015, offs
         "stop_arclengths": np.concatenate(arcs),
     }
     # what else a network tells of its making no part asks for
-    network = Known(**{field.name: known.get(field.name) for field in fields(Network)})
+    network = Known(**{field.name: known.get(field.name) for field in fields(Network)} | {"pattern": LAMELLAS})
     lamellas = Lamellas(
         section=Section(height, thickness, layers, offset),
         bending=1e6 * ramp,

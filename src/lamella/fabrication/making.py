@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.fabrication.askew import Askew
 from lamella.fabrication.collisions import end_collisions
 from lamella.fabrication.flat import outline, outline_area
 from lamella.fabrication.notes import Notes
@@ -68,7 +70,7 @@ def make_parts(
     section = lamellas.section
     slot_width = 2 * section.thickness if slot_width is None else slot_width
     if end_distance is None:
-        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(network.mean_curvature, section.height))
+        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(network.normal_curvature, section.height))
     degree_a, degree_b = network.node_degrees()
     singular = network.node_kinds == SINGULAR
     crossing = (degree_a > 0) & (degree_b > 0) & ~singular
@@ -83,7 +85,7 @@ def make_parts(
         offset=section.offset,
         height=section.height,
         thickness=section.thickness,
-        curvature=float(network.mean_curvature),
+        curvature=float(network.normal_curvature),
         density=density,
         end_distance=end_distance,
         rim_overhang=rim_overhang,
@@ -102,8 +104,13 @@ def make_parts(
     parts: list[Part] = []
     before, after = np.full((2, len(network.ids)), -np.inf)
     # layers that are alike are one part, cut as often as there are layers
-    own = section.layer_lengths == "own" and section.layers > 1
-    layers = list(enumerate(lamellas.layer_stations)) if own else [(-1, lamellas.stop_stations)]
+    askew = Askew.of(network)
+    own = (section.layer_lengths == "own" or not askew.right) and section.layers > 1
+    layers = [(-1, lamellas.stop_stations)]
+    if own:
+        shifts = [np.where(crossing[network.stop_nodes], askew.shift(d), 0.0) for d in section.layer_offsets.tolist()]
+        layers = list(enumerate(lamellas.layer_stations + np.stack(shifts)))
+    slots = Slots(askew.stretch, askew.width(slot_width, section.thickness))
     for index in range(len(network.ids)):
         stops = slice(int(network.stop_offsets[index]), int(network.stop_offsets[index + 1]))
         nodes = network.stop_nodes[stops]
@@ -117,6 +124,7 @@ def make_parts(
                     bool(network.closed[index]),
                     stations,
                     crossing[nodes],
+                    slots.of(stops),
                     singular[nodes],
                     rules,
                     longest,
@@ -140,6 +148,25 @@ def _first_cell(network: Network, lamellas: Lamellas, crossing: NDArray[np.bool_
     return float(cell[(singular[:-1] & slots[1:]) | (slots[:-1] & singular[1:])].min(initial=np.inf))
 
 
+class Slots(NamedTuple):
+    """The slots at stops.
+
+    Attributes
+    ----------
+    stretch : (q,)
+        Their distances over those of the layers that go through them.
+    width : (q,)
+        m.
+    """
+
+    stretch: Floats
+    width: Floats
+
+    def of(self, stops: slice | NDArray[np.bool_]) -> Slots:
+        """Those at some stops."""
+        return Slots(self.stretch[stops], self.width[stops])
+
+
 def _lamella_parts(
     name: str,
     index: int,
@@ -147,6 +174,7 @@ def _lamella_parts(
     closed: bool,
     stations: Floats,
     crossing: NDArray[np.bool_],
+    slots: Slots,
     hub: NDArray[np.bool_],
     rules: Rules,
     longest: float,
@@ -157,12 +185,13 @@ def _lamella_parts(
         # the ring opens in the middle of its last cell, so that no slot lies at the cut
         half = 0.5 * float(stations[-1] - stations[-2])
         start, end = float(stations[0]) - half, float(stations[-1]) - half
-        stations, crossing = stations[:-1], crossing[:-1]
+        stations, crossing, slots = stations[:-1], crossing[:-1], slots.of(slice(-1))
     else:
         # little beyond the rim, lest strips meet their neighbours out there, unless the last slot asks for more
-        slots = stations[crossing]
-        first = np.min(np.append(slots + rules.spread[0] - rules.end_distance, stations[0] - rules.rim_overhang))
-        last = np.max(np.append(slots + rules.spread[-1] + rules.end_distance, stations[-1] + rules.rim_overhang))
+        at, reach = stations[crossing], slots.stretch[crossing] * rules.spread[-1]
+        reach = reach + np.maximum(rules.end_distance, 1.5 * slots.width[crossing] / rules.edge_scale)
+        first = np.min(np.append(at - reach, stations[0] - rules.rim_overhang))
+        last = np.max(np.append(at + reach, stations[-1] + rules.rim_overhang))
         start = float(stations[0] + rules.hub_radius if hub[0] else first)
         end = float(stations[-1] - rules.hub_radius if hub[-1] else last)
     if end - start <= rules.slot_width:
@@ -184,6 +213,7 @@ def _lamella_parts(
             high,
             stations[inside],
             crossing[inside],
+            slots.of(inside),
             rules,
             notes,
         )
@@ -222,22 +252,24 @@ def _part(
     end: float,
     nodes: Floats,
     crossing: NDArray[np.bool_],
+    wanted: Slots,
     rules: Rules,
     notes: Notes,
 ) -> Part:
-    """One part with its slots, or without where they would come too close."""
-    slots = np.sort((nodes[crossing, None] + rules.spread).ravel())
+    """One part with its slots, all as wide as its widest one, or without where they would come too close."""
+    slots = np.sort((nodes[crossing, None] + wanted.stretch[crossing, None] * rules.spread).ravel())
+    slot_width = float(wanted.width[crossing].max(initial=rules.slot_width))
     edge = 0.5 * rules.height if family == "A" else -0.5 * rules.height
     scale = min(1.0, 1.0 - rules.curvature * edge)
     left_out = 0
     if len(slots):
         between = scale * np.diff(slots)
         outside = scale * min(slots[0] - start, end - slots[-1])
-        needed = 2 * rules.slot_width - ROUNDING
+        needed = 2 * slot_width - ROUNDING
         if outside < 0.75 * needed or (len(between) and between.min() < needed):
             left_out, slots = len(slots), slots[:0]
             notes.unslotted.append((name, float(np.diff(nodes).min()) if len(nodes) > 1 else np.inf))
-    vertices = outline(start, end, rules.height, rules.curvature, slots, rules.slot_width, family == "A")
+    vertices = outline(start, end, rules.height, rules.curvature, slots, slot_width, family == "A")
     area = outline_area(vertices)
     return Part(
         id=name,
@@ -251,7 +283,7 @@ def _part(
         end=end,
         nodes=nodes,
         slots=slots,
-        slot_width=rules.slot_width,
+        slot_width=slot_width,
         slots_left_out=left_out,
         outline=vertices,
         area=area,

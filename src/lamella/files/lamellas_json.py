@@ -49,7 +49,7 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
         "name": name,
         "units": {"length": "m", "curvature": "1/m", "stress": "Pa"},
         "section": asdict(lamellas.section),
-        "development": {"curvature": network.mean_curvature},
+        "development": {"curvature": network.normal_curvature},
         "lamellas": [
             {
                 "id": lamella,

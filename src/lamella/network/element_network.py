@@ -15,6 +15,7 @@ from lamella.network.element_lattice import Lattice, choose_lattice
 from lamella.network.gluing import FoldedError, integrate, with_shifts
 from lamella.network.holonomy import holonomies
 from lamella.network.isothermic import Isothermic, Transition
+from lamella.network.lines import is_traced
 from lamella.network.net_mesh import NetMesh, make_net_mesh
 from lamella.network.network import SINGULAR, Network, Period
 from lamella.network.pattern import LAMELLAS, Pattern
@@ -68,6 +69,11 @@ class ElementNetwork:
     lattice: Lattice
     residual: float
     joints: tuple[Joint, ...]
+
+    @property
+    def requested(self) -> str:
+        """What was asked for."""
+        return self.lattice.requested
 
     def describe(self) -> dict[str, Any]:
         """Further figures of the network for summary.json."""
@@ -141,6 +147,7 @@ def element_network(
     Parameters
     ----------
     surface : ElementSurface
+        Of constant mean curvature.
     cells, spacing, minimum_length
         See `lamella.network.make.make_network`.
     closing : "open" or "round"
@@ -149,7 +156,7 @@ def element_network(
     step : float, optional
         Spacing l0 of the lattice, sqrt(m), instead of the one that follows from cells or spacing.
     pattern : Pattern
-        Which curves of the isothermic lattice the net has.
+        Which curves of the isothermic lattice the net has (see `lamella.network.lines.is_traced` for others).
     loop_names : tuple of str
         Of the boundary loops.
     progress : callable
@@ -159,13 +166,7 @@ def element_network(
     InputError
     """
     refuse_umbilic(surface)
-    if pattern.normal_curvature not in (None, surface.mean_curvature):
-        raise InputError(
-            f"lines of normal curvature {pattern.normal_curvature:g} 1/m, other than H = {surface.mean_curvature:.6g} "
-            "1/m, are offered on closed forms of revolution",
-            "leave normal_curvature out",
-            "network.normal_curvature",
-        )
+    assert not is_traced(surface, pattern)
     umbilics = surface.umbilics
     told = ", ".join(f"order {m}" for m in umbilics.orders.tolist())
     progress(f"  {len(umbilics.orders)} umbilics" + (f" ({told})" if told else ""))

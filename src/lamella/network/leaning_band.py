@@ -48,13 +48,8 @@ def check_normal_curvature(surface: ClosedForm, wanted: float) -> None:
     key = "network.normal_curvature"
     if wanted == surface.mean_curvature:
         return
-    if not isinstance(surface, SurfaceOfRevolution):
-        raise InputError(
-            f"lines of normal curvature {wanted:g} 1/m, other than H = {surface.mean_curvature:.6g} 1/m, are offered "
-            "on unduloid, nodoid, catenoid and cylinder",
-            "leave normal_curvature out, or choose one of these surfaces",
-            key,
-        )
+    # on other surfaces lines are traced (`lamella.network.lines`)
+    assert isinstance(surface, SurfaceOfRevolution)
     u = np.linspace(surface.outline.start, surface.outline.end, 2001)
     # the principal curvatures are H -+ |T| / r^2
     half = abs(surface.flux) / float(surface.radius_at(u).max()) ** 2

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from lamella.network.density import choose_density
+from lamella.network.lines import check_traced, ground_of, is_traced
 from lamella.network.network import Network
 from lamella.network.pattern import NetKind, Pattern
 from lamella.network.trace import trace_closed_form
+from lamella.network.traced_network import traced_network
 from lamella.surface.closed_form import ClosedForm
 
 
@@ -36,12 +38,24 @@ def make_network(
     every : (int, int)
         Of the net of that density one in so many A and B curves is kept.
     normal_curvature : float, optional
-        Of all lamellas, 1/m, where it is not to be H: 0 for asymptotic lines. On surfaces of revolution.
+        Of all lamellas, 1/m, where it is not to be H: 0 for asymptotic lines. Where the surface is none of revolution
+        the lines start from even seeds, and a run says where there are none.
 
     Raises
     ------
     InputError
         See `lamella.network.density.choose_density`; or no two lamellas cross.
     """
-    density = choose_density(surface, cells=cells, spacing=spacing, pattern=Pattern(kind, every, normal_curvature))
+    pattern = Pattern(kind, every, normal_curvature)
+    if is_traced(surface, pattern):
+        check_traced(surface, pattern)
+        return traced_network(
+            ground_of(surface),
+            pattern,
+            mean_curvature=surface.mean_curvature,
+            cells=cells,
+            spacing=spacing,
+            minimum_length=minimum_length,
+        ).network
+    density = choose_density(surface, cells=cells, spacing=spacing, pattern=pattern)
     return trace_closed_form(surface, density, minimum_length=minimum_length)

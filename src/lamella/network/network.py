@@ -36,12 +36,13 @@ class Network:
     Attributes
     ----------
     mean_curvature : float
-        H of the surface, 1/m, for the normals given here.
+        H of the surface, 1/m, for the normals given here; where it varies, the normal curvature that was asked for, in
+        a principal net the mean of H.
     step : float
         l0, the distance of neighbouring lamellas in u + v and in u - v, or of principal lines in u and in v, before
-        any are left out, sqrt(m).
+        any are left out, sqrt(m); of lines from seeds, the distance of these along their first guide, m.
     cells : int
-        Cells around the axis, or along the longest principal line.
+        Cells around the axis, or along the longest principal line; of lines from seeds, seeds along the first guide.
     periods : tuple of Period
         One for each hole.
     left_out : int
@@ -110,6 +111,12 @@ class Network:
     face_nodes: Integers
     faces_left_out: Integers
     pattern: Pattern = LAMELLAS
+
+    @property
+    def normal_curvature(self) -> float:
+        """kn of the lamellas, 1/m: H where no other was asked for."""
+        wanted = self.pattern.normal_curvature
+        return self.mean_curvature if wanted is None else wanted
 
     @property
     def lengths(self) -> Floats:

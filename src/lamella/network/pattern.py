@@ -59,11 +59,6 @@ class Pattern:
                 "a strip normal to the surface along a principal line is developable, but unrolls neither straight nor "
                 "with one radius"
             )
-        if self.normal_curvature is not None:
-            return (
-                "lamellas of a given normal curvature cross at other angles than 90 deg, and joints for these are not "
-                "offered yet (where normal_curvature is H it can be left out)"
-            )
         return ""
 
     @property

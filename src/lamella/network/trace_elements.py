@@ -23,6 +23,7 @@ from lamella.network.level_lines import (
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network, Period
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
 from lamella.network.tracks import A, B, Tracks, make_tracks, rim_tips, singular_ends
+from lamella.network.turning import turning
 from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import element_rims
@@ -30,8 +31,6 @@ from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
 
-# samples to either side over which a lamella turns by its geodesic curvature: the kinks at elements average out
-WIDE = 3
 # samples a segment, however short: next to the rim curvatures are read from the last of them
 FEWEST = 3
 
@@ -268,12 +267,9 @@ def _darboux(shape: Floats, tangents: Floats, normals: Floats, arclengths: Float
     x, y, z = tangents.T
     # S t
     image = np.stack([xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z], 1)
-    index = np.arange(len(tangents))
-    count = np.diff(offsets)
-    before = np.maximum(index - WIDE, np.repeat(offsets[:-1], count))
-    after = np.minimum(index + WIDE, np.repeat(offsets[1:] - 1, count))
-    turning = ((tangents[after] - tangents[before]) * sideways).sum(1) / (arclengths[after] - arclengths[before])
-    return Darboux((image * tangents).sum(1), turning, (image * sideways).sum(1))
+    return Darboux(
+        (image * tangents).sum(1), turning(tangents, sideways, arclengths, offsets), (image * sideways).sum(1)
+    )
 
 
 def _rims(

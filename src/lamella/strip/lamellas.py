@@ -154,17 +154,18 @@ def make_lamellas(network: Network, section: Section, material: Material) -> Lam
         raise InputError(
             f"there are no strips for this net: {network.pattern.no_strips}", "make a net of lamellas", "network"
         )
-    limit = 2 / abs(network.mean_curvature) if network.mean_curvature else np.inf
+    curvature = network.normal_curvature
+    limit = 2 / abs(curvature) if curvature else np.inf
     if section.height >= limit:
         raise InputError(
-            f"height = {section.height:g} m: strips of radius 1/|H| = {limit / 2:.4g} m cannot be "
+            f"height = {section.height:g} m: strips of radius {limit / 2:.4g} m cannot be "
             f"{limit:.4g} m high or more, their inner edge would reach the centre",
             "lower lamella.height, or check that the surface is in metres",
             "lamella.height",
         )
     kn, kg, tg = network.sample_darboux
     held = section.marks == "arc-length"
-    s = stresses(material, section.height, section.thickness, kn - network.mean_curvature, kg, tg, held)
+    s = stresses(material, section.height, section.thickness, kn - curvature, kg, tg, held)
 
     low, high = twisted_strip(network, section.height)
     planarity = np.zeros(len(kn))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.sampling import sampled_places
 from lamella.surface.element.umbilics import Umbilics, find_umbilics
 from lamella.surface.mesh import SurfaceMesh
-from lamella.surface.points import Floats, SurfacePoints
+from lamella.surface.points import Complexes, Floats, SurfacePoints
 from lamella.surface.umbilic import umbilic_reason
 
 Integers = NDArray[np.int64]
@@ -68,6 +68,9 @@ class ElementSurface:
     figures: dict[str, Any] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
+    constant: ClassVar[bool] = True
+    """Whether the mean curvature is constant."""
+
     @cached_property
     def _corners(self) -> Floats:
         return self.nodes[self.connectivity.elements]
@@ -103,7 +106,7 @@ class ElementSurface:
         n_v = along[:, 0, 1, None] * n_x + along[:, 1, 1, None] * n_y
         s_uu, s_vv = -(n_u * there.e_u).sum(1), -(n_v * there.e_v).sum(1)
         s_uv = -((n_u * there.e_v).sum(1) + (n_v * there.e_u).sum(1)) / 2
-        h, half = self.mean_curvature, ((s_uu - s_vv) / 2)[:, None]
+        h, half = self._mean(s_uu, s_vv)[:, None], ((s_uu - s_vv) / 2)[:, None]
         uu, vv = (e[:, _ROWS] * e[:, _COLUMNS] for e in (there.e_u, there.e_v))
         uv = there.e_u[:, _ROWS] * there.e_v[:, _COLUMNS] + there.e_v[:, _ROWS] * there.e_u[:, _COLUMNS]
         tensor = (h + half) * uu + (h - half) * vv + s_uv[:, None] * uv
@@ -129,22 +132,29 @@ class ElementSurface:
         basis = self.connectivity.basis
         return basis.basis(local, 1, 0), basis.basis(local, 0, 1)
 
+    def shape_at(self, where: Places) -> tuple[ElementFrames, Floats, Complexes]:
+        """Frames, mean curvature H (n,) and deviator (n,), 1/m, at n places, see `SurfacePoints`."""
+        there = self.frames(where)
+        smooth = self._smooth_space.basis.values(self._smoothed[:, :6], where.element, where.local).T
+        uu, vv, uv = (_form(smooth, a, b) for a, b in ((there.e_u,) * 2, (there.e_v,) * 2, (there.e_u, there.e_v)))
+        return there, self._mean(uu, vv), (uu - vv) / 2 - 1j * uv
+
+    def _mean(self, uu: Floats, vv: Floats) -> Floats:
+        """H from the shape operator's entries: the surface's own."""
+        return np.full(uu.shape, float(self.mean_curvature))
+
     def at(self, where: Places) -> SurfacePoints:
         """Everything about n places, in one evaluation."""
-        there = self.frames(where)
-        basis = self._smooth_space.basis
-        smooth = basis.values(self._smoothed[:, :6], where.element, where.local).T
-        uu, vv, uv = (_form(smooth, a, b) for a, b in ((there.e_u,) * 2, (there.e_v,) * 2, (there.e_u, there.e_v)))
-        _, by_x, by_y = basis.jet(self._smoothed[:, 6:], where.element, where.local)[:, 0]
+        there, mean, deviator = self.shape_at(where)
+        _, by_x, by_y = self._smooth_space.basis.jet(self._smoothed[:, 6:], where.element, where.local)[:, 0]
         along = there.to_local[:, 0] * by_x[:, None] + there.to_local[:, 1] * by_y[:, None]
-        deviator = (uu - vv) / 2 - 1j * uv
         square = np.maximum(np.abs(deviator) ** 2, np.finfo(float).tiny)
         return SurfacePoints(
             there.position,
             there.e_u,
             there.e_v,
             there.normal,
-            np.full(len(where), float(self.mean_curvature)),
+            mean,
             deviator,
             (along[:, 0] + 1j * along[:, 1]) / (4 * square),
         )

@@ -5,42 +5,33 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from lamella.errors import InputError
-from lamella.surface.boundary import Loop, check_loops, make_loop
-from lamella.surface.boundary.joining import join_in_order
-from lamella.surface.boundary.splines import closed_spline, open_spline
+from lamella.surface.boundary import Loop, check_loops
 from lamella.surface.element.closest import ClosestPoint
-from lamella.surface.element.remesh import TriangleMesh
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.film import Film, harmonic_over_itself
 from lamella.surface.found.find import adapted, notes_on
 from lamella.surface.found.meshing import on_surface
 from lamella.surface.found.newton import Equilibrium, NoFilmError, find_equilibrium
-from lamella.surface.imported.border import BorderCurve, border_curves
+from lamella.surface.imported.as_film import as_film, border_loops
 from lamella.surface.imported.clean import CleanMesh, clean
 from lamella.surface.imported.edges import face_normals, find_edges, vertex_areas
 from lamella.surface.imported.fit import Fit, fit_mean_curvature
+from lamella.surface.imported.keep import kept_surface
 from lamella.surface.imported.nearest import nearest_of_family
 from lamella.surface.imported.raw_mesh import Floats
 from lamella.surface.imported.read_mesh import read_mesh
-from lamella.wording import loop_names
 
 if TYPE_CHECKING:
     from lamella.project import MeshTable
 
 Progress = Callable[[str], None]
 
-# a border of more vertices is thinned: noise between neighbours would make its curve rough
-MOST_BORDER_POINTS = 240
-# samples of a border's curve between two of its vertices
-SAMPLES = 24
 # of the curvature scale: an H below it, and below what a mesh can tell, is that of a minimal surface; above the other
 # the user is warned of it
 MINIMAL, TOLD = 2e-3, 1e-4
@@ -80,6 +71,8 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = _silen
     progress(f"  {raw.source}: {len(mesh.points):,} vertices, {len(mesh.faces):,} triangles")
     loops, notes = border_loops(mesh, table.corner_angle)
     check_loops(loops)
+    if table.mean_curvature == "varying":
+        return kept_surface(mesh, loops, table, raw.source, notes, progress)
     fit = fit_mean_curvature(mesh.points, mesh.faces)
     given = None if table.mean_curvature == "fit" else float(table.mean_curvature)
     progress(
@@ -249,7 +242,7 @@ def _without_curvature(here: Equilibrium, scale: float, progress: Progress) -> E
 def _film(mesh: CleanMesh, loops: tuple[Loop, ...], order: int, mean_curvature: float) -> Film:
     """Coarse elements on a mesh, drawn towards that H."""
     try:
-        return harmonic_over_itself(on_surface(_as_film(mesh, loops), order), mean_curvature)
+        return harmonic_over_itself(on_surface(as_film(mesh, loops), order), mean_curvature)
     except NoFilmError as error:
         raise InputError(
             f"no elements could be laid on the mesh: {error}",
@@ -275,53 +268,3 @@ def _near(film: Film, mean_curvature: float, free: bool, progress: Progress) -> 
         else "give mean_curvature, or mend the mesh",
         "surface.mean_curvature",
     )
-
-
-def border_loops(mesh: CleanMesh, corner_angle: float) -> tuple[tuple[Loop, ...], tuple[str, ...]]:
-    """Smooth loops through the borders of a mesh, with their corners, and what was done to them."""
-    curves = border_curves(mesh, corner_angle, MOST_BORDER_POINTS)
-    loops = tuple(_loop(curve, name) for curve, name in zip(curves, loop_names(len(mesh.borders)), strict=True))
-    return loops, tuple(note for curve in curves for note in curve.notes)
-
-
-def _loop(curve: BorderCurve, name: str) -> Loop:
-    where = "surface.file"
-    corners = np.flatnonzero(curve.corner)
-    if not len(corners):
-        return make_loop(name, closed_spline(curve.points, where=where), where=where)
-    points = np.roll(curve.points, -corners[0], axis=0)
-    cuts = np.append(corners - corners[0], len(points))
-    closed = np.vstack([points, points[:1]])
-    parts = [open_spline(closed[a : b + 1], where=where) for a, b in pairwise(cuts)]
-    names = [f"{name}, side {k + 1}" for k in range(len(parts))]
-    return make_loop(name, join_in_order(parts, names, where), where=where)
-
-
-def _as_film(mesh: CleanMesh, loops: tuple[Loop, ...]) -> Film:
-    """The mesh's triangles as flat elements, its borders on their loops."""
-    of_loop = np.full(len(mesh.points), -1)
-    parameter = np.full(len(mesh.points), np.nan)
-    for index, (border, loop) in enumerate(zip(mesh.borders, loops, strict=True)):
-        of_loop[border] = index
-        parameter[border] = _parameters(mesh.points[border], loop)
-    return Film.on_mesh(TriangleMesh(mesh.points, mesh.faces, of_loop, parameter), loops, 1)
-
-
-def _parameters(points: Floats, loop: Loop) -> Floats:
-    """Increasing parameters of border vertices on their loop."""
-    fine = np.arange(SAMPLES * len(points)) / (SAMPLES * len(points))
-    _, near = cKDTree(loop.at(fine)).query(points)
-    t = np.unwrap(fine[near], period=1.0)
-    if t[-1] < t[0]:
-        raise InputError("a border runs against its own curve", "mend the mesh's border", "surface.file")
-    # where the curve passes near itself, or was smoothed, a vertex may be out of order: it goes between its neighbours
-    step = np.linalg.norm(np.roll(points, -1, 0) - points, axis=1)
-    guess = t[0] + np.concatenate([[0], np.cumsum(step)[:-1]]) / step.sum()
-    off = np.abs(t - guess - np.round(t - guess)) > 0.05
-    t = np.where(off, guess, guess + (t - guess) - np.round(t - guess))
-    ahead = np.maximum.accumulate(t)
-    good = t >= ahead
-    index = np.arange(len(t))
-    good[1:] &= np.diff(ahead) > 0
-    t = np.interp(index, np.append(index[good], len(t)), np.append(t[good], t[0] + 1))
-    return np.asarray(t % 1)
