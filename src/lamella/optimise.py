@@ -228,15 +228,15 @@ def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell)
     )
     figures = strips.figures()
     remarks = [
-        f"{len(long)} strips; planarity score median {figures['median before']:.2g} -> {figures['median after']:.2g}, "
-        f"share of 0.005 and above {figures['red before']:.0%} -> {figures['red after']:.0%}"
+        f"{len(long)} strips; planarity score median {figures['median_before']:.2g} -> {figures['median_after']:.2g}, "
+        f"share of 0.005 and above {figures['red_before']:.0%} -> {figures['red_after']:.0%}"
     ]
     if len(long) < len(lines):
         remarks.append(f"{counted(len(lines) - len(long), 'polyline')} of fewer than four vertices left out")
-    if figures["not developable"]:
+    if figures["not_developable"]:
         remarks.append(
-            f"no developable strip of this height exists at {figures['not developable']:.0%} of the vertices: rulings "
-            f"jump there, by up to {figures['largest turn']:.3g} degrees"
+            f"no developable strip of this height exists at {figures['not_developable']:.0%} of the vertices: rulings "
+            f"jump there, by up to {figures['largest_turn']:.3g} degrees"
         )
     mesh, strip = strip_mesh(strips.lower, strips.upper)
     told = {

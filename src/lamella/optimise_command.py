@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from lamella.projection.report import Solution
     from lamella.projection.unknowns import Floats
 
-SCHEMA = "lamella/optimise/1"
 DRIVEN = "#d60000"
 NOT_SOLVED = 1
 """Exit code of a result that is written although not all conditions hold."""
@@ -48,7 +47,8 @@ examples:
   lamella optimise net.obj --unit mm --as planar --height 0.1 --surface vault.toml --out strips.ply
 
 Radius and height are metres whatever the unit of the file; FILE has the unit of MESH. Vertices are counted
-from 0. Formats in and out: .obj, .ply (with figures and colours), .3dm, .json of COMPAS (with figures).
+from 0. Formats in and out: .obj, .ply, .3dm, .json of COMPAS. All carry figures of vertices and faces: as comments,
+as properties with colours, as user text with colours, as attributes.
 
 exit codes: 0 all conditions hold; 1 written, but not all conditions hold (the message says which; FIGURES has
 the remainder); 2 refused, nothing written."""
@@ -70,7 +70,7 @@ def add_optimise(commands: Any) -> None:
     parser.add_argument(
         "--colour",
         default=None,
-        help="of .ply and picture: planarity, sphericity, radius or angle (default: sphericity; planarity for planar)",
+        help="of .ply, .3dm and picture: planarity, sphericity, radius or angle (default: sphericity; planarity for planar)",
     )
     parser.add_argument(
         "--unit", help="unit of MESH: mm, cm, dm, m, km, in, ft or yd (default: m; a .3dm says its own)"
@@ -205,6 +205,7 @@ def _files(
     arguments: argparse.Namespace, given: QuadFile, result: Optimised, figures: MeshFigures
 ) -> dict[Path, bytes]:
     """Bytes of all files but the picture."""
+    from lamella.files.optimise_json import optimise_bytes
     from lamella.files.quad_mesh_files import quad_mesh_bytes
     from lamella.projection.mesh_figures import mesh_figures
     from lamella.view.net_colours import net_colours
@@ -219,42 +220,9 @@ def _files(
         target = out.with_name(f"{out.stem}-lamellas{out.suffix}")
         files[target] = quad_mesh_bytes(out.suffix, result.lamellas, own, **common)
     if arguments.json is not None:
-        files[arguments.json] = _figures(arguments, given, result, figures)
+        about = optimise_bytes(result, figures, given, problem=arguments.problem, file=arguments.mesh.name)
+        files[arguments.json] = about
     return files
-
-
-def _figures(arguments: argparse.Namespace, given: QuadFile, result: Optimised, figures: MeshFigures) -> bytes:
-    import orjson
-
-    from lamella.optimise import about_mesh
-    from lamella.projection.mesh_figures import mesh_figures
-
-    def named(solution: Solution) -> dict[str, Any]:
-        keys = ("number", "residual", "largest", "drift", "objective", "step", "length", "damping", "seconds")
-        return {
-            "verdict": solution.verdict,
-            "unmet": solution.unmet,
-            "iterations": [{key: getattr(state, key) for key in keys} for state in solution.iterations],
-        }
-
-    content: dict[str, Any] = {
-        "schema": SCHEMA,
-        "version": __version__,
-        "problem": arguments.problem,
-        "units": "m, degrees, 1/m; residuals, steps and drift in mean edges or radians; null: not defined there",
-        "given": {"file": arguments.mesh.name, "metres_per_unit": given.metres, **about_mesh(given.mesh)},
-        "solved": result.solved,
-        "result": result.told,
-        "remarks": result.remarks,
-        "solutions": [named(solution) for solution in result.solutions],
-        "before": mesh_figures(given.mesh).summary(),
-        "after": figures.summary(),
-        "vertices": {key: values.tolist() for key, values in figures.vertices.items()},
-        "faces": {key: values.tolist() for key, values in figures.faces.items()},
-    }
-    if result.lamellas is not None:
-        content["lamellas"] = mesh_figures(result.lamellas).summary()
-    return orjson.dumps(content, option=orjson.OPT_INDENT_2) + b"\n"
 
 
 def _draw(arguments: argparse.Namespace, given: QuadFile, result: Optimised) -> None:

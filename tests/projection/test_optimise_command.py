@@ -8,21 +8,31 @@ import json
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 from nets import grid_faces, hexagonal_net, lamella_patch, noisy, rotational_net, spider, weingarten_patch
 
 from lamella import Catenoid, Enneper, Unduloid, quad_mesh
 from lamella.cli import main
+from lamella.files.optimise_json import optimise_schema
 from lamella.files.quad_mesh_files import QuadFile, quad_mesh_bytes, read_quad_mesh
 from lamella.optimise_wishes import USED
 from lamella.projection.mesh_figures import mesh_figures
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.star_measures import circle_angles, star_spheres
 
+SCHEMA = jsonschema.Draft202012Validator(optimise_schema())
 UNDULOID = Unduloid(0.6, 1.4, (-8.0, 8.0))
 PROJECT = '[surface]\nkind = "unduloid"\nneck_radius = 0.6\nbulge_radius = 1.4\nheight = [-8.0, 8.0]\n'
 EXAMPLE = Path(__file__).parents[2] / "examples" / "optimise" / "unduloid_patch.obj"
+
+
+def test_schema_refuses_what_is_not_written() -> None:
+    jsonschema.Draft202012Validator.check_schema(optimise_schema())
+    assert not SCHEMA.is_valid({"schema": "lamella/optimise/1"})
+    problems = optimise_schema()["properties"]["problem"]["enum"]
+    assert problems == list(USED)
 
 
 def put(path: Path, mesh: QuadMesh) -> Path:
@@ -35,7 +45,9 @@ def run(mesh: Path, problem: str, *options: object, out: str = "out.ply", code: 
     target, figures = mesh.parent / out, mesh.parent / "figures.json"
     arguments = ["optimise", mesh, "--as", problem, "--out", target, "--json", figures, *options]
     assert main([str(word) for word in arguments]) == code
-    return read_quad_mesh(target).mesh, json.loads(figures.read_text())
+    said = json.loads(figures.read_text())
+    SCHEMA.validate(said)
+    return read_quad_mesh(target).mesh, said
 
 
 def test_example_finds_the_radius_of_its_unduloid(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -143,9 +155,10 @@ def test_planar_strips(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
     options = ["--height", "0.05", "--surface", str(tmp_path / "u.toml"), "--rounds", "1", "--json", str(figures)]
     assert main(["optimise", str(path), "--as", "planar", "--out", str(out), *options]) == 0
     said = json.loads(figures.read_text())
+    SCHEMA.validate(said)
     # each of the 14 polylines of 7 vertices gets a ruling more between any two
-    assert said["result"]["figures"]["largest after"] < 1e-8
-    assert said["result"]["figures"]["median before"] > 1e-3
+    assert said["result"]["figures"]["largest_after"] < 1e-8
+    assert said["result"]["figures"]["median_before"] > 1e-3
     assert len(said["faces"]["planarity"]) == len(said["faces"]["planarity_before"]) == 14 * 12
     assert max(said["faces"]["planarity"]) < 1e-8
     assert [int(x) for x in np.unique(said["faces"]["strip"])] == list(range(14))
@@ -161,7 +174,7 @@ def test_surface_of_the_mesh_itself(tmp_path: Path) -> None:
     options = ["--height", "0.03", "--rounds", "1", "--json", str(tmp_path / "s.json")]
     assert main(["optimise", str(path), "--as", "planar", "--out", str(out), *options]) in (0, 1)
     said = json.loads((tmp_path / "s.json").read_text())
-    assert said["result"]["figures"]["median after"] < said["result"]["figures"]["median before"] / 100
+    assert said["result"]["figures"]["median_after"] < said["result"]["figures"]["median_before"] / 100
 
 
 @pytest.mark.parametrize("valence", [3, 5, 6])

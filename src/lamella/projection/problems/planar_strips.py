@@ -72,16 +72,16 @@ class PlanarStrips:
         """Scores before and after, shares of quads in full red, what it took, share that cannot be developable."""
         before, after = np.concatenate(self.before), np.concatenate(self.after)
         return {
-            "median before": float(np.median(before)),
-            "median after": float(np.median(after)),
-            "largest before": float(before.max()),
-            "largest after": float(after.max()),
-            "red before": float((before >= RED).mean()),
-            "red after": float((after >= RED).mean()),
-            "largest shift": float(max(x.max() for x in self.shift)),
-            "largest tilt": float(max(x.max() for x in self.tilt)),
-            "largest turn": float(max(x.max() for x in self.turn)),
-            "not developable": float((np.concatenate(self.buildable) < self.height).mean()),
+            "median_before": float(np.median(before)),
+            "median_after": float(np.median(after)),
+            "largest_before": float(before.max()),
+            "largest_after": float(after.max()),
+            "red_before": float((before >= RED).mean()),
+            "red_after": float((after >= RED).mean()),
+            "largest_shift": float(max(x.max() for x in self.shift)),
+            "largest_tilt": float(max(x.max() for x in self.tilt)),
+            "largest_turn": float(max(x.max() for x in self.turn)),
+            "not_developable": float((np.concatenate(self.buildable) < self.height).mean()),
         }
 
 
