@@ -70,7 +70,8 @@ def add_optimise(commands: Any) -> None:
     parser.add_argument(
         "--colour",
         default=None,
-        help="of .ply, .3dm and picture: planarity, sphericity, radius or angle (default: sphericity; planarity for planar)",
+        help="of .ply, .3dm and picture: planarity, sphericity, radius or angle (default: sphericity; "
+        "planarity for planar)",
     )
     parser.add_argument(
         "--unit", help="unit of MESH: mm, cm, dm, m, km, in, ft or yd (default: m; a .3dm says its own)"
