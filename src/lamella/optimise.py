@@ -30,6 +30,8 @@ Tell = Callable[[str], None]
 
 # what the solutions of a problem with several are called
 STAGES = {"deform": "state", "planar": "round"}
+# root mean square of the moves, in edges, from which a mesh is not the one it was
+FAR = 0.25
 # points a strip needs at least
 STRIP_POINTS = 4
 
@@ -152,16 +154,27 @@ def _stars(mesh: QuadMesh, problem: str, wishes: Wishes, common: dict[str, Any])
     )
     found = problem != "asymptotic" and wishes.radius is None
     told: dict[str, Any] = {"radius": float(net.radius) if np.isfinite(net.radius) else None, "radius_found": found}
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = (_told_moves(mesh, net.mesh),)
     if found:
         told["radius_uncertainty"] = float(net.radius_uncertainty)  # infinite: null
         told["ill_determined"] = bool(net.ill_determined)
         known = np.isfinite(net.radius_uncertainty)
         doubt = f"standard deviation {net.radius_uncertainty:.2g} m" if known else "no limit to its uncertainty"
-        remarks = (f"radius found: {net.radius:.6g} m, {doubt}",)
+        remarks += (f"radius found: {net.radius:.6g} m, {doubt}",)
         if net.ill_determined:
             remarks += ("the net says too little about the radius: others would do as well; give it with --radius",)
     return Optimised(net.mesh, (net.solution,), told=told, remarks=remarks)
+
+
+def _told_moves(before: QuadMesh, after: QuadMesh) -> str:
+    """How far vertices have gone, in a line; with a caution where that is another mesh."""
+    moved = np.linalg.norm(after.vertices - before.vertices, axis=1)
+    mean, edge = float(np.sqrt((moved**2).mean())), before.mean_edge
+    line = (
+        f"vertices moved by {mean:.3g} m root mean square, {moved.max():.3g} m at most ({moved.max() / edge:.2g} edges)"
+    )
+    far = mean > FAR * edge
+    return line + ": the mesh was no such net by far, look whether the result still is your design" if far else line
 
 
 def _straighten(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell) -> Optimised:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from lamella.projection.unknowns import Floats
 
 DRIVEN = "#d60000"
+# iterations to judge progress by, and what of the remainder a hopeful run leaves in them
+LATELY, SLOW = 10, 0.5
 NOT_SOLVED = 1
 """Exit code of a result that is written although not all conditions hold."""
 
@@ -103,7 +105,7 @@ def add_optimise(commands: Any) -> None:
         "--iterations",
         type=int,
         metavar="N",
-        help="most steps of a solution (default: 50; 100 for straighten, 20 a round for planar)",
+        help="most steps of a solution (default: 100; 50 a state for deform, 20 a round for planar)",
     )
     parser.add_argument(
         "--tolerance",
@@ -169,11 +171,22 @@ def _not_solved(solution: Solution) -> str:
         f"{name} by {state.residual[name]:.2g} (largest {state.largest[name]:.2g})" for name in solution.unmet
     )
     what = f"not met, in edges or radians: {missing}" if missing else "the steps had not ended"
+    if solution.verdict == "collapsed":
+        what = "edges have lost their length"
+    share = fallen(solution)
+    used_up = "allow more with --iterations" if share < SLOW else "ask for less, or start from a fairer mesh nearer by"
     remedy = {
-        "iterations used up": "allow more with --iterations",
+        "iterations used up": f"{used_up}: the last {LATELY} brought the remainder down to {share:.2g} of what it was",
         "broken off": "start from a fairer mesh, without folds and flattened faces",
+        "collapsed": "there is no such net near this mesh: take another radius, angle or --form",
     }.get(solution.verdict, "ask for less, or take this, the least remainder nearby; --tolerance says what is met")
     return f"not all conditions hold: {solution.verdict} after {state.number} iterations; {what}\n  remedy: {remedy}"
+
+
+def fallen(solution: Solution) -> float:
+    """What the last few iterations left of the remainder."""
+    before, now = solution.iterations[-1 - LATELY :][0], solution.last
+    return float((now.objective / before.objective) ** 0.5) if before.objective > 0 else 0.0
 
 
 def _check_targets(arguments: argparse.Namespace) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -99,6 +99,9 @@ def deform(
     """
     vertices = np.asarray(ring)
     _check(mesh, vertices, share, step)
+    origin = mesh.vertices.mean(0)
+    # far from the origin rounding is larger than the tolerance
+    mesh = mesh.at(mesh.vertices - origin)
     edge, inner, stars = mesh.mean_edge, mesh.inner, mesh.stars(mesh.inner)
     pairs = _pairs(vertices.astype(np.int64), closed)
     normals = smoothed_normals(mesh)[inner]
@@ -126,7 +129,8 @@ def deform(
             backend=backend,
         )
         current, normals = solution.values["vertices"], solution.values["normals"]
-        moved = mesh.at(current)
+        moved = mesh.at(current + origin)
+        solution = replace(solution, values={**solution.values, "vertices": moved.vertices})
         states.append(DeformedState(float(now), moved, solution, circle_angles(moved, inner) - before))
         if solution.verdict in ("broken off", "iterations used up"):
             break
