@@ -112,7 +112,8 @@ def add_optimise(commands: Any) -> None:
         type=float,
         metavar="T",
         help="largest root mean square residual of a condition "
-        "that holds, in edges or radians (default: 1e-10; 1e-8 for straighten and planar)",
+        "that holds, in edges or radians (default: 1e-10; for straighten and planar 1e-8, and 1e-6 on surfaces that "
+        "were found, whose directions are not known better)",
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but what went wrong")
 
@@ -178,7 +179,7 @@ def _not_solved(solution: Solution) -> str:
     remedy = {
         "iterations used up": f"{used_up}: the last {LATELY} brought the remainder down to {share:.2g} of what it was",
         "broken off": "start from a fairer mesh, without folds and flattened faces",
-        "collapsed": "there is no such net near this mesh: take another radius, angle or --form",
+        "collapsed": "there is no such net near this mesh: take another radius, angle, --form or surface",
     }.get(solution.verdict, "ask for less, or take this, the least remainder nearby; --tolerance says what is met")
     return f"not all conditions hold: {solution.verdict} after {state.number} iterations; {what}\n  remedy: {remedy}"
 

@@ -207,6 +207,40 @@ def test_files_in_millimetres(tmp_path: Path) -> None:
     assert 1 / np.abs(star_spheres(again, again.inner).curvature) == pytest.approx(2.0, rel=1e-6)
 
 
+def test_moves_are_told_and_a_mesh_that_was_no_such_net(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    given = noisy(lamella_patch(UNDULOID, 12, 1.2), 0.01, 5)
+    net, _ = run(put(tmp_path / "a.ply", given), "sphere-stars", "--radius", 2)
+    moved = np.linalg.norm(net.vertices - given.vertices, axis=1)
+    told = capsys.readouterr().err
+    assert f"vertices moved by {np.sqrt((moved**2).mean()):.3g} m root mean square, {moved.max():.3g} m at most" in told
+    assert "no such net by far" not in told
+    path = put(tmp_path / "b.ply", rotational_net(UNDULOID, 24, 21, -10 * np.pi / 24))
+    assert main(["optimise", str(path), "--as", "asymptotic", "--out", str(tmp_path / "c.ply")]) in (0, 1)
+    assert "no such net by far" in capsys.readouterr().err
+
+
+def test_straighten_refuses_a_surface_without_principal_directions(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    i, j = (x.ravel() for x in np.meshgrid(np.linspace(-0.5, 0.5, 10), np.linspace(-0.5, 0.5, 10), indexing="ij"))
+    ball = 3 * np.column_stack([np.cos(i) * np.cos(j), np.cos(i) * np.sin(j), np.sin(i)])
+    path = put(tmp_path / "a.obj", quad_mesh(ball, grid_faces(10, 10)))
+    assert main(["optimise", str(path), "--as", "straighten", "--out", str(tmp_path / "b.obj")]) == 2
+    assert "every point is umbilic" in capsys.readouterr().err
+    assert not (tmp_path / "b.obj").exists()
+
+
+def test_straighten_on_a_surface_that_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A cylinder with unevenly spread parallels: squares exist on it, known as well as the surface itself."""
+    i, j = (x.ravel() for x in np.meshgrid(np.linspace(-1, 1, 12), np.linspace(-1, 1, 12), indexing="ij"))
+    points = np.column_stack([2 * np.cos(0.7 * i), 2 * np.sin(0.7 * i), 1.9 * (j + 0.15 * j**2)])
+    net, said = run(put(tmp_path / "a.obj", quad_mesh(points, grid_faces(12, 12))), "straighten", out="m.obj")
+    assert said["solved"]
+    side = net.vertices[net.faces] - np.roll(net.vertices[net.faces], 1, axis=1)
+    length = np.linalg.norm(side, axis=2)
+    assert np.abs(length[:, 0] / length[:, 1] - 1).max() < 0.02
+
+
 def test_picture(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     given = noisy(lamella_patch(UNDULOID, 8, 1.0), 0.01, 5)

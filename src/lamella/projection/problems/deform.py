@@ -26,6 +26,8 @@ from lamella.sparse import Backend
 STEP = 0.02
 # weight of third differences and its fade: corners of the rim hang on two edges and would turn about them
 FAIR, FADE = 0.03, 0.1
+# last digits of coordinates that lengths and stars of a net can be off by
+ROUNDING = 4.0
 
 
 @dataclass(frozen=True)
@@ -99,8 +101,9 @@ def deform(
     """
     vertices = np.asarray(ring)
     _check(mesh, vertices, share, step)
+    # far from the origin rounding is larger than the tolerance: what is given is known to its last digit only
+    tolerance = max(tolerance, ROUNDING * float(np.spacing(np.abs(mesh.vertices).max())) / mesh.mean_edge)
     origin = mesh.vertices.mean(0)
-    # far from the origin rounding is larger than the tolerance
     mesh = mesh.at(mesh.vertices - origin)
     edge, inner, stars = mesh.mean_edge, mesh.inner, mesh.stars(mesh.inner)
     pairs = _pairs(vertices.astype(np.int64), closed)
