@@ -185,6 +185,7 @@ def _told_moves(before: QuadMesh, after: QuadMesh) -> str:
 def _straighten(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell) -> Optimised:
     surface = _surface(given, wishes, tell)
     refuse_umbilic(surface)
+    _require_near(given.mesh, surface, wishes)
     if not isinstance(surface, ClosedForm):
         common.setdefault("tolerance", FOUND)
     found = straighten(given.mesh, foot_surface(cast(Any, surface)), **common)
@@ -246,6 +247,7 @@ def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell)
     if wishes.rounds is not None:
         common["rounds"] = wishes.rounds
     surface = _surface(given, wishes, tell)
+    _require_near(given.mesh, surface, wishes)
     if not isinstance(surface, ClosedForm):
         common.setdefault("tolerance", FOUND)
     strips = planar_strips(
@@ -288,6 +290,18 @@ def strip_mesh(lowers: Sequence[Floats], uppers: Sequence[Floats]) -> tuple[Quad
         strip.append(np.full(count - 1, number, np.float64))
         start += 2 * count
     return quad_mesh(np.concatenate(points), np.concatenate(faces)), np.concatenate(strip)
+
+
+def _require_near(mesh: QuadMesh, surface: Surface[Any], wishes: Wishes) -> None:
+    """Refuse a surface that is somewhere else: the mesh was drawn on it, but for what reaches beyond its rim."""
+    foot = foot_surface(cast(Any, surface)).foot(mesh.vertices)
+    away = np.linalg.norm(mesh.vertices - foot.position, axis=1)
+    if np.median(away) > mesh.mean_edge:
+        raise InputError(
+            f"half of the vertices are more than {np.median(away):.3g} m from the surface, a mean edge is "
+            f"{mesh.mean_edge:.3g} m",
+            f"is {wishes.surface} the surface of this mesh, and --unit right?",
+        )
 
 
 def _surface(given: QuadFile, wishes: Wishes, tell: Tell) -> Surface[Any]:

@@ -177,7 +177,8 @@ def _not_solved(solution: Solution) -> str:
     share = fallen(solution)
     used_up = "allow more with --iterations" if share < SLOW else "ask for less, or start from a fairer mesh nearer by"
     remedy = {
-        "iterations used up": f"{used_up}: the last {LATELY} brought the remainder down to {share:.2g} of what it was",
+        "iterations used up": f"{used_up}: the last {min(LATELY, state.number)} brought the remainder down to "
+        f"{share:.2g} of what it was",
         "broken off": "start from a fairer mesh, without folds and flattened faces",
         "collapsed": "there is no such net near this mesh: take another radius, angle, --form or surface",
     }.get(solution.verdict, "ask for less, or take this, the least remainder nearby; --tolerance says what is met")
@@ -207,6 +208,10 @@ def _check_targets(arguments: argparse.Namespace) -> None:
     if arguments.colour is not None and arguments.colour not in ("planarity", "sphericity", "radius", "angle"):
         raise InputError(f"--colour {arguments.colour} is not known", "planarity, sphericity, radius or angle")
     if arguments.picture is not None:
+        if arguments.picture.suffix.lower() != ".png":
+            raise InputError(
+                f"--picture {arguments.picture.name} is no .png", "name a .png: other formats are not drawn"
+            )
         from lamella.view.figure import require_matplotlib
 
         require_matplotlib()

@@ -267,6 +267,13 @@ def test_picture(tmp_path: Path) -> None:
         ("deform", ["--driver", "40=0.9"], "no diagonal"),
         ("deform", ["--driver", "4000=0.9"], "no vertex 4000"),
         ("planar", [], "--as planar needs --height"),
+        ("asymptotic", ["--tolerance", "0"], "--tolerance 0 is out of range"),
+        ("asymptotic", ["--tolerance", "10"], "at most 0.01 edges"),
+        ("asymptotic", ["--picture", "a.svg"], "is no .png"),
+        ("deform", ["--driver", "13,26,39,52=0.9", "--open-driver", "--radius", "0"], "--radius 0 is out of range"),
+        ("deform", ["--driver", "13,26,39,52=0.9", "--open-driver", "--radius", "-2"], "--radius -2 is out of range"),
+        ("deform", ["--driver", "13,26,39,52=0.9", "--open-driver", "--radius", "0.01"], "below 2 mean edges"),
+        ("planar", ["--height", "0"], "--height 0 is out of range"),
         ("planar", ["--height", "0.1", "--rounds", "9"], "--rounds 9 is out of range"),
         ("planar", ["--height", "0.1", "--surface", "none.toml"], "none.toml"),
     ],
@@ -281,6 +288,19 @@ def test_refused(
     assert match in error
     assert "remedy: " in error
     assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(("problem", "options"), [("straighten", []), ("planar", ["--height", "0.05"])])
+def test_surface_of_another_mesh_is_refused(
+    problem: str, options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "u.toml").write_text(PROJECT)
+    mesh = lamella_patch(UNDULOID, 9, 1.0)
+    path = put(tmp_path / "a.obj", mesh.at(mesh.vertices + [5.0, 0, 0]))
+    command = ["optimise", str(path), "--as", problem, "--surface", str(tmp_path / "u.toml"), *options]
+    assert main([*command, "--out", str(tmp_path / "o.obj")]) == 2
+    assert "half of the vertices are more than" in capsys.readouterr().err
+    assert not (tmp_path / "o.obj").exists()
 
 
 def test_targets_refused_before_anything_is_computed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -143,6 +143,15 @@ class TestRefused:
         with pytest.raises(InputError, match="twice"):
             planar_strips([lamella(0.2, 0.8)[[0, 0, 1, 2]]], surface, HEIGHT)
 
+    def test_height_beyond_the_centre_of_curvature(self) -> None:
+        """Lamellas of an unduloid have kn = H = 1/2 towards the axis: their normals meet 2 m inwards."""
+        surface, curves = foot_surface(UNDULOID), [lamella(-1.0, 1.0, 40)]
+        assert planar_strips(curves, surface, 1.9, rounds=1, iterations=1).height == 1.9
+        with pytest.raises(InputError, match="beyond the centre of curvature of curve 0"):
+            planar_strips(curves, surface, 2.1)
+        with pytest.raises(InputError, match="more than the largest curve measures"):
+            planar_strips(curves, surface, -50.0)
+
     def test_height(self) -> None:
         with pytest.raises(InputError, match="height"):
             planar_strips([lamella(0.2, 0.8)], foot_surface(UNDULOID), 0.0)

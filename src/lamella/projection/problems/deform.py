@@ -14,6 +14,7 @@ from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.edge_length import EdgeLength
 from lamella.projection.constraints.fairness import fairness
 from lamella.projection.constraints.unit_length import UnitLength
+from lamella.projection.problems.star_net import require_radius
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.solve import solve
@@ -97,10 +98,12 @@ def deform(
     Raises
     ------
     InputError
-        A ring with too few vertices, with one twice or with an edge; a share or a step out of range.
+        A ring with too few vertices, with one twice or with an edge; a share, a step or a radius out of range.
     """
     vertices = np.asarray(ring)
     _check(mesh, vertices, share, step)
+    if radius is not None:
+        require_radius(mesh, radius)
     # far from the origin rounding is larger than the tolerance: what is given is known to its last digit only
     tolerance = max(tolerance, ROUNDING * float(np.spacing(np.abs(mesh.vertices).max())) / mesh.mean_edge)
     origin = mesh.vertices.mean(0)

@@ -123,7 +123,7 @@ def planar_strips(
     Raises
     ------
     InputError
-        Curves with too few points, a height of 0.
+        Curves with too few points; a height of 0, beyond the centres of curvature, or larger than the curves.
     """
     lower = [_curve(curve, number) for number, curve in enumerate(curves)]
     if not lower:
@@ -134,6 +134,7 @@ def planar_strips(
     side = float(np.sign(height))
     buildable = tuple(buildable_height(c, side * n) for c, n in zip(lower, normals, strict=True))
     upper = [c + height * n for c, n in zip(lower, normals, strict=True)]
+    _check_height(lower, upper, height)
     solutions: list[Solution] = []
     plain = lower
     for _ in range(rounds):
@@ -210,6 +211,23 @@ def _curve(curve: ArrayLike, number: int) -> Floats:
     if (np.linalg.norm(np.diff(points, axis=0), axis=1) == 0).any():
         raise InputError(f"curve {number} has a point twice in a row", "list each point once")
     return points
+
+
+def _check_height(lower: list[Floats], upper: list[Floats], height: float) -> None:
+    """Refuse heights at which strips along the normals fold, or that are no strips."""
+    size = max(float(np.linalg.norm(np.ptp(curve, axis=0))) for curve in lower)
+    if abs(height) > size:
+        raise InputError(
+            f"height = {height:g} m is more than the largest curve measures, {size:.4g} m", "give the height in m"
+        )
+    for number, (a, b) in enumerate(zip(lower, upper, strict=True)):
+        back = np.flatnonzero(np.einsum("kc,kc->k", np.diff(a, axis=0), np.diff(b, axis=0)) <= 0)
+        if len(back):
+            raise InputError(
+                f"height = {height:g} m reaches beyond the centre of curvature of curve {number} after its point "
+                f"{back[0]}: normals cross below it",
+                "less height, or the other side of the surface",
+            )
 
 
 def _split(points: Floats, like: list[Floats]) -> list[Floats]:

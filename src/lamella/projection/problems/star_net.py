@@ -136,16 +136,22 @@ def star_net(
     return StarNet(net, radius, doubt, solution.values["normals"], solution)
 
 
+def require_radius(mesh: QuadMesh, radius: float) -> None:
+    """Raise `InputError` for spheres on which a star has no room."""
+    if not radius >= LEAST_RADIUS * mesh.mean_edge:
+        raise InputError(
+            f"radius = {radius:g} m is below {LEAST_RADIUS:g} mean edges of {mesh.mean_edge:.4g} m",
+            "give the radius in the unit of the mesh, or refine the mesh; infinite: planes",
+        )
+
+
 def _check(mesh: QuadMesh, radius: float | None, angle: float, form: str) -> None:
     if not len(mesh.inner):
         raise InputError(
             "the mesh has no inner vertex with four neighbours: nothing to make spherical", "use a larger quad mesh"
         )
-    if radius is not None and not radius >= LEAST_RADIUS * mesh.mean_edge:
-        raise InputError(
-            f"radius = {radius:g} m is below {LEAST_RADIUS:g} mean edges of {mesh.mean_edge:.4g} m",
-            "give the radius in the unit of the mesh, or refine the mesh; infinite: planes",
-        )
+    if radius is not None:
+        require_radius(mesh, radius)
     if not 10 <= angle <= 170:
         raise InputError(f"angle = {angle:g} degrees", "between 10 and 170 degrees")
     if form not in get_args(AngleForm):
