@@ -1,9 +1,10 @@
 """Guided projection against its limits: set-up, iterations, memory, growth.
 
 A catenoid in asymptotic layout with noise of 2 % of the edge becomes a net of planar stars with equal diagonals
-(`asymptotic`), from 1,000 to 100,000 vertices, one thread. Printed, in CPU seconds: topology and pattern (limit 1 s at
-10,000 vertices), symbolic analysis, an iteration over its numeric factorisation and solve (limit 1.5), memory (limit
-600 MB at 10,000), `splu` on the same matrix, and the exponent of growth (limit 1.3). Run by `make bench`.
+(`asymptotic`, form "faces"), from 1,000 to 100,000 vertices, one thread; at 10,000 also with right angles between
+vertex circles (form "circles"), three times as many unknowns. Printed, in CPU seconds: topology and pattern (limit 1 s
+at 10,000 vertices), symbolic analysis, an iteration over its numeric factorisation and solve (limit 1.5), memory
+(limit 600 MB at 10,000), `splu` on the same matrix, and the exponent of growth (limit 1.3). Run by `make bench`.
 """
 
 from __future__ import annotations
@@ -12,7 +13,10 @@ import os
 import resource
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from itertools import pairwise
+from multiprocessing import get_context
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("RAYON_NUM_THREADS", "1")
@@ -22,9 +26,15 @@ import numpy as np
 from lamella import Catenoid, sparse
 from lamella.projection.normal_equations import NormalEquations
 from lamella.projection.problems.asymptotic import asymptotic
+from lamella.projection.problems.crossing import AngleForm
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 
-SIZES = (1_000, 10_000, 100_000)
+CASES: tuple[tuple[int, AngleForm], ...] = (
+    (1_000, "faces"),
+    (10_000, "faces"),
+    (10_000, "circles"),
+    (100_000, "faces"),
+)
 
 
 class Clock:
@@ -90,42 +100,52 @@ def topology(vertices: np.ndarray, faces: np.ndarray) -> tuple[QuadMesh, float]:
     return mesh, time.process_time() - begin
 
 
-def main() -> None:
-    """Print a table."""
+def measured(size: int, form: AngleForm) -> tuple[int, float, float]:
+    """Print a line; vertices, seconds of an iteration and of the whole."""
     clock = Clock()
+    mesh, seconds = topology(*noisy_catenoid(size))
+    clock.setup = seconds
+    begin = time.process_time()
+    net = asymptotic(mesh, form=form, on_iteration=lambda _: clock.stamps.append(time.process_time()))
+    whole = seconds + time.process_time() - begin
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e6
+    # the first factorisation analyses the pattern too
+    numeric = float(np.mean(clock.factor[1:]))
+    iteration = float(np.diff(clock.stamps)[:-1].mean())
+    count = len(mesh.vertices)
+    unknowns = sum(values.size for values in net.solution.values.values())
     print(
-        "vertices unknowns  set-up s  symbolic s  iteration s  factor + solve s  ratio  iterations  whole s  memory MB"
+        f"{count:8,d} {form:7s} {unknowns:8,d} {clock.setup:9.2f} {clock.factor[0] - numeric:11.2f} {iteration:12.2f} "
+        f"{numeric:17.2f} {iteration / numeric:6.2f} {net.solution.last.number:6d} {whole:8.2f} {memory:10.0f}"
+        f"  {net.solution.verdict}"
+    )
+    if size == 10_000 and clock.last:
+        pattern, values, right = clock.last
+        clock.factor = []
+        replace(pattern, backend="splu").factor(values).solve(right)
+        print(f"         splu on the same matrix: factor + solve {clock.factor[0]:.2f} s")
+    sys.stdout.flush()
+    return count, iteration, whole
+
+
+def main() -> None:
+    """Print a table; each line from a process of its own, for its memory."""
+    print(
+        "vertices form    unknowns  set-up s  symbolic s  iteration s  factor + solve s  ratio  iterations  whole s  "
+        "memory MB",
+        flush=True,
     )
     rows: list[tuple[int, float, float]] = []
-    for size in SIZES:
-        mesh, seconds = topology(*noisy_catenoid(size))
-        clock.setup, clock.factor, clock.stamps = seconds, [], []
-        begin = time.process_time()
-        net = asymptotic(mesh, form="faces", on_iteration=lambda _: clock.stamps.append(time.process_time()))
-        whole = seconds + time.process_time() - begin
-        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
-        # the first factorisation analyses the pattern too
-        numeric = float(np.mean(clock.factor[1:]))
-        iteration = float(np.diff(clock.stamps)[:-1].mean())
-        count = len(mesh.vertices)
-        unknowns = 3 * (count + len(mesh.inner))
-        print(
-            f"{count:8,d} {unknowns:8,d} {clock.setup:9.2f} {clock.factor[0] - numeric:11.2f} {iteration:12.2f} "
-            f"{numeric:17.2f} {iteration / numeric:6.2f} {net.solution.last.number:6d} {whole:8.2f} {memory:10.0f}"
-            f"  {net.solution.verdict}"
-        )
-        rows.append((count, iteration, whole))
-        if size == 10_000 and clock.last:
-            pattern, values, right = clock.last
-            other = replace(pattern, backend="splu")
-            clock.factor = []
-            other.factor(values).solve(right)
-            print(f"         splu on the same matrix: factor + solve {clock.factor[0]:.2f} s")
-        sys.stdout.flush()
-    (n0, i0, w0), (n1, i1, w1) = rows[0], rows[-1]
-    span = np.log(n1 / n0)
-    exponents = f"iteration {np.log(i1 / i0) / span:.2f}, whole {np.log(w1 / w0) / span:.2f}"
-    print(f"growth exponents from {n0:,d} to {n1:,d}: {exponents}")
+    for size, form in CASES:
+        with ProcessPoolExecutor(1, get_context("spawn")) as process:
+            row = process.submit(measured, size, form).result()
+        if form == "faces":
+            rows.append(row)
+    print('growth exponents, form "faces":')
+    for (n0, i0, w0), (n1, i1, w1) in (*pairwise(rows), (rows[0], rows[-1])):
+        span = np.log(n1 / n0)
+        exponents = f"iteration {np.log(i1 / i0) / span:.2f}, whole {np.log(w1 / w0) / span:.2f}"
+        print(f"  from {n0:,d} to {n1:,d}: {exponents}")
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ from typing import Any
 from lamella import __version__, compute, read_project, write
 from lamella.example_files import list_examples
 from lamella.files.network_json import network_schema
+from lamella.files.optimise_json import optimise_schema
 from lamella.pipeline import Results
 from lamella.project import (
     FURTHER_TABLES,
@@ -292,6 +293,7 @@ def pages(results: dict[str, Results]) -> dict[str, str]:
         "examples.md": examples_page(results),
         "schema/project.schema.json": json.dumps(project_schema(), indent=2) + "\n",
         "schema/network.schema.json": json.dumps(network_schema(), indent=2) + "\n",
+        "schema/optimise.schema.json": json.dumps(optimise_schema(), indent=2) + "\n",
     }
 
 

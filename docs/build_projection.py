@@ -82,7 +82,7 @@ def figure_6(folder: Path) -> None:
 
 
 def say_strips(name: str, strips: PlanarStrips) -> None:
-    figures = ", ".join(f"{key} {value:.2g}" for key, value in strips.figures().items())
+    figures = ", ".join(f"{key.replace('_', ' ')} {value:.2g}" for key, value in strips.figures().items())
     print(f"{name}: {', '.join(s.verdict for s in strips.solutions)}; {figures}")
 
 

@@ -285,7 +285,7 @@ def test_examples_are_good(path: Path, capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_schema(capsys: pytest.CaptureFixture[str]) -> None:
-    for which in ("project", "network"):
+    for which in ("project", "network", "optimise"):
         assert main(["schema", which]) == 0
         schema = json.loads(capsys.readouterr().out)
         assert schema["$id"].startswith(f"lamella/{which}/")

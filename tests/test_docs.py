@@ -212,7 +212,8 @@ def test_changelog_knows_this_version() -> None:
 
 
 @pytest.mark.parametrize(
-    "path", ["project-file.md", "examples.md", "schema/project.schema.json", "schema/network.schema.json"]
+    "path",
+    ["project-file.md", "examples.md", *(f"schema/{name}.schema.json" for name in ("project", "network", "optimise"))],
 )
 def test_generated_text_is_up_to_date(path: str) -> None:
     stored = (DOCS / path).read_text(encoding="utf-8")

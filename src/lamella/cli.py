@@ -90,8 +90,10 @@ def _parser() -> argparse.ArgumentParser:
     examples.add_argument("names", nargs="*", metavar="NAME", help="with --copy: the examples to copy (default: all)")
     examples.add_argument("--copy", type=Path, metavar="DIR", help="folder to copy them into")
 
-    schema = commands.add_parser("schema", help="print the JSON schema of the project file or of network.json")
-    schema.add_argument("which", choices=["project", "network"])
+    schema = commands.add_parser(
+        "schema", help="print the JSON schema of a project, network.json, or figures of optimise"
+    )
+    schema.add_argument("which", choices=["project", "network", "optimise"])
     return parser
 
 
@@ -185,6 +187,8 @@ def _schema(arguments: argparse.Namespace) -> None:
 
     if arguments.which == "project":
         from lamella.project import project_schema as schema
+    elif arguments.which == "optimise":
+        from lamella.files.optimise_json import optimise_schema as schema
     else:
         from lamella.files.network_json import network_schema as schema
     print(json.dumps(schema(), indent=2))

@@ -13,7 +13,7 @@ import numpy as np
 from lamella.errors import InputError
 from lamella.files.quad_mesh_files import QuadFile, quad_mesh_bytes
 from lamella.optimise_wishes import Wishes
-from lamella.projection.foot_points import DirectedSurface, foot_surface
+from lamella.projection.foot_points import foot_surface
 from lamella.projection.mesh_figures import mesh_figures
 from lamella.projection.polylines import diagonal_ring, polylines
 from lamella.projection.problems.crossing import AngleForm
@@ -24,12 +24,19 @@ from lamella.projection.problems.straighten import straighten
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.unknowns import Floats
+from lamella.surface.closed_form import ClosedForm
+from lamella.surface.surface import Surface
+from lamella.surface.umbilic import refuse_umbilic
 from lamella.wording import counted
 
 Tell = Callable[[str], None]
 
 # what the solutions of a problem with several are called
 STAGES = {"deform": "state", "planar": "round"}
+# root mean square of the moves, in edges, from which a mesh is not the one it was
+FAR = 0.25
+# largest residual on a surface that was found: its own directions are off by more
+FOUND = 1e-6
 # points a strip needs at least
 STRIP_POINTS = 4
 
@@ -152,20 +159,36 @@ def _stars(mesh: QuadMesh, problem: str, wishes: Wishes, common: dict[str, Any])
     )
     found = problem != "asymptotic" and wishes.radius is None
     told: dict[str, Any] = {"radius": float(net.radius) if np.isfinite(net.radius) else None, "radius_found": found}
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = (_told_moves(mesh, net.mesh),)
     if found:
         told["radius_uncertainty"] = float(net.radius_uncertainty)  # infinite: null
         told["ill_determined"] = bool(net.ill_determined)
         known = np.isfinite(net.radius_uncertainty)
         doubt = f"standard deviation {net.radius_uncertainty:.2g} m" if known else "no limit to its uncertainty"
-        remarks = (f"radius found: {net.radius:.6g} m, {doubt}",)
+        remarks += (f"radius found: {net.radius:.6g} m, {doubt}",)
         if net.ill_determined:
             remarks += ("the net says too little about the radius: others would do as well; give it with --radius",)
     return Optimised(net.mesh, (net.solution,), told=told, remarks=remarks)
 
 
+def _told_moves(before: QuadMesh, after: QuadMesh) -> str:
+    """How far vertices have gone, in a line; with a caution where that is another mesh."""
+    moved = np.linalg.norm(after.vertices - before.vertices, axis=1)
+    mean, edge = float(np.sqrt((moved**2).mean())), before.mean_edge
+    line = (
+        f"vertices moved by {mean:.3g} m root mean square, {moved.max():.3g} m at most ({moved.max() / edge:.2g} edges)"
+    )
+    far = mean > FAR * edge
+    return line + ": the mesh was no such net by far, look whether the result still is your design" if far else line
+
+
 def _straighten(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell) -> Optimised:
-    found = straighten(given.mesh, _surface(given, wishes, tell), **common)
+    surface = _surface(given, wishes, tell)
+    refuse_umbilic(surface)
+    _require_near(given.mesh, surface, wishes)
+    if not isinstance(surface, ClosedForm):
+        common.setdefault("tolerance", FOUND)
+    found = straighten(given.mesh, foot_surface(cast(Any, surface)), **common)
     return Optimised(
         found.isothermic,
         (found.solution,),
@@ -223,20 +246,26 @@ def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell)
         raise InputError("no polyline has four vertices", "use a larger mesh")
     if wishes.rounds is not None:
         common["rounds"] = wishes.rounds
+    surface = _surface(given, wishes, tell)
+    _require_near(given.mesh, surface, wishes)
+    if not isinstance(surface, ClosedForm):
+        common.setdefault("tolerance", FOUND)
     strips = planar_strips(
-        [given.mesh.vertices[line] for line in long], _surface(given, wishes, tell), wishes.height, **common
+        [given.mesh.vertices[line] for line in long], foot_surface(cast(Any, surface)), wishes.height, **common
     )
     figures = strips.figures()
     remarks = [
-        f"{len(long)} strips; planarity score median {figures['median before']:.2g} -> {figures['median after']:.2g}, "
-        f"share of 0.005 and above {figures['red before']:.0%} -> {figures['red after']:.0%}"
+        f"{len(long)} strips; planarity score median {figures['median_before']:.2g} -> {figures['median_after']:.2g}, "
+        f"share of 0.005 and above {figures['red_before']:.0%} -> {figures['red_after']:.0%}",
+        f"at most: lower borders left their curves by {1000 * figures['largest_shift']:.3g} mm, rulings lean sideways "
+        f"by {figures['largest_tilt']:.2g} degrees and turn by {figures['largest_turn']:.3g} from one to the next",
     ]
     if len(long) < len(lines):
         remarks.append(f"{counted(len(lines) - len(long), 'polyline')} of fewer than four vertices left out")
-    if figures["not developable"]:
+    if figures["not_developable"]:
         remarks.append(
-            f"no developable strip of this height exists at {figures['not developable']:.0%} of the vertices: rulings "
-            f"jump there, by up to {figures['largest turn']:.3g} degrees"
+            f"no developable strip of this height exists at {figures['not_developable']:.0%} of the vertices: planar "
+            "quads bridge them by moving the border and turning the rulings; take twisted strips there, or less height"
         )
     mesh, strip = strip_mesh(strips.lower, strips.upper)
     told = {
@@ -263,7 +292,19 @@ def strip_mesh(lowers: Sequence[Floats], uppers: Sequence[Floats]) -> tuple[Quad
     return quad_mesh(np.concatenate(points), np.concatenate(faces)), np.concatenate(strip)
 
 
-def _surface(given: QuadFile, wishes: Wishes, tell: Tell) -> DirectedSurface:
+def _require_near(mesh: QuadMesh, surface: Surface[Any], wishes: Wishes) -> None:
+    """Refuse a surface that is somewhere else: the mesh was drawn on it, but for what reaches beyond its rim."""
+    foot = foot_surface(cast(Any, surface)).foot(mesh.vertices)
+    away = np.linalg.norm(mesh.vertices - foot.position, axis=1)
+    if np.median(away) > mesh.mean_edge:
+        raise InputError(
+            f"half of the vertices are more than {np.median(away):.3g} m from the surface, a mean edge is "
+            f"{mesh.mean_edge:.3g} m",
+            f"is {wishes.surface} the surface of this mesh, and --unit right?",
+        )
+
+
+def _surface(given: QuadFile, wishes: Wishes, tell: Tell) -> Surface[Any]:
     """That of a project, or the surface of constant mean curvature the mesh itself means."""
     from lamella.pipeline import make_surface
     from lamella.project_file import located, parse_project, read_project
@@ -271,7 +312,7 @@ def _surface(given: QuadFile, wishes: Wishes, tell: Tell) -> DirectedSurface:
     if wishes.surface is not None:
         project = read_project(wishes.surface)
         try:
-            return foot_surface(cast(Any, make_surface(project, wishes.surface.parent, tell)))
+            return make_surface(project, wishes.surface.parent, tell)
         except InputError as error:
             raise located(error, wishes.surface) from None
     tell("no --surface: looking for the surface of constant mean curvature that the mesh itself means")
@@ -283,7 +324,7 @@ def _surface(given: QuadFile, wishes: Wishes, tell: Tell) -> DirectedSurface:
         file.write_bytes(content)
         try:
             project = parse_project({"surface": {"kind": "mesh", "file": str(file), "unit": "m"}})
-            return foot_surface(cast(Any, make_surface(project, Path(folder), tell)))
+            return make_surface(project, Path(folder), tell)
         except InputError as error:
             raise InputError(
                 f"no surface of constant mean curvature fits the mesh: {error.message}",

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from lamella.projection.report import Solution
     from lamella.projection.unknowns import Floats
 
-SCHEMA = "lamella/optimise/1"
 DRIVEN = "#d60000"
+# iterations to judge progress by, and what of the remainder a hopeful run leaves in them
+LATELY, SLOW = 10, 0.5
 NOT_SOLVED = 1
 """Exit code of a result that is written although not all conditions hold."""
 
@@ -48,7 +49,8 @@ examples:
   lamella optimise net.obj --unit mm --as planar --height 0.1 --surface vault.toml --out strips.ply
 
 Radius and height are metres whatever the unit of the file; FILE has the unit of MESH. Vertices are counted
-from 0. Formats in and out: .obj, .ply (with figures and colours), .3dm, .json of COMPAS (with figures).
+from 0. Formats in and out: .obj, .ply, .3dm, .json of COMPAS. All carry figures of vertices and faces: as comments,
+as properties with colours, as user text with colours, as attributes.
 
 exit codes: 0 all conditions hold; 1 written, but not all conditions hold (the message says which; FIGURES has
 the remainder); 2 refused, nothing written."""
@@ -70,7 +72,8 @@ def add_optimise(commands: Any) -> None:
     parser.add_argument(
         "--colour",
         default=None,
-        help="of .ply and picture: planarity, sphericity, radius or angle (default: sphericity; planarity for planar)",
+        help="of .ply, .3dm and picture: planarity, sphericity, radius or angle (default: sphericity; "
+        "planarity for planar)",
     )
     parser.add_argument(
         "--unit", help="unit of MESH: mm, cm, dm, m, km, in, ft or yd (default: m; a .3dm says its own)"
@@ -102,14 +105,15 @@ def add_optimise(commands: Any) -> None:
         "--iterations",
         type=int,
         metavar="N",
-        help="most steps of a solution (default: 50; 100 for straighten, 20 a round for planar)",
+        help="most steps of a solution (default: 100; 50 a state for deform, 20 a round for planar)",
     )
     parser.add_argument(
         "--tolerance",
         type=float,
         metavar="T",
         help="largest root mean square residual of a condition "
-        "that holds, in edges or radians (default: 1e-10; 1e-8 for straighten and planar)",
+        "that holds, in edges or radians (default: 1e-10; for straighten and planar 1e-8, and 1e-6 on surfaces that "
+        "were found, whose directions are not known better)",
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but what went wrong")
 
@@ -168,11 +172,23 @@ def _not_solved(solution: Solution) -> str:
         f"{name} by {state.residual[name]:.2g} (largest {state.largest[name]:.2g})" for name in solution.unmet
     )
     what = f"not met, in edges or radians: {missing}" if missing else "the steps had not ended"
+    if solution.verdict == "collapsed":
+        what = "edges have lost their length"
+    share = fallen(solution)
+    used_up = "allow more with --iterations" if share < SLOW else "ask for less, or start from a fairer mesh nearer by"
     remedy = {
-        "iterations used up": "allow more with --iterations",
+        "iterations used up": f"{used_up}: the last {min(LATELY, state.number)} brought the remainder down to "
+        f"{share:.2g} of what it was",
         "broken off": "start from a fairer mesh, without folds and flattened faces",
+        "collapsed": "there is no such net near this mesh: take another radius, angle, --form or surface",
     }.get(solution.verdict, "ask for less, or take this, the least remainder nearby; --tolerance says what is met")
     return f"not all conditions hold: {solution.verdict} after {state.number} iterations; {what}\n  remedy: {remedy}"
+
+
+def fallen(solution: Solution) -> float:
+    """What the last few iterations left of the remainder."""
+    before, now = solution.iterations[-1 - LATELY :][0], solution.last
+    return float((now.objective / before.objective) ** 0.5) if before.objective > 0 else 0.0
 
 
 def _check_targets(arguments: argparse.Namespace) -> None:
@@ -192,6 +208,10 @@ def _check_targets(arguments: argparse.Namespace) -> None:
     if arguments.colour is not None and arguments.colour not in ("planarity", "sphericity", "radius", "angle"):
         raise InputError(f"--colour {arguments.colour} is not known", "planarity, sphericity, radius or angle")
     if arguments.picture is not None:
+        if arguments.picture.suffix.lower() != ".png":
+            raise InputError(
+                f"--picture {arguments.picture.name} is no .png", "name a .png: other formats are not drawn"
+            )
         from lamella.view.figure import require_matplotlib
 
         require_matplotlib()
@@ -205,6 +225,7 @@ def _files(
     arguments: argparse.Namespace, given: QuadFile, result: Optimised, figures: MeshFigures
 ) -> dict[Path, bytes]:
     """Bytes of all files but the picture."""
+    from lamella.files.optimise_json import optimise_bytes
     from lamella.files.quad_mesh_files import quad_mesh_bytes
     from lamella.projection.mesh_figures import mesh_figures
     from lamella.view.net_colours import net_colours
@@ -219,42 +240,9 @@ def _files(
         target = out.with_name(f"{out.stem}-lamellas{out.suffix}")
         files[target] = quad_mesh_bytes(out.suffix, result.lamellas, own, **common)
     if arguments.json is not None:
-        files[arguments.json] = _figures(arguments, given, result, figures)
+        about = optimise_bytes(result, figures, given, problem=arguments.problem, file=arguments.mesh.name)
+        files[arguments.json] = about
     return files
-
-
-def _figures(arguments: argparse.Namespace, given: QuadFile, result: Optimised, figures: MeshFigures) -> bytes:
-    import orjson
-
-    from lamella.optimise import about_mesh
-    from lamella.projection.mesh_figures import mesh_figures
-
-    def named(solution: Solution) -> dict[str, Any]:
-        keys = ("number", "residual", "largest", "drift", "objective", "step", "length", "damping", "seconds")
-        return {
-            "verdict": solution.verdict,
-            "unmet": solution.unmet,
-            "iterations": [{key: getattr(state, key) for key in keys} for state in solution.iterations],
-        }
-
-    content: dict[str, Any] = {
-        "schema": SCHEMA,
-        "version": __version__,
-        "problem": arguments.problem,
-        "units": "m, degrees, 1/m; residuals, steps and drift in mean edges or radians; null: not defined there",
-        "given": {"file": arguments.mesh.name, "metres_per_unit": given.metres, **about_mesh(given.mesh)},
-        "solved": result.solved,
-        "result": result.told,
-        "remarks": result.remarks,
-        "solutions": [named(solution) for solution in result.solutions],
-        "before": mesh_figures(given.mesh).summary(),
-        "after": figures.summary(),
-        "vertices": {key: values.tolist() for key, values in figures.vertices.items()},
-        "faces": {key: values.tolist() for key, values in figures.faces.items()},
-    }
-    if result.lamellas is not None:
-        content["lamellas"] = mesh_figures(result.lamellas).summary()
-    return orjson.dumps(content, option=orjson.OPT_INDENT_2) + b"\n"
 
 
 def _draw(arguments: argparse.Namespace, given: QuadFile, result: Optimised) -> None:

@@ -19,6 +19,8 @@ USED: dict[str, tuple[str, ...]] = {
 }
 """Wishes each problem makes use of, besides `ALWAYS`."""
 
+LARGEST_TOLERANCE = 0.01
+
 NEEDED: dict[str, tuple[str, str]] = {
     "angle": ("angle", "say the angle: --angle 80"),
     "deform": ("driver", "name a vertex of the ring and the ring's size at the end: --driver 42=0.9"),
@@ -80,6 +82,16 @@ class Wishes:
             raise InputError(f"--as {problem} needs --{needed}", remedy)
         if self.rounds is not None and not 1 <= self.rounds <= 5:
             raise InputError(f"--rounds {self.rounds} is out of range", "from 1 to 5; each doubles the rulings")
+        if self.radius is not None and not self.radius > 0:
+            raise InputError(f"--radius {self.radius:g} is out of range", "above 0; inf: planes")
+        if self.angle is not None and not 10 <= self.angle <= 170:
+            raise InputError(f"--angle {self.angle:g} is out of range", "between 10 and 170 degrees")
+        if self.height == 0:
+            raise InputError("--height 0 is out of range", "the height of the strips, m; below 0: to the other side")
+        if self.tolerance is not None and not 0 < self.tolerance <= LARGEST_TOLERANCE:
+            raise InputError(
+                f"--tolerance {self.tolerance:g} is out of range", f"above 0 and at most {LARGEST_TOLERANCE:g} edges"
+            )
         if self.iterations is not None and not 1 <= self.iterations <= 10_000:
             raise InputError(f"--iterations {self.iterations} is out of range", "from 1 to 10,000")
 

@@ -104,11 +104,11 @@ class SymmetricPattern:
     """
 
     size: int
-    columns: Integers
-    rows: Integers
+    columns: AnyIntegers
+    rows: AnyIntegers
     border: int
     backend: Backend
-    _target: Integers = field(repr=False)  # entry of each kept block value
+    _target: AnyIntegers = field(repr=False)  # entry of each kept block value
     _kept: Integers | None = field(repr=False)  # flat index of each kept block value, ascending; None: all are
     _border_target: Integers = field(repr=False)  # (border, size) entries of the border's rows
     _symbolic: dict[str, Any] = field(default_factory=dict, repr=False)
@@ -170,16 +170,17 @@ class SymmetricPattern:
         new[1:] = keys[1:] != keys[:-1]
         unique = keys[new]
         del keys
-        entry = np.empty(len(order), np.int64)
-        entry[order] = np.cumsum(new) - 1
-        del order
+        # kept for good: 32 bits, as LAPACK's and SuperLU's indices
+        entry = np.empty(len(order), np.int32)
+        entry[order] = np.cumsum(new, dtype=np.int32) - 1
+        del order, new
         border_target = np.full((border, size), -1)
         border_target[below] = entry[size + pairs :]
-        columns = np.searchsorted(unique, np.arange(size + 1) * size)
+        columns = np.searchsorted(unique, np.arange(size + 1) * size).astype(np.int32)
         return cls(
             size,
             columns,
-            unique % size,
+            (unique % size).astype(np.int32),
             border,
             backend or default_backend(),
             entry[size : size + pairs].copy(),
@@ -235,7 +236,9 @@ class SymmetricPattern:
         if symbolic is None:
             lower = sp.csc_matrix((values, self.rows, self.columns), (self.size, self.size))
             ordering = "metis" if self.size >= DISSECTION_FROM else "amd"
-            symbolic = self._symbolic["rslab"] = rslab.analyze(lower, path="ldlt", ordering=ordering)
+            # one pool for all, of RAYON_NUM_THREADS: a pool for each factorisation keeps tens of megabytes
+            symbolic = rslab.analyze(lower, path="ldlt", ordering=ordering, threads="ambient")
+            self._symbolic["rslab"] = symbolic
         try:
             return _RslabFactor(symbolic.factor(values))
         except (RuntimeError, ValueError, ArithmeticError) as error:

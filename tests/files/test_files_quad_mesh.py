@@ -74,6 +74,34 @@ def test_figures_and_colours_are_properties_of_a_ply(tmp_path: Path) -> None:
     assert np.array_equal(read_ply(data).corners.reshape(-1, 4), mesh.faces)
 
 
+def test_figures_are_comments_of_an_obj(tmp_path: Path) -> None:
+    mesh = sample()
+    text = written(tmp_path / "a.obj", mesh).read_text()
+    figures = mesh_figures(mesh)
+    for kind, mark, what in ((figures.vertices, "#v ", "vertex"), (figures.faces, "#f ", "face")):
+        (title,) = [line for line in text.splitlines() if line.startswith(f"# figures of each {what}")]
+        assert title.split(": ")[1].split() == list(kind)
+        table = np.array([line.split()[1:] for line in text.splitlines() if line.startswith(mark)], np.float64)
+        assert np.array_equal(table, np.column_stack(list(kind.values())), equal_nan=True)
+
+
+def test_figures_are_user_text_of_a_rhino_mesh(tmp_path: Path) -> None:
+    rhino3dm = pytest.importorskip("rhino3dm")
+    mesh = sample()
+    rgb = np.random.default_rng(1).integers(0, 256, (12, 3)).astype(np.uint8)
+    path = written(tmp_path / "a.3dm", mesh, colours={"faces": rgb})
+    (item,) = rhino3dm.File3dm.Read(str(path)).Objects
+    figures = mesh_figures(mesh)
+    for kind in ("vertices", "faces"):
+        for key, values in getattr(figures, kind).items():
+            found = np.array(item.Attributes.GetUserString(f"{kind}.{key}").split(","), np.float64)
+            assert np.array_equal(found, values, equal_nan=True)
+    # a vertex has the mean colour of its faces
+    for k in range(20):
+        around = rgb[(mesh.faces == k).any(1)].mean(0)
+        assert list(item.Geometry.VertexColors[k][:3]) == pytest.approx(around, abs=0.5)
+
+
 # as compas 2 writes it; keys need not be consecutive, and coordinates may be left to the default
 COMPAS = {
     "attributes": {},

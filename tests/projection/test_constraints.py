@@ -88,12 +88,6 @@ def draw(name: str, rng: np.random.Generator) -> tuple[list[Block], list[Constra
         d = v[pairs[:, 1]] - v[pairs[:, 0]]
         q = EDGE * d / (d * d).sum(1, keepdims=True) + 0.1 * rng.normal(size=d.shape)
         return [points, Block("inverse edges", q)], [InvertedEdge(name=name, edges=pairs, edge=EDGE)]
-    if name == "signed RightAngle":
-        return [points], [RightAngle(name=name, stars=legs, edge=EDGE, signs=rng.choice([-1.0, 1.0], legs.shape))]
-    if name == "signed NodeAngle":
-        signs = rng.choice([-1.0, 1.0], legs.shape)
-        blocks = [points, Block("chords", rng.uniform(1, 2, (4, 2)), EDGE)]
-        return blocks, [NodeAngle(name=name, stars=legs, angle=70.0, edge=EDGE, signs=signs)]
     if name == "RightAngle":
         return [points], [RightAngle(name=name, stars=legs, edge=EDGE)]
     if name == "NodeAngle":

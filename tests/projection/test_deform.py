@@ -78,6 +78,13 @@ def test_radius_is_that_of_the_net() -> None:
     assert state.mesh.vertices == pytest.approx(narrowed()[1].mesh.vertices, abs=1e-6)
 
 
+def test_place_of_the_mesh_does_not_matter() -> None:
+    away = np.array([5e5, 4.5e6, 300.0])
+    state = deform(net().at(net().vertices + away), RING, 0.98, radius=2.0)[-1]
+    assert state.solution.solved
+    assert state.mesh.vertices - away == pytest.approx(narrowed()[1].mesh.vertices, abs=1e-7)
+
+
 def test_net_without_symmetry_tells_the_remainder() -> None:
     """Four conditions on three unknowns a vertex (DESIGN section 5)."""
     states = deform(noisy(net(), 0.02, 0), RING, 0.96, radius=2.0)

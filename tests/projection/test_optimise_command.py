@@ -8,21 +8,31 @@ import json
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 from nets import grid_faces, hexagonal_net, lamella_patch, noisy, rotational_net, spider, weingarten_patch
 
 from lamella import Catenoid, Enneper, Unduloid, quad_mesh
 from lamella.cli import main
+from lamella.files.optimise_json import optimise_schema
 from lamella.files.quad_mesh_files import QuadFile, quad_mesh_bytes, read_quad_mesh
 from lamella.optimise_wishes import USED
 from lamella.projection.mesh_figures import mesh_figures
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.star_measures import circle_angles, star_spheres
 
+SCHEMA = jsonschema.Draft202012Validator(optimise_schema())
 UNDULOID = Unduloid(0.6, 1.4, (-8.0, 8.0))
 PROJECT = '[surface]\nkind = "unduloid"\nneck_radius = 0.6\nbulge_radius = 1.4\nheight = [-8.0, 8.0]\n'
 EXAMPLE = Path(__file__).parents[2] / "examples" / "optimise" / "unduloid_patch.obj"
+
+
+def test_schema_refuses_what_is_not_written() -> None:
+    jsonschema.Draft202012Validator.check_schema(optimise_schema())
+    assert not SCHEMA.is_valid({"schema": "lamella/optimise/1"})
+    problems = optimise_schema()["properties"]["problem"]["enum"]
+    assert problems == list(USED)
 
 
 def put(path: Path, mesh: QuadMesh) -> Path:
@@ -35,7 +45,9 @@ def run(mesh: Path, problem: str, *options: object, out: str = "out.ply", code: 
     target, figures = mesh.parent / out, mesh.parent / "figures.json"
     arguments = ["optimise", mesh, "--as", problem, "--out", target, "--json", figures, *options]
     assert main([str(word) for word in arguments]) == code
-    return read_quad_mesh(target).mesh, json.loads(figures.read_text())
+    said = json.loads(figures.read_text())
+    SCHEMA.validate(said)
+    return read_quad_mesh(target).mesh, said
 
 
 def test_example_finds_the_radius_of_its_unduloid(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -143,9 +155,10 @@ def test_planar_strips(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
     options = ["--height", "0.05", "--surface", str(tmp_path / "u.toml"), "--rounds", "1", "--json", str(figures)]
     assert main(["optimise", str(path), "--as", "planar", "--out", str(out), *options]) == 0
     said = json.loads(figures.read_text())
+    SCHEMA.validate(said)
     # each of the 14 polylines of 7 vertices gets a ruling more between any two
-    assert said["result"]["figures"]["largest after"] < 1e-8
-    assert said["result"]["figures"]["median before"] > 1e-3
+    assert said["result"]["figures"]["largest_after"] < 1e-8
+    assert said["result"]["figures"]["median_before"] > 1e-3
     assert len(said["faces"]["planarity"]) == len(said["faces"]["planarity_before"]) == 14 * 12
     assert max(said["faces"]["planarity"]) < 1e-8
     assert [int(x) for x in np.unique(said["faces"]["strip"])] == list(range(14))
@@ -161,7 +174,7 @@ def test_surface_of_the_mesh_itself(tmp_path: Path) -> None:
     options = ["--height", "0.03", "--rounds", "1", "--json", str(tmp_path / "s.json")]
     assert main(["optimise", str(path), "--as", "planar", "--out", str(out), *options]) in (0, 1)
     said = json.loads((tmp_path / "s.json").read_text())
-    assert said["result"]["figures"]["median after"] < said["result"]["figures"]["median before"] / 100
+    assert said["result"]["figures"]["median_after"] < said["result"]["figures"]["median_before"] / 100
 
 
 @pytest.mark.parametrize("valence", [3, 5, 6])
@@ -194,6 +207,40 @@ def test_files_in_millimetres(tmp_path: Path) -> None:
     assert 1 / np.abs(star_spheres(again, again.inner).curvature) == pytest.approx(2.0, rel=1e-6)
 
 
+def test_moves_are_told_and_a_mesh_that_was_no_such_net(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    given = noisy(lamella_patch(UNDULOID, 12, 1.2), 0.01, 5)
+    net, _ = run(put(tmp_path / "a.ply", given), "sphere-stars", "--radius", 2)
+    moved = np.linalg.norm(net.vertices - given.vertices, axis=1)
+    told = capsys.readouterr().err
+    assert f"vertices moved by {np.sqrt((moved**2).mean()):.3g} m root mean square, {moved.max():.3g} m at most" in told
+    assert "no such net by far" not in told
+    path = put(tmp_path / "b.ply", rotational_net(UNDULOID, 24, 21, -10 * np.pi / 24))
+    assert main(["optimise", str(path), "--as", "asymptotic", "--out", str(tmp_path / "c.ply")]) in (0, 1)
+    assert "no such net by far" in capsys.readouterr().err
+
+
+def test_straighten_refuses_a_surface_without_principal_directions(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    i, j = (x.ravel() for x in np.meshgrid(np.linspace(-0.5, 0.5, 10), np.linspace(-0.5, 0.5, 10), indexing="ij"))
+    ball = 3 * np.column_stack([np.cos(i) * np.cos(j), np.cos(i) * np.sin(j), np.sin(i)])
+    path = put(tmp_path / "a.obj", quad_mesh(ball, grid_faces(10, 10)))
+    assert main(["optimise", str(path), "--as", "straighten", "--out", str(tmp_path / "b.obj")]) == 2
+    assert "every point is umbilic" in capsys.readouterr().err
+    assert not (tmp_path / "b.obj").exists()
+
+
+def test_straighten_on_a_surface_that_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A cylinder with unevenly spread parallels: squares exist on it, known as well as the surface itself."""
+    i, j = (x.ravel() for x in np.meshgrid(np.linspace(-1, 1, 12), np.linspace(-1, 1, 12), indexing="ij"))
+    points = np.column_stack([2 * np.cos(0.7 * i), 2 * np.sin(0.7 * i), 1.9 * (j + 0.15 * j**2)])
+    net, said = run(put(tmp_path / "a.obj", quad_mesh(points, grid_faces(12, 12))), "straighten", out="m.obj")
+    assert said["solved"]
+    side = net.vertices[net.faces] - np.roll(net.vertices[net.faces], 1, axis=1)
+    length = np.linalg.norm(side, axis=2)
+    assert np.abs(length[:, 0] / length[:, 1] - 1).max() < 0.02
+
+
 def test_picture(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     given = noisy(lamella_patch(UNDULOID, 8, 1.0), 0.01, 5)
@@ -220,6 +267,13 @@ def test_picture(tmp_path: Path) -> None:
         ("deform", ["--driver", "40=0.9"], "no diagonal"),
         ("deform", ["--driver", "4000=0.9"], "no vertex 4000"),
         ("planar", [], "--as planar needs --height"),
+        ("asymptotic", ["--tolerance", "0"], "--tolerance 0 is out of range"),
+        ("asymptotic", ["--tolerance", "10"], "at most 0.01 edges"),
+        ("asymptotic", ["--picture", "a.svg"], "is no .png"),
+        ("deform", ["--driver", "13,26,39,52=0.9", "--open-driver", "--radius", "0"], "--radius 0 is out of range"),
+        ("deform", ["--driver", "13,26,39,52=0.9", "--open-driver", "--radius", "-2"], "--radius -2 is out of range"),
+        ("deform", ["--driver", "13,26,39,52=0.9", "--open-driver", "--radius", "0.01"], "below 2 mean edges"),
+        ("planar", ["--height", "0"], "--height 0 is out of range"),
         ("planar", ["--height", "0.1", "--rounds", "9"], "--rounds 9 is out of range"),
         ("planar", ["--height", "0.1", "--surface", "none.toml"], "none.toml"),
     ],
@@ -234,6 +288,19 @@ def test_refused(
     assert match in error
     assert "remedy: " in error
     assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(("problem", "options"), [("straighten", []), ("planar", ["--height", "0.05"])])
+def test_surface_of_another_mesh_is_refused(
+    problem: str, options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "u.toml").write_text(PROJECT)
+    mesh = lamella_patch(UNDULOID, 9, 1.0)
+    path = put(tmp_path / "a.obj", mesh.at(mesh.vertices + [5.0, 0, 0]))
+    command = ["optimise", str(path), "--as", problem, "--surface", str(tmp_path / "u.toml"), *options]
+    assert main([*command, "--out", str(tmp_path / "o.obj")]) == 2
+    assert "half of the vertices are more than" in capsys.readouterr().err
+    assert not (tmp_path / "o.obj").exists()
 
 
 def test_targets_refused_before_anything_is_computed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

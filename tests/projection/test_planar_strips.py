@@ -38,10 +38,10 @@ def strips() -> PlanarStrips:
 def test_quads_become_planar() -> None:
     found, figures = strips(), strips().figures()
     assert all(s.solved for s in found.solutions)
-    assert figures["red before"] > 0.9
-    assert figures["red after"] == 0.0
-    assert figures["largest after"] < 1e-6
-    assert figures["not developable"] == 0.0
+    assert figures["red_before"] > 0.9
+    assert figures["red_after"] == 0.0
+    assert figures["largest_after"] < 1e-6
+    assert figures["not_developable"] == 0.0
     for lower, upper, after in zip(found.lower, found.upper, found.after, strict=True):
         assert planarity_score(lower[:-1], lower[1:], upper[1:], upper[:-1]) == pytest.approx(after)
 
@@ -99,9 +99,9 @@ def test_across_a_neck_the_figures_say_that_none_exists() -> None:
     assert height.min() == 0.0
     assert (height[[4, 5, 6, 7]] < HEIGHT).all()
     assert (height[[0, 11]] > HEIGHT).all()
-    assert found.figures()["not developable"] > 0.2
+    assert found.figures()["not_developable"] > 0.2
     # what planar quads there are bridge the neck by a jump of the rulings
-    assert found.figures()["largest turn"] > 20
+    assert found.figures()["largest_turn"] > 20
 
 
 def test_surface_as_a_mesh_of_triangles() -> None:
@@ -109,8 +109,8 @@ def test_surface_as_a_mesh_of_triangles() -> None:
     triangles = np.concatenate([mesh.faces[:, [0, 1, 2]], mesh.faces[:, [0, 2, 3]]])
     feet = MeshFeet(mesh.points, triangles)
     found = planar_strips([lamella(0.25, 0.75)], feet, HEIGHT, rounds=1, tolerance=1e-6)
-    assert found.figures()["red after"] < 0.1
-    assert found.figures()["median after"] < found.figures()["median before"] / 10
+    assert found.figures()["red_after"] < 0.1
+    assert found.figures()["median_after"] < found.figures()["median_before"] / 10
 
 
 def test_strips_of_a_found_surface() -> None:
@@ -126,11 +126,11 @@ def test_strips_of_a_found_surface() -> None:
         curves.append(np.stack([np.interp(even, s, x) for x in points.T], 1))
     found = planar_strips(curves, foot_surface(surface), HEIGHT)
     figures = found.figures()
-    assert figures["largest after"] < 1e-6 < 1e-3 < figures["median before"]
-    assert figures["largest tilt"] < 2
-    assert figures["largest shift"] < HEIGHT
+    assert figures["largest_after"] < 1e-6 < 1e-3 < figures["median_before"]
+    assert figures["largest_tilt"] < 2
+    assert figures["largest_shift"] < HEIGHT
     # lamellas whose geodesic curvature changes its sign are no developable strips there
-    assert 0 < figures["not developable"] < 0.3
+    assert 0 < figures["not_developable"] < 0.3
 
 
 class TestRefused:
@@ -142,6 +142,15 @@ class TestRefused:
             planar_strips([lamella(0.2, 0.8), lamella(0.2, 0.8)[:3]], surface, HEIGHT)
         with pytest.raises(InputError, match="twice"):
             planar_strips([lamella(0.2, 0.8)[[0, 0, 1, 2]]], surface, HEIGHT)
+
+    def test_height_beyond_the_centre_of_curvature(self) -> None:
+        """Lamellas of an unduloid have kn = H = 1/2 towards the axis: their normals meet 2 m inwards."""
+        surface, curves = foot_surface(UNDULOID), [lamella(-1.0, 1.0, 40)]
+        assert planar_strips(curves, surface, 1.9, rounds=1, iterations=1).height == 1.9
+        with pytest.raises(InputError, match="beyond the centre of curvature of curve 0"):
+            planar_strips(curves, surface, 2.1)
+        with pytest.raises(InputError, match="more than the largest curve measures"):
+            planar_strips(curves, surface, -50.0)
 
     def test_height(self) -> None:
         with pytest.raises(InputError, match="height"):

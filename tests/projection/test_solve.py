@@ -7,7 +7,7 @@ pattern is analysed once. 6. Bad input.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -146,6 +146,28 @@ class TestVerdict:
         solution = solve([start], [rod, held, wish], tolerance=1e-4, iterations=100)
         assert solution.solved
         assert solution.values["vertices"][1] == pytest.approx([0.6, 0.8, 0], abs=1e-4)
+
+    def test_hard_holds_to_rounding_beside_a_wish_that_fades_and_to_its_weight_squared_beside_one_that_stays(
+        self,
+    ) -> None:
+        """Least of (|v|^2 - 1)^2 / 4 + w^2 |v - p|^2: |v| - 1 is w^2 (|p| - 1) to first order."""
+        far = np.array([[1.8, 2.4, 0.0]])
+        start = Block("vertices", square().values[:2], 1.0)
+        held = Fixed(name="held", index=np.array([0]), points=np.zeros((1, 3)), edge=1.0)
+        rod = EdgeLength(name="rod", edges=EDGES[:1], lengths=np.ones(1), edge=1.0)
+        left = []
+        for weight in (0.04, 0.02, 0.01):
+            stays = Fixed(name="wish", index=np.array([1]), points=far, edge=1.0, weight=weight, hard=False)
+            solution = solve([start], [rod, held, stays], iterations=200)
+            assert not solution.solved
+            assert "rod" in solution.unmet
+            left.append(solution.last.residual["rod"])
+            fades = replace(stays, fade=0.5)
+            solution = solve([start], [rod, held, fades])
+            assert solution.solved
+            assert max(solution.last.largest[name] for name in ("rod", "held")) <= 1e-9
+        assert np.log2(np.array(left[:-1]) / left[1:]) == pytest.approx(2, abs=0.1)
+        assert left[-1] == pytest.approx(0.01**2 * (3 - 1), rel=0.05)
 
     def test_iterations_used_up(self) -> None:
         solution = solve([square()], [lengths()], iterations=1)

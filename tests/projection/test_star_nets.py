@@ -172,6 +172,29 @@ def test_size_of_the_mesh_does_not_matter() -> None:
     assert large.mesh.vertices == pytest.approx(1000 * small.mesh.vertices, abs=1e-5)
 
 
+def test_place_of_the_mesh_does_not_matter() -> None:
+    """Coordinates of a national grid: rounding there is 1e-9 m, more than a tolerance of 1e-10 edges."""
+    mesh, away = noisy(lamella_patch(UNDULOID, 16, 1.5), NOISE, 7), np.array([5e5, 4.5e6, 300.0])
+    here, there = (sphere_stars(m, radius=2.0) for m in (mesh, mesh.at(mesh.vertices + away)))
+    assert there.solution.solved
+    assert there.solution.last.number == here.solution.last.number
+    assert there.mesh.vertices - away == pytest.approx(here.mesh.vertices, abs=1e-8)
+    assert there.solution.values["vertices"] == pytest.approx(there.mesh.vertices)
+
+
+def test_a_net_that_shrinks_to_a_point_is_not_solved() -> None:
+    """No closed surface is minimal; a point meets planar stars and equal diagonals."""
+    i, j = (x.ravel() * 2 * np.pi / 20 for x in np.meshgrid(np.arange(20), np.arange(20), indexing="ij"))
+    torus = np.column_stack([(3 + np.cos(i)) * np.cos(j), (3 + np.cos(i)) * np.sin(j), np.sin(i)])
+    k = np.arange(400).reshape(20, 20)
+    faces = np.stack([k, np.roll(k, -1, 0), np.roll(k, (-1, -1), (0, 1)), np.roll(k, -1, 1)], -1).reshape(-1, 4)
+    net = asymptotic(quad_mesh(torus, faces), form="faces")
+    assert net.solution.verdict == "collapsed"
+    assert not net.solution.solved
+    assert max(net.solution.last.residual.values()) < 1e-10
+    assert net.mesh.mean_edge < 1e-6
+
+
 @pytest.mark.parametrize("share", [0.0, NOISE])
 def test_hexagonal_node(share: float) -> None:
     """Enneper's surface of order 3: all stars but that of the hexagonal node become planar, all angles right."""

@@ -39,6 +39,24 @@ def test_curvatures_of_a_lamella() -> None:
     assert np.log2(errors[0] / errors[1]) > 1.8
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_helix_on_a_cylinder_bears_no_developable_strip(side: int) -> None:
+    """kg = 0 and tg = 1 / (2 R) all along: rulings would run along the curve, on either side."""
+    at = Cylinder(2.0, (-5.0, 5.0)).at(np.linspace(-1, 1, 30) * (1 + 1j))
+    # at the ends differences are one-sided
+    assert (buildable_height(at.position, side * at.normal)[1:-1] == 0).all()
+
+
+def test_any_curve_on_a_sphere_bears_one_up_to_the_centre() -> None:
+    """tg = 0: the rulings are normals, a cone from the centre; on the outer side nothing limits it."""
+    turn = np.linspace(0, 2, 40)
+    for height in (0.0, 0.7):  # a great circle, whose kg is 0, and a small one
+        across = np.sqrt(1 - height**2)
+        inwards = -np.column_stack([across * np.cos(turn), across * np.sin(turn), np.full(40, height)])
+        assert buildable_height(-3 * inwards, inwards)[1:-1] == pytest.approx(3, rel=2e-3)
+        assert np.isinf(buildable_height(-3 * inwards, -inwards)[1:-1]).all()
+
+
 def test_the_ruled_surface_folds_at_the_buildable_height() -> None:
     _, points, normals = line(400)
     _, kg, tg, s = polyline_darboux(points, normals)

@@ -11,9 +11,10 @@ from scipy.sparse.csgraph import connected_components
 
 from lamella.errors import InputError
 from lamella.files.compas_json import compas_bytes, read_compas
-from lamella.files.text import one_line, require_finite, rows
+from lamella.files.text import dumped, one_line, require_finite, rows
 from lamella.projection.mesh_figures import MeshFigures
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
+from lamella.projection.unknowns import Floats
 from lamella.surface.imported.raw_mesh import Polygons
 from lamella.surface.imported.read_3dm import METRES as RHINO_METRES
 from lamella.surface.imported.read_3dm import read_3dm
@@ -25,6 +26,7 @@ from lamella.wording import counted
 
 READERS = {".obj": read_obj, ".ply": read_ply, ".3dm": read_3dm}
 FORMATS = (*READERS, ".json")
+FIGURE_UNITS = "star_sphericity star_planarity star_radius moved in m; star_curvature in 1/m; angle in degrees"
 
 
 @dataclass(frozen=True)
@@ -169,26 +171,35 @@ def quad_mesh_bytes(
     Parameters
     ----------
     suffix : str
-        .obj (no figures), .ply (figures and colours as properties), .3dm (no figures), .json (figures as attributes).
+        .obj (figures as comments), .ply (figures and colours as properties), .3dm (figures as user text of the mesh,
+        colours of vertices), .json (figures as attributes).
     mesh : QuadMesh
     figures : MeshFigures
     like : QuadFile
         Where it came from: unit, and the keys of a COMPAS mesh if the numbers of vertices and faces are the same.
     name, version : str
     colours : "vertices" or "faces" to (n, 3) uint8, optional
-        sRGB, for .ply.
+        sRGB, for .ply and .3dm.
     """
     points = mesh.vertices / like.metres
     require_finite(points)
     unit = name_of(like.metres)
     match suffix.lower():
         case ".obj":
-            head = f"# lamella {one_line(version)}\n# {one_line(name)}\n# units: {unit}\n".encode()
-            return head + rows(points, b"v ") + rows(mesh.faces + 1, b"f ")
+            head = f"# lamella {one_line(version)}\n# {one_line(name)}\n# units: {unit}; {FIGURE_UNITS}\n".encode()
+            return b"".join(
+                (
+                    head,
+                    rows(points, b"v "),
+                    _comments("vertex", figures.vertices, b"#v "),
+                    rows(mesh.faces + 1, b"f "),
+                    _comments("face", figures.faces, b"#f "),
+                )
+            )
         case ".ply":
             return _ply(points, mesh, figures, colours or {}, f"{one_line(name)}, lamella {one_line(version)}", unit)
         case ".3dm":
-            return _rhino(points, mesh, like.metres, name, version)
+            return _rhino(points, mesh, figures, colours or {}, like.metres, name, version)
     same = len(like.vertex_keys) == len(points) and len(like.face_keys) == len(mesh.faces)
     return compas_bytes(
         points,
@@ -201,8 +212,16 @@ def quad_mesh_bytes(
     )
 
 
+def _comments(what: str, figures: dict[str, Floats], head: bytes) -> bytes:
+    """Figures in the order of what they are of, as lines that readers of .obj pass over; unknown ones are nan."""
+    if not figures:
+        return b""
+    title = f"# figures of each {what}, in order: {' '.join(figures)}\n".encode()
+    return title + rows(np.column_stack(list(figures.values())), head).replace(b"null", b"nan")
+
+
 def _ply(
-    points: np.ndarray[tuple[int, int], np.dtype[np.float64]],
+    points: Floats,
     mesh: QuadMesh,
     figures: MeshFigures,
     colours: dict[str, np.ndarray[tuple[int, int], np.dtype[np.uint8]]],
@@ -229,8 +248,7 @@ def _ply(
         "ply",
         "format binary_little_endian 1.0",
         f"comment {about}",
-        f"comment units: x y z in {unit}; star_sphericity star_planarity star_radius moved in m; star_curvature in 1/m;"
-        " angle in degrees",
+        f"comment units: x y z in {unit}; {FIGURE_UNITS}",
         f"element vertex {len(vertices)}",
         *(f"property {types[vertices.dtype[key].kind]} {key}" for key in vertices.dtype.names or ()),
         f"element face {len(faces)}",
@@ -242,7 +260,13 @@ def _ply(
 
 
 def _rhino(
-    points: np.ndarray[tuple[int, int], np.dtype[np.float64]], mesh: QuadMesh, metres: float, name: str, version: str
+    points: Floats,
+    mesh: QuadMesh,
+    figures: MeshFigures,
+    colours: dict[str, np.ndarray[tuple[int, int], np.dtype[np.uint8]]],
+    metres: float,
+    name: str,
+    version: str,
 ) -> bytes:
     import rhino3dm
 
@@ -261,5 +285,23 @@ def _rhino(
     for face in mesh.faces.tolist():
         made.Faces.AddFace(*face)
     made.Normals.ComputeNormals()
-    model.file.Objects.AddMesh(made, model.attributes("mesh", name))
+    for rgb in _of_vertices(mesh, colours).tolist():
+        made.VertexColors.Add(*rgb)
+    text = {
+        f"{kind}.{key}": dumped(values)[1:-1].replace(b"null", b"nan").decode()
+        for kind in ("vertices", "faces")
+        for key, values in getattr(figures, kind).items()
+    }
+    model.file.Objects.AddMesh(made, model.attributes("mesh", name, units=FIGURE_UNITS, **text))
     return model.encoded()
+
+
+def _of_vertices(
+    mesh: QuadMesh, colours: dict[str, np.ndarray[tuple[int, int], np.dtype[np.uint8]]]
+) -> np.ndarray[tuple[int, int], np.dtype[np.uint8]]:
+    """Colours of vertices; those of faces as their mean, since a mesh of Rhino has none for faces."""
+    if "faces" not in colours:
+        return colours.get("vertices", np.zeros((0, 3), np.uint8))
+    total = np.zeros((len(mesh.vertices), 3))
+    np.add.at(total, mesh.faces.ravel(), np.repeat(colours["faces"].astype(np.float64), 4, axis=0))
+    return np.asarray((total / mesh.face_count[:, None]).round(), np.uint8)

@@ -25,11 +25,14 @@ class Constraint(ABC):
     name : str
         Under which reports list it.
     weight : float
-        Factor of the residual in the sum of squares.
+        Factor of the residual in the sum of squares: 0.1 counts a tenth of an edge as much as a hundredth with 1.
     fade : float
-        Factor of the weight from an iteration to the next; a faded constraint guides the way and leaves no trace.
+        Factor of the weight from an iteration to the next; below 1e-4 of its first weight a constraint is dropped.
     hard : bool
-        Whether the solver has to meet it. Soft constraints only choose among the ways to meet the hard ones.
+        Whether it has to be met to the solver's tolerance before the verdict is "solved". Hard and soft constraints
+        are terms of one sum of squares: soft ones that fade choose among the ways to meet the hard ones and leave no
+        trace, since at the end the hard ones are alone. A soft one of weight w that stays (fade 1) keeps the hard
+        ones from holding by the order of w^2; they count as met only if that is within the tolerance.
     """
 
     name: str

@@ -59,7 +59,7 @@ class NormalEquations:
             k, m = unknowns.shape
             first += k * (k + 1) // 2 * m
         # millions: 32 bits are enough and halve the memory
-        one, other = np.empty(first, np.int32), np.empty(first, np.int32)
+        one, other = np.empty((2, first), np.int32)
         for part in parts:
             k, m = part.unknowns.shape
             a, b = np.tril_indices(k)
@@ -110,7 +110,7 @@ class NormalEquations:
                 continue
             plan = self._parts[part]
             if not constraint.linear:
-                values += self.pattern.assemble(weight**2 * _products(at.jacobian), first=plan.first)
+                values += self.pattern.assemble(_products(at.jacobian, weight), first=plan.first)
             else:
                 if part not in self._cache:
                     entries = self.pattern.assemble(_products(at.jacobian), first=plan.first)
@@ -158,8 +158,8 @@ class NormalEquations:
         ]
 
 
-def _products(jacobian: Floats) -> Floats:
-    """Lower triangles of J^T J item by item, (k (k + 1) / 2, m)."""
+def _products(jacobian: Floats, weight: float = 1.0) -> Floats:
+    """Lower triangles of w^2 J^T J item by item, (k (k + 1) / 2, m)."""
     p, k, m = jacobian.shape
     products = np.empty((k * (k + 1) // 2, m))
     row = 0
@@ -169,4 +169,6 @@ def _products(jacobian: Floats) -> Floats:
         for equation in range(1, p):
             block += jacobian[equation, i] * jacobian[equation, : i + 1]
         row += i + 1
+    if weight != 1:
+        products *= weight**2
     return products

@@ -23,6 +23,10 @@ from lamella.projection.unknowns import Floats, Integers
 Booleans = NDArray[np.bool_]
 
 
+# an edge of this share of its length is none any more
+COLLAPSED = 1e-3
+
+
 @dataclass(frozen=True)
 class QuadMesh:
     """Vertices and consistently oriented quads, see `quad_mesh`.
@@ -205,6 +209,12 @@ class QuadMesh:
     def at(self, vertices: Floats) -> QuadMesh:
         """The same mesh with its vertices elsewhere."""
         return QuadMesh(np.asarray(vertices, np.float64), self.faces, self.twin)
+
+
+def collapsed(before: QuadMesh, after: QuadMesh) -> bool:
+    """Whether an edge has lost its length on the way from one mesh to the same mesh elsewhere."""
+    length = [np.linalg.norm(np.diff(m.vertices[before.edges], axis=1)[:, 0], axis=1) for m in (before, after)]
+    return bool((length[1] < COLLAPSED * length[0]).any())
 
 
 def quad_mesh(vertices: ArrayLike, faces: ArrayLike) -> QuadMesh:

@@ -7,7 +7,7 @@ from typing import Literal
 
 from lamella.projection.unknowns import Floats
 
-Verdict = Literal["solved", "settled", "stagnated", "iterations used up", "broken off"]
+Verdict = Literal["solved", "settled", "stagnated", "iterations used up", "broken off", "collapsed"]
 """How it ended.
 
 solved
@@ -21,6 +21,8 @@ iterations used up
     None of these yet.
 broken off
     The equations cannot be solved, or values grow beyond all numbers.
+collapsed
+    Edges have lost their length: a point meets most constraints. There is no such net nearby.
 """
 
 

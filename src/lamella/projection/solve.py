@@ -97,6 +97,8 @@ def solve(
             damping,
             0.0,
         )
+        if records:
+            damping = _next_damping(records[-1], state.objective)
         verdict = ending.verdict(state, records, weights)
         if verdict is None and number < iterations:
             values, right = equations.assemble(current, linearised, weights)
@@ -107,13 +109,12 @@ def solve(
                 verdict = "broken off"
             else:
                 direction = -factor.solve(right)
-                factor = None  # before the next one takes its memory
+                del factor, values  # before the next ones take their memory
                 ends = equations.residuals(current, vector + direction)
                 length = best_length(residuals, equations.change(linearised, direction), ends, weights)
                 vector = vector + length * direction
                 step = float(np.abs(length * direction / layout.scale).max())
                 state = replace(state, step=step, length=length, damping=damping)
-                damping = _next_damping(damping, length)
         records.append(replace(state, seconds=time.perf_counter() - begin))
         if on_iteration:
             on_iteration(records[-1])
@@ -178,31 +179,39 @@ def _weight(constraint: Constraint, number: int) -> float:
 
 
 def _factor(equations: NormalEquations, values: Floats, damping: float) -> tuple[Factor | None, float]:
-    """A factor that is positive definite, and the damping it took."""
+    """A factor that is positive definite, and the damping it took, which stays in the values."""
+    diagonal = equations.pattern.columns[:-1]
+    undamped = values[diagonal]
     while damping <= MOST_DAMPING:
-        factor = _definite(equations, values, damping)
+        values[diagonal] = undamped + damping / equations.layout.scale**2
+        factor = _definite(equations, values)
         if factor is not None:
             return factor, damping
         damping = damping * RAISE
     return None, damping
 
 
-def _definite(equations: NormalEquations, values: Floats, damping: float) -> Factor | None:
-    """A factor of the damped matrix, if it is positive definite."""
-    damped = values.copy()
-    damped[equations.pattern.columns[:-1]] += damping / equations.layout.scale**2
+def _definite(equations: NormalEquations, values: Floats) -> Factor | None:
+    """A factor of the matrix, if it is positive definite."""
     try:
-        factor = equations.pattern.factor(damped)
+        factor = equations.pattern.factor(values)
     except SingularError:
         return None
     return None if factor.negative else factor
 
 
-def _next_damping(damping: float, length: float) -> float:
-    """Less after a step that went as far as foreseen, more after one that was cut short."""
-    if length < POOR:
-        return min(damping * RAISE, MOST_DAMPING)
-    return max(damping * LOWER, LEAST_DAMPING) if length > GOOD else damping
+def _next_damping(before: Iteration, objective: float) -> float:
+    """More after a step that was cut short; after one that went as far as foreseen less, as residuals have become less.
+
+    Damping in proportion to the residual keeps the order two of Gauss and Newton where J^T J is singular or nearly so
+    (Fan and Yuan 2005): soft modes of a large net would otherwise come in by a constant share a step.
+    """
+    if before.length < POOR:
+        return min(before.damping * RAISE, MOST_DAMPING)
+    if before.length <= GOOD:
+        return before.damping
+    share = np.sqrt(objective / before.objective) if before.objective > 0 else LOWER
+    return max(before.damping * min(LOWER, float(share)), LEAST_DAMPING)
 
 
 def _rms(numbers: Floats) -> float:

@@ -18,7 +18,7 @@ class InvertedEdge(Constraint):
 
     Inversion at v_i turns the circle through its previous and next neighbour into a straight line along the circle's
     tangent at v_i, and neighbours into v_i + q e: so q_1 - q_3 is the tangent of the vertex circle, and `RightAngle` or
-    `NodeAngle` on these vectors is the angle at which vertex circles cross. Seen from its other end an edge has -q.
+    `NodeAngle` on these vectors is the angle at which vertex circles cross.
 
     ========== ========= ==========================
     variable   symbol    count
@@ -31,7 +31,7 @@ class InvertedEdge(Constraint):
     Attributes
     ----------
     edges : (m, 2) int
-        i and j; inverse k belongs to edge k.
+        i and j; inverse k belongs to edge k. An edge may come from both its ends.
     edge : float
         e, m.
     vertices, inverses : str

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.projection.constraint import Constraint
-from lamella.projection.constraints.right_angle import chords, signed
+from lamella.projection.constraints.right_angle import chords
 from lamella.projection.unknowns import Floats, Integers, Slot, dot
 
 
@@ -40,8 +40,6 @@ class NodeAngle(Constraint):
         e, m.
     block, lengths : str
         Names of the points' block and of the chord lengths', (s, 2).
-    signs : (s, 4), optional
-        +1 or -1, factors of the points; default: 1.
     """
 
     stars: Integers
@@ -49,7 +47,6 @@ class NodeAngle(Constraint):
     edge: float
     block: str = "vertices"
     lengths: str = "chords"
-    signs: Floats | None = None
 
     def slots(self) -> tuple[Slot, ...]:
         points = tuple(Slot(self.block, self.stars[:, j]) for j in range(4))
@@ -57,14 +54,14 @@ class NodeAngle(Constraint):
 
     def residual(self, *arguments: Floats) -> Floats:
         *points, length = arguments
-        p, q = chords(tuple(points), self.signs)
+        p, q = chords(tuple(points))
         a, b = length[:, :1], length[:, 1:]
         met = dot(p, q) - np.cos(np.radians(self.angle)) * a * b
         return np.concatenate([met, dot(p, p) - a * a, dot(q, q) - b * b], 1) / (4 * self.edge**2)
 
     def jacobian(self, *arguments: Floats) -> tuple[Floats, ...]:
         *points, length = arguments
-        p, q = chords(tuple(points), self.signs)
+        p, q = chords(tuple(points))
         a, b = length.T
         cosine = np.cos(np.radians(self.angle))
         none = np.zeros_like(p)
@@ -72,4 +69,4 @@ class NodeAngle(Constraint):
         by_q = np.stack([p, none, 2 * q], 1) / (4 * self.edge**2)
         zero = np.zeros_like(a)
         by_length = [np.stack(row, 1) for row in ((-cosine * b, -cosine * a), (-2 * a, zero), (zero, -2 * b))]
-        return *signed((by_p, by_q, -by_p, -by_q), self.signs), np.stack(by_length, 1) / (4 * self.edge**2)
+        return by_p, by_q, -by_p, -by_q, np.stack(by_length, 1) / (4 * self.edge**2)

@@ -35,35 +35,25 @@ class RightAngle(Constraint):
         e, m.
     block : str
         Of the points.
-    signs : (s, 4), optional
-        +1 or -1, factors of the points; default: 1.
     """
 
     stars: Integers
     edge: float
     block: str = "vertices"
-    signs: Floats | None = None
 
     def slots(self) -> tuple[Slot, ...]:
         return tuple(Slot(self.block, self.stars[:, j]) for j in range(4))
 
     def residual(self, *arguments: Floats) -> Floats:
-        p, q = chords(arguments, self.signs)
+        p, q = chords(arguments)
         return dot(p, q) / (4 * self.edge**2)
 
     def jacobian(self, *arguments: Floats) -> tuple[Floats, ...]:
-        p, q = (x[:, None] / (4 * self.edge**2) for x in chords(arguments, self.signs))
-        return signed((q, p, -q, -p), self.signs)
+        p, q = (x[:, None] / (4 * self.edge**2) for x in chords(arguments))
+        return q, p, -q, -p
 
 
-def chords(points: tuple[Floats, ...], signs: Floats | None) -> tuple[Floats, Floats]:
+def chords(points: tuple[Floats, ...]) -> tuple[Floats, Floats]:
     """x_1 - x_3 and x_2 - x_4, (s, 3) each."""
-    x1, x2, x3, x4 = signed(points, signs)
+    x1, x2, x3, x4 = points
     return x1 - x3, x2 - x4
-
-
-def signed(points: tuple[Floats, ...], signs: Floats | None) -> tuple[Floats, ...]:
-    """Arrays whose first axis are stars, times the sign of their leg."""
-    if signs is None:
-        return points
-    return tuple(x * sign.reshape(-1, *[1] * (x.ndim - 1)) for x, sign in zip(points, signs.T, strict=True))

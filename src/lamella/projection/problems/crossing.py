@@ -50,26 +50,28 @@ def crossing(mesh: QuadMesh, angle: float, form: AngleForm) -> tuple[list[Block]
         return [], [EqualDiagonals(name="right angle", faces=mesh.faces[regular], edge=edge)]
     blocks: list[Block] = []
     constraints: list[Constraint] = []
-    spokes = mesh.spokes(mesh.inner) if angle == 90 else _ordered_spokes(mesh)
-    stars, points, block, size, signs = mesh.head[spokes], mesh.vertices, "vertices", edge, np.ones(spokes.shape)
+    stars = mesh.stars(mesh.inner) if angle == 90 else _ordered_stars(mesh)
+    points, block, size = mesh.vertices, "vertices", edge
     if form == "circles":
-        points, block, size = inverses(mesh.vertices, mesh.edges, edge), "inverse edges", 1.0
-        stars, signs = mesh.edge_of[spokes], np.where(mesh.forward[spokes], 1.0, -1.0)
+        # each leg its own, though an edge is a leg of two stars: unknowns of one star only cause no fill
+        legs = np.column_stack([np.repeat(mesh.inner, 4), stars.ravel()])
+        points, block, size = inverses(mesh.vertices, legs, edge), "inverse edges", 1.0
+        stars = np.arange(len(legs)).reshape(-1, 4)
         blocks.append(Block(block, points))
-        constraints.append(InvertedEdge(name="inverse edges", edges=mesh.edges, edge=edge))
+        constraints.append(InvertedEdge(name="inverse edges", edges=legs, edge=edge))
     if angle == 90:
-        constraints.append(RightAngle(name="right angle", stars=stars, edge=size, block=block, signs=signs))
+        constraints.append(RightAngle(name="right angle", stars=stars, edge=size, block=block))
         return blocks, constraints
-    p, q = chords(tuple(points[stars[:, j]] for j in range(4)), signs)
+    p, q = chords(tuple(points[stars[:, j]] for j in range(4)))
     # acute in one family is obtuse in the other: which of both the net has already
     angle = angle if dot(p, q).mean() * np.cos(np.radians(angle)) >= 0 else 180 - angle
     blocks.append(Block("chords", np.sqrt(np.concatenate([dot(p, p), dot(q, q)], 1)), size))
-    constraints.append(NodeAngle(name="angle", stars=stars, angle=angle, edge=size, block=block, signs=signs))
+    constraints.append(NodeAngle(name="angle", stars=stars, angle=angle, edge=size, block=block))
     return blocks, constraints
 
 
-def _ordered_spokes(mesh: QuadMesh) -> Integers:
-    """Spokes of the regular inner vertices that begin along the first family."""
+def _ordered_stars(mesh: QuadMesh) -> Integers:
+    """Stars of the regular inner vertices that begin along the first family."""
     spokes = mesh.spokes(mesh.inner)
     second = mesh.families[spokes[:, 0]] == 1
-    return np.where(second[:, None], np.roll(spokes, 1, axis=1), spokes)
+    return np.asarray(mesh.head[np.where(second[:, None], np.roll(spokes, 1, axis=1), spokes)])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,7 @@ from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.edge_length import EdgeLength
 from lamella.projection.constraints.fairness import fairness
 from lamella.projection.constraints.unit_length import UnitLength
+from lamella.projection.problems.star_net import require_radius
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.solve import solve
@@ -26,6 +27,8 @@ from lamella.sparse import Backend
 STEP = 0.02
 # weight of third differences and its fade: corners of the rim hang on two edges and would turn about them
 FAIR, FADE = 0.03, 0.1
+# last digits of coordinates that lengths and stars of a net can be off by
+ROUNDING = 4.0
 
 
 @dataclass(frozen=True)
@@ -95,10 +98,16 @@ def deform(
     Raises
     ------
     InputError
-        A ring with too few vertices, with one twice or with an edge; a share or a step out of range.
+        A ring with too few vertices, with one twice or with an edge; a share, a step or a radius out of range.
     """
     vertices = np.asarray(ring)
     _check(mesh, vertices, share, step)
+    if radius is not None:
+        require_radius(mesh, radius)
+    # far from the origin rounding is larger than the tolerance: what is given is known to its last digit only
+    tolerance = max(tolerance, ROUNDING * float(np.spacing(np.abs(mesh.vertices).max())) / mesh.mean_edge)
+    origin = mesh.vertices.mean(0)
+    mesh = mesh.at(mesh.vertices - origin)
     edge, inner, stars = mesh.mean_edge, mesh.inner, mesh.stars(mesh.inner)
     pairs = _pairs(vertices.astype(np.int64), closed)
     normals = smoothed_normals(mesh)[inner]
@@ -126,7 +135,8 @@ def deform(
             backend=backend,
         )
         current, normals = solution.values["vertices"], solution.values["normals"]
-        moved = mesh.at(current)
+        moved = mesh.at(current + origin)
+        solution = replace(solution, values={**solution.values, "vertices": moved.vertices})
         states.append(DeformedState(float(now), moved, solution, circle_angles(moved, inner) - before))
         if solution.verdict in ("broken off", "iterations used up"):
             break

@@ -72,16 +72,16 @@ class PlanarStrips:
         """Scores before and after, shares of quads in full red, what it took, share that cannot be developable."""
         before, after = np.concatenate(self.before), np.concatenate(self.after)
         return {
-            "median before": float(np.median(before)),
-            "median after": float(np.median(after)),
-            "largest before": float(before.max()),
-            "largest after": float(after.max()),
-            "red before": float((before >= RED).mean()),
-            "red after": float((after >= RED).mean()),
-            "largest shift": float(max(x.max() for x in self.shift)),
-            "largest tilt": float(max(x.max() for x in self.tilt)),
-            "largest turn": float(max(x.max() for x in self.turn)),
-            "not developable": float((np.concatenate(self.buildable) < self.height).mean()),
+            "median_before": float(np.median(before)),
+            "median_after": float(np.median(after)),
+            "largest_before": float(before.max()),
+            "largest_after": float(after.max()),
+            "red_before": float((before >= RED).mean()),
+            "red_after": float((after >= RED).mean()),
+            "largest_shift": float(max(x.max() for x in self.shift)),
+            "largest_tilt": float(max(x.max() for x in self.tilt)),
+            "largest_turn": float(max(x.max() for x in self.turn)),
+            "not_developable": float((np.concatenate(self.buildable) < self.height).mean()),
         }
 
 
@@ -123,7 +123,7 @@ def planar_strips(
     Raises
     ------
     InputError
-        Curves with too few points, a height of 0.
+        Curves with too few points; a height of 0, beyond the centres of curvature, or larger than the curves.
     """
     lower = [_curve(curve, number) for number, curve in enumerate(curves)]
     if not lower:
@@ -134,6 +134,7 @@ def planar_strips(
     side = float(np.sign(height))
     buildable = tuple(buildable_height(c, side * n) for c, n in zip(lower, normals, strict=True))
     upper = [c + height * n for c, n in zip(lower, normals, strict=True)]
+    _check_height(lower, upper, height)
     solutions: list[Solution] = []
     plain = lower
     for _ in range(rounds):
@@ -210,6 +211,23 @@ def _curve(curve: ArrayLike, number: int) -> Floats:
     if (np.linalg.norm(np.diff(points, axis=0), axis=1) == 0).any():
         raise InputError(f"curve {number} has a point twice in a row", "list each point once")
     return points
+
+
+def _check_height(lower: list[Floats], upper: list[Floats], height: float) -> None:
+    """Refuse heights at which strips along the normals fold, or that are no strips."""
+    size = max(float(np.linalg.norm(np.ptp(curve, axis=0))) for curve in lower)
+    if abs(height) > size:
+        raise InputError(
+            f"height = {height:g} m is more than the largest curve measures, {size:.4g} m", "give the height in m"
+        )
+    for number, (a, b) in enumerate(zip(lower, upper, strict=True)):
+        back = np.flatnonzero(np.einsum("kc,kc->k", np.diff(a, axis=0), np.diff(b, axis=0)) <= 0)
+        if len(back):
+            raise InputError(
+                f"height = {height:g} m reaches beyond the centre of curvature of curve {number} after its point "
+                f"{back[0]}: normals cross below it",
+                "less height, or the other side of the surface",
+            )
 
 
 def _split(points: Floats, like: list[Floats]) -> list[Floats]:

@@ -17,7 +17,7 @@ def sphere_stars(
     radius: float | None = None,
     angle: float = 90.0,
     form: AngleForm = "circles",
-    iterations: int = 50,
+    iterations: int = 100,
     tolerance: float = 1e-10,
     on_iteration: Callable[[Iteration], None] | None = None,
     backend: Backend | None = None,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import get_args
 
 import numpy as np
@@ -13,7 +13,7 @@ from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.unit_length import UnitLength
 from lamella.projection.problems.crossing import AngleForm, crossing
 from lamella.projection.problems.star_radius import find_radius, star_curvature
-from lamella.projection.quad_mesh import QuadMesh
+from lamella.projection.quad_mesh import QuadMesh, collapsed
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.smoothing import smoothed
 from lamella.projection.solve import solve
@@ -63,7 +63,7 @@ def star_net(
     *,
     angle: float = 90.0,
     form: AngleForm = "circles",
-    iterations: int = 50,
+    iterations: int = 100,
     tolerance: float = 1e-10,
     on_iteration: Callable[[Iteration], None] | None = None,
     backend: Backend | None = None,
@@ -92,8 +92,11 @@ def star_net(
     InputError
         No inner vertices; a radius or an angle out of range; for angles other than 90, no two families of polylines.
     """
-    edge, inner = mesh.mean_edge, mesh.inner
     _check(mesh, radius, angle, form)
+    given, origin = mesh, mesh.vertices.mean(0)
+    # far from the origin rounding is larger than the tolerance
+    mesh = given.at(given.vertices - origin)
+    edge, inner = mesh.mean_edge, mesh.inner
     start = smoothed(mesh, backend=backend)
     doubt = 0.0
     if radius is None:
@@ -126,7 +129,20 @@ def star_net(
         on_iteration=on_iteration,
         backend=backend,
     )
-    return StarNet(mesh.at(solution.values["vertices"]), radius, doubt, solution.values["normals"], solution)
+    net = mesh.at(solution.values["vertices"] + origin)
+    solution = replace(solution, values={**solution.values, "vertices": net.vertices})
+    if collapsed(given, net):
+        solution = replace(solution, verdict="collapsed")
+    return StarNet(net, radius, doubt, solution.values["normals"], solution)
+
+
+def require_radius(mesh: QuadMesh, radius: float) -> None:
+    """Raise `InputError` for spheres on which a star has no room."""
+    if not radius >= LEAST_RADIUS * mesh.mean_edge:
+        raise InputError(
+            f"radius = {radius:g} m is below {LEAST_RADIUS:g} mean edges of {mesh.mean_edge:.4g} m",
+            "give the radius in the unit of the mesh, or refine the mesh; infinite: planes",
+        )
 
 
 def _check(mesh: QuadMesh, radius: float | None, angle: float, form: str) -> None:
@@ -134,11 +150,8 @@ def _check(mesh: QuadMesh, radius: float | None, angle: float, form: str) -> Non
         raise InputError(
             "the mesh has no inner vertex with four neighbours: nothing to make spherical", "use a larger quad mesh"
         )
-    if radius is not None and not radius >= LEAST_RADIUS * mesh.mean_edge:
-        raise InputError(
-            f"radius = {radius:g} m is below {LEAST_RADIUS:g} mean edges of {mesh.mean_edge:.4g} m",
-            "give the radius in the unit of the mesh, or refine the mesh; infinite: planes",
-        )
+    if radius is not None:
+        require_radius(mesh, radius)
     if not 10 <= angle <= 170:
         raise InputError(f"angle = {angle:g} degrees", "between 10 and 170 degrees")
     if form not in get_args(AngleForm):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from lamella.projection.constraints.conformal import Conformal
 from lamella.projection.constraints.edge_alignment import EdgeAlignment
 from lamella.projection.constraints.fairness import fairness
 from lamella.projection.foot_points import DirectedSurface
-from lamella.projection.quad_mesh import QuadMesh, quad_mesh
+from lamella.projection.quad_mesh import QuadMesh, collapsed, quad_mesh
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.solve import solve
 from lamella.projection.unknowns import Block, Floats
@@ -98,6 +98,8 @@ def straighten(
         backend=backend,
     )
     isothermic = mesh.at(solution.values["vertices"])
+    if collapsed(mesh, isothermic):
+        solution = replace(solution, verdict="collapsed")
     middles = edge_middles(isothermic)
     return Straightened(
         isothermic,
