@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamella.sparse import SymmetricPattern, packed
+from lamella.sparse import packed
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.geometry import dirichlet_blocks, smooth_normals, tangents
 from lamella.surface.element.quadrature import triangle_rule
@@ -26,10 +26,8 @@ def harmonic_normals(connectivity: Connectivity, nodes: Floats) -> Floats:
     value, x, y = (basis.basis(points, *d) for d in ((0, 0), (1, 0), (0, 1)))
     blocks, (e, f, g), area = dirichlet_blocks(x, y, *tangents(x, y, nodes[connectivity.elements]), weights)
     normals = smooth_normals(connectivity, nodes)
-    inside = np.ones(connectivity.node_count, bool)
-    inside[connectivity.rim_nodes] = False
-    unknowns = np.where(inside, np.cumsum(inside) - 1, -1)
-    pattern = SymmetricPattern.from_elements(unknowns[connectivity.elements], int(inside.sum()))
+    inside = connectivity.inner_unknowns >= 0
+    pattern = connectivity.inner_pattern
     factor = pattern.factor(pattern.assemble(packed(blocks)))
     held = np.matmul(blocks, np.where(inside[:, None], 0, normals)[connectivity.elements])
     flat = connectivity.elements.ravel()
