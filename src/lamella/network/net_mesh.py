@@ -43,8 +43,6 @@ GROWTH = 0.45
 GAP = 0.15
 # radii of the circle on which the order's coefficient is measured, over the rosette's
 MEASURED = 0.5
-# entries of a symmetric matrix that are kept
-ROWS, COLUMNS = np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2])
 
 
 @dataclass(frozen=True)
@@ -176,13 +174,9 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         places, there = plane.up(z, surface)
         positions[names], element[names], local[names] = there, places.element, places.local
     every = Places(element, local)
-    operator = shape_entries(surface, every)
-    return NetMesh(new, positions, every, operator, surface.smooth_normal(every), loop, at, radii)
-
-
-def shape_entries(surface: ElementSurface, where: Places) -> Floats:
-    """Shape operator at n places, 1/m, (n, 6): entries xx, xy, xz, yy, yz, zz."""
-    return np.asarray(surface.at(where).shape_operator[:, ROWS, COLUMNS])
+    return NetMesh(
+        new, positions, every, surface.at(every).shape_entries, surface.smooth_normal(every), loop, at, radii
+    )
 
 
 def _positions(parts: Parts, surface: ElementSurface) -> Floats:

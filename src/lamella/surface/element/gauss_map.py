@@ -14,6 +14,7 @@ from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.geometry import dirichlet_blocks, smooth_normals, tangents
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.points import Floats
+from lamella.surface.vectors import dots, lengths
 
 # |A|^2 is that of the pass before
 PASSES = 2
@@ -34,7 +35,7 @@ def harmonic_normals(connectivity: Connectivity, nodes: Floats) -> Floats:
     for _ in range(PASSES):
         local = normals[connectivity.elements]
         n_x, n_y = np.matmul(x, local), np.matmul(y, local)
-        xx, xy, yy = (np.einsum("eqc,eqc->eq", u, v) for u, v in ((n_x, n_x), (n_x, n_y), (n_y, n_y)))
+        xx, xy, yy = (dots(u, v) for u, v in ((n_x, n_x), (n_x, n_y), (n_y, n_y)))
         # |grad n|^2 times the weighted area element
         bend = (g * xx - 2 * f * xy + e * yy) / area
         parts = np.matmul(value.T, np.matmul(value, local) * bend[..., None]) - held
@@ -44,5 +45,5 @@ def harmonic_normals(connectivity: Connectivity, nodes: Floats) -> Floats:
         ]
         normals = normals.copy()
         normals[inside] = factor.solve(np.stack(right, 1))
-        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        normals /= lengths(normals)[:, None]
     return normals

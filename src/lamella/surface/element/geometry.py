@@ -8,6 +8,7 @@ from scipy.sparse import csr_matrix
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.points import Floats
+from lamella.surface.vectors import crosses, dots, lengths
 
 
 def tangents(basis_x: Floats, basis_y: Floats, corners: Floats) -> tuple[Floats, Floats]:
@@ -17,8 +18,8 @@ def tangents(basis_x: Floats, basis_y: Floats, corners: Floats) -> tuple[Floats,
 
 def normal_and_area(first: Floats, second: Floats) -> tuple[Floats, Floats]:
     """Unit normal (..., 3) and area element (...) of two tangent vectors."""
-    cross = np.cross(first, second)
-    area = np.linalg.norm(cross, axis=-1)
+    cross = crosses(first, second)
+    area = lengths(cross)
     return cross / area[..., None], area
 
 
@@ -87,7 +88,7 @@ def smooth_normals(connectivity: Connectivity, nodes: Floats) -> Floats:
     basis_x, basis_y = (connectivity.basis.basis(points, *d) for d in ((1, 0), (0, 1)))
     normal, area = normal_and_area(*tangents(basis_x, basis_y, nodes[connectivity.elements]))
     projected = project_onto_nodes(connectivity, points, area * weights, normal)
-    return np.asarray(projected / np.linalg.norm(projected, axis=1)[:, None])
+    return np.asarray(projected / lengths(projected)[:, None])
 
 
 def dirichlet_blocks(
@@ -111,7 +112,7 @@ def dirichlet_blocks(
     area : (m, q)
         Area element over the weight: the metric's inverse times the weighted area is (G, -F, E) / area.
     """
-    e, f, g = (np.einsum("eqc,eqc->eq", u, v) for u, v in ((first, first), (first, second), (second, second)))
+    e, f, g = (dots(u, v) for u, v in ((first, first), (first, second), (second, second)))
     area = np.sqrt(np.maximum(e * g - f * f, 1e-12 * e * g)) / weights
     return weighted_dirichlet_blocks(basis_x, basis_y, (e, f, g), area), (e, f, g), area
 
