@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from lamella.network.arcs import ArcLengths
 from lamella.network.element_segments import ElementSegments
 from lamella.surface.points import Floats
+from lamella.surface.vectors import lengths
 
 Integers = NDArray[np.int64]
 
@@ -72,5 +73,5 @@ class _Parts:
         """Arc length per share, m, at shares (p,) of parts (s,), shape (s, p)."""
         every = np.repeat(part, len(share))
         _, _, velocity = self._segments.velocity(self.owner[every], self.sigma(every, np.tile(share, len(part))))
-        speed = np.sqrt((velocity**2).sum(1)) * self._reach[every]
+        speed = lengths(velocity) * self._reach[every]
         return np.asarray(speed.reshape(len(part), len(share)))

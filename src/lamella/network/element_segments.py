@@ -15,6 +15,7 @@ from lamella.network.cell_map import CellMap
 from lamella.network.tracks import A, Tracks, passages
 from lamella.surface.element.places import Places
 from lamella.surface.points import Floats
+from lamella.surface.vectors import lengths
 
 Integers = NDArray[np.int64]
 
@@ -90,18 +91,14 @@ class ElementSegments:
         beside = np.where((zeros[:, 1] >= 0) & (sigma > 1 - BESIDE), 1 - BESIDE, beside)
         places, way = self._find(segment, beside)
         (_, chi_x, chi_y), (position, first, second) = self._cells.jet_and_tangents(places)
-        determinant = chi_x.real * chi_y.imag - chi_x.imag * chi_y.real
+        # along the level line, where the other part of chi does not change
         is_a = self._is_a[segment]
-        step = np.where(
-            is_a[:, None],
-            np.stack([chi_y.imag, -chi_x.imag], 1),
-            np.stack([-chi_y.real, chi_x.real], 1),
-        )
-        rate = way * self._reach[segment] / determinant
+        held_x, held_y = (np.where(is_a, slope.imag, -slope.real) for slope in (chi_x, chi_y))
+        rate = way * self._reach[segment] / (chi_x.real * chi_y.imag - chi_x.imag * chi_y.real)
         bent = np.flatnonzero(self._bent[segment])
         p, q = self._power[segment[bent]].T
         rate[bent] *= beside[bent] ** (p - 1) * (1 - beside[bent]) ** (q - 1) / beta(p, q)
-        velocity = (step[:, :1] * first + step[:, 1:] * second) * rate[:, None]
+        velocity = (rate * held_y)[:, None] * first - (rate * held_x)[:, None] * second
         moved = beside != sigma
         if moved.any():
             places = Places(places.element.copy(), places.local.copy())
@@ -146,11 +143,11 @@ class ElementSegments:
             power = np.arange(len(at))
             points[mine] = np.einsum("np,npc->nc", share**power, series)
             away = np.einsum("np,npc->nc", power[1:] * share ** power[:-1], series[:, 1:])
-            tangents[mine] = (1 - 2 * side) * away / np.linalg.norm(away, axis=1)[:, None]
+            tangents[mine] = (1 - 2 * side) * away / lengths(away)[:, None]
         return points, tangents
 
     def _out(self, segment: Integers, side: int) -> Floats:
         """How far segments (k,) are led out from the node at one end, as sigma: inside the node's rosette."""
         node, beside = (self.velocity(segment, np.full(len(segment), abs(side - away)))[1] for away in (0.0, BESIDE))
-        speed = np.linalg.norm(beside - node, axis=1) / BESIDE
+        speed = lengths(beside - node) / BESIDE
         return np.asarray(np.minimum(OUT, self._cells.mesh.radii[self._zeros[segment, side]] / (LEADING[-1] * speed)))

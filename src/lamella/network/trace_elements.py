@@ -27,6 +27,7 @@ from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import element_rims
 from lamella.surface.points import Floats
+from lamella.surface.vectors import crosses, dots, images, lengths
 
 Integers = NDArray[np.int64]
 
@@ -55,16 +56,10 @@ def _crossings(tracks: Tracks, alive: NDArray[np.bool_]) -> tuple[Integers, Floa
     link = np.repeat(np.arange(len(count)), count)
     whole = first[link] + ragged_ranges(count)
     is_a = tracks.family[tracks.owner[link]] == A
-    name = np.stack(
-        [
-            tracks.triangle[link],
-            np.where(is_a, whole, tracks.level[link]),
-            np.where(is_a, tracks.level[link], whole),
-        ],
-        1,
-    )
-    _, number = np.unique(name, axis=0, return_inverse=True)
-    number = number.ravel()
+    levels = [np.where(is_a, tracks.level[link], whole), np.where(is_a, whole, tracks.level[link])]
+    parts = [tracks.triangle[link], *(level - level.min(initial=0) for level in levels)]
+    name = np.ravel_multi_index(parts, [int(part.max(initial=0)) + 1 for part in parts])
+    _, number = np.unique(name, return_inverse=True)
     both = (np.bincount(number[is_a], minlength=number.max(initial=-1) + 1) == 1) & (
         np.bincount(number[~is_a], minlength=number.max(initial=-1) + 1) == 1
     )
@@ -148,7 +143,7 @@ def trace_elements(
     singular = singular_ends(cells, tracks)
     tips = rim_tips(cells, tracks)
     ends = (cells.positions(Places(tracks.element, local)) for local in (tracks.local_start, tracks.local_end))
-    rough = np.linalg.norm(np.subtract(*ends), axis=1)
+    rough = lengths(np.subtract(*ends))
     length = np.bincount(tracks.owner, rough, chains)
     alive = np.ones(chains, bool)
     median = np.median(np.repeat(rough / np.maximum(tracks.span, 1e-12), 1)) if len(rough) else 0.0
@@ -178,11 +173,11 @@ def trace_elements(
     fraction = ragged_ranges(given) / number[segment]
     parameter = arcs.parameter(segment, fraction)
     places, points, velocity = segments.velocity(segment, parameter)
-    tangents = velocity / np.linalg.norm(velocity, axis=1)[:, None]
+    tangents = velocity / lengths(velocity)[:, None]
     points, tangents = segments.lead_out(segment, parameter, points, tangents)
     normals, shape = _normals_and_shape(cells, places)
-    tangents -= (tangents * normals).sum(1)[:, None] * normals
-    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+    tangents -= dots(tangents, normals)[:, None] * normals
+    tangents /= lengths(tangents)[:, None]
 
     used = np.flatnonzero(np.bincount(chain, minlength=chains) > 0)
     lamella_of = np.full(chains, -1)
@@ -257,23 +252,20 @@ def _normals_and_shape(cells: CellMap, places: Places) -> tuple[Floats, Floats]:
     basis = mesh.connectivity.basis
     nodal = np.column_stack([mesh.normals, mesh.shape])[mesh.connectivity.elements]
     both = basis.values(basis.coefficients(nodal), places.element, places.local)
-    normal = both[:3] / np.sqrt((both[:3] ** 2).sum(0))
+    normal = both[:3] / lengths(both[:3].T)
     return np.ascontiguousarray(normal.T), both[3:].T
 
 
 def _darboux(shape: Floats, tangents: Floats, normals: Floats, arclengths: Floats, offsets: Integers) -> Darboux:
     """kn and tg from the surface's shape operator along the curve; kg from the curve's own turning."""
-    sideways = np.cross(normals, tangents)
-    xx, xy, xz, yy, yz, zz = shape.T
-    x, y, z = tangents.T
-    # S t
-    image = np.stack([xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z], 1)
+    sideways = crosses(normals, tangents)
+    image = images(shape, tangents)
     index = np.arange(len(tangents))
     count = np.diff(offsets)
     before = np.maximum(index - WIDE, np.repeat(offsets[:-1], count))
     after = np.minimum(index + WIDE, np.repeat(offsets[1:] - 1, count))
-    turning = ((tangents[after] - tangents[before]) * sideways).sum(1) / (arclengths[after] - arclengths[before])
-    return Darboux((image * tangents).sum(1), turning, (image * sideways).sum(1))
+    turning = dots(tangents[after] - tangents[before], sideways) / (arclengths[after] - arclengths[before])
+    return Darboux(dots(image, tangents), turning, dots(image, sideways))
 
 
 def _rims(
@@ -293,7 +285,7 @@ def _rims(
     _, first, second = cells.tangents(at)
     directions = np.zeros((len(kinds), 3))
     directions[boundary] = along[:, :1] * first + along[:, 1:] * second
-    directions[boundary] /= np.linalg.norm(directions[boundary], axis=1)[:, None]
+    directions[boundary] /= lengths(directions[boundary])[:, None]
     vertex = mesh.connectivity.faces[at.element, edge]
     loops = []
     for rim in rims:
