@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.network.arcs import ArcLengths
+from lamella.network.blocks import blocks
 from lamella.network.element_segments import ElementSegments
 from lamella.surface.points import Floats
 from lamella.surface.vectors import lengths
@@ -49,12 +50,17 @@ class ElementArcs:
 
     def parameter(self, segment: Integers, fraction: Floats) -> Floats:
         """sigma where the given fractions of the segments' arc lengths are reached, (k,)."""
+        sigma = np.empty(len(segment))
+        for block in blocks(len(segment)):
+            sigma[block] = self._parameter(segment[block], fraction[block])
+        return np.where(fraction == 1, 1.0, np.where(fraction == 0, 0.0, sigma))
+
+    def _parameter(self, segment: Integers, fraction: Floats) -> Floats:
         goal = self._before[self._first[segment]] + fraction * self.length[segment]
         part = np.searchsorted(self._before, goal, side="right") - 1
         part = np.clip(part, self._first[segment], self._first[segment + 1] - 1)
         share = np.clip((goal - self._before[part]) / self._arcs.length[part], 0, 1)
-        sigma = self._parts.sigma(part, self._arcs.parameter(part, share))
-        return np.where(fraction == 1, 1.0, np.where(fraction == 0, 0.0, sigma))
+        return self._parts.sigma(part, self._arcs.parameter(part, share))
 
 
 class _Parts:

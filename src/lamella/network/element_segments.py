@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import beta, betainc, betaincinv
 
+from lamella.network.blocks import blocks
 from lamella.network.cell_map import CellMap
 from lamella.network.tracks import A, Tracks, passages
 from lamella.surface.element.places import Places
@@ -79,12 +80,22 @@ class ElementSegments:
         begin = t.local_start.take(link, 0)
         local = begin + along[:, None] * (t.local_end.take(link, 0) - begin)
         other = t.start[link] + ahead * t.way[link]
-        target = np.where(self._is_a[segment], other + 1j * t.level[link], t.level[link] + 1j * other)
+        level = t.level[link].astype(float)
+        is_a = self._is_a[segment]
+        target = np.stack([np.where(is_a, other, level), np.where(is_a, level, other)])
         places, turn, _ = self._cells.invert(Places(t.element[link], local), target)
         return places, turn * t.way[link]
 
     def velocity(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats, Floats]:
         """Places, positions (k, 3) and their derivatives by sigma (k, 3), m."""
+        places = Places(np.empty(len(segment), np.int64), np.empty((len(segment), 2)))
+        position, velocity = np.empty((2, len(segment), 3))
+        for block in blocks(len(segment)):
+            at, position[block], velocity[block] = self._velocity(segment[block], sigma[block])
+            places.element[block], places.local[block] = at.element, at.local
+        return places, position, velocity
+
+    def _velocity(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats, Floats]:
         # at a singular node chi has no slope: the way out is that of a place just beside it
         zeros = self._zeros[segment]
         beside = np.where((zeros[:, 0] >= 0) & (sigma < BESIDE), BESIDE, sigma)
@@ -135,7 +146,7 @@ class ElementSegments:
             out = self._out(own, side)
             at = np.r_[0.0, LEADING]
             apart = (out[:, None] * at).ravel()
-            ahead = self.velocity(np.repeat(own, len(at)), np.abs(side - apart))[1].reshape(len(own), len(at), 3)
+            ahead = self._velocity(np.repeat(own, len(at)), np.abs(side - apart))[1].reshape(len(own), len(at), 3)
             series = np.matmul(np.linalg.inv(np.vander(at, increasing=True)), ahead)
             share = np.abs(side - sigma[mine]) / out[row]
             near = share < 1
@@ -148,6 +159,6 @@ class ElementSegments:
 
     def _out(self, segment: Integers, side: int) -> Floats:
         """How far segments (k,) are led out from the node at one end, as sigma: inside the node's rosette."""
-        node, beside = (self.velocity(segment, np.full(len(segment), abs(side - away)))[1] for away in (0.0, BESIDE))
+        node, beside = (self._velocity(segment, np.full(len(segment), abs(side - away)))[1] for away in (0.0, BESIDE))
         speed = lengths(beside - node) / BESIDE
         return np.asarray(np.minimum(OUT, self._cells.mesh.radii[self._zeros[segment, side]] / (LEADING[-1] * speed)))

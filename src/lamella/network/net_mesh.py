@@ -27,6 +27,7 @@ from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.vectors import lengths
 
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -80,9 +81,10 @@ class NetMesh:
 
 @dataclass(frozen=True)
 class _TangentPlane:
-    """The plane at an umbilic as the complex plane."""
+    """The plane at an umbilic as the complex plane; `middles` are those of the surface's elements."""
 
     at: SurfacePoints
+    middles: cKDTree
 
     def down(self, points: Floats) -> Complexes:
         """Complex coordinates (...,) of points (..., 3), m."""
@@ -96,8 +98,7 @@ class _TangentPlane:
         # the first of the coefficients is the constant
         coordinates[0] -= (axes @ self.at.position[0])[:, None]
         foot = self.at.position[0] + np.stack([z.real, z.imag], 1) @ axes
-        middles = surface.nodes[surface.connectivity.faces].mean(1)
-        start = Places(cKDTree(middles).query(foot)[1], np.full((len(z), 2), 1 / 3))
+        start = Places(self.middles.query(foot)[1], np.full((len(z), 2), 1 / 3))
         target = np.stack([z.real, z.imag])
         places, found = find_places(surface.connectivity, coordinates, start, target, lambda *_: None)
         lost = np.flatnonzero(~found)
@@ -122,12 +123,13 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     def too_large(corners: Floats, longest: Floats) -> Flags:
         result = np.zeros(len(longest), bool)
         for zero, radius in zip(zeros, radii, strict=True):
-            distance = np.linalg.norm(corners - zero, axis=2).min(1)
+            distance = lengths(corners - zero).min(1)
             result |= (longest > GROWTH * np.maximum(distance, radius)) & (distance < 8 * radius + longest)
         return result
 
     parts = bisect(whole(connectivity, surface.nodes, surface.rim_loop), connectivity, surface.nodes, too_large)
-    planes = [_TangentPlane(surface.at(umbilics.places[number : number + 1])) for number in range(len(zeros))]
+    middles = cKDTree(surface.nodes[connectivity.faces].mean(1))
+    planes = [_TangentPlane(surface.at(umbilics.places[number : number + 1]), middles) for number in range(len(zeros))]
     kept = np.ones(len(parts.faces), bool)
     faces = [parts.faces]
     points = [parts.points]
@@ -211,7 +213,7 @@ def _argument(surface: ElementSurface, plane: _TangentPlane, order: int, radius:
 
 def _hole(parts: Parts, nodes: Floats, centre: Floats, radius: float) -> Flags:
     """Parts that reach nearer to a place of the surface than a radius, as one piece without holes."""
-    near = np.linalg.norm(nodes - centre, axis=2).min(1)
+    near = lengths(nodes - centre).min(1)
     hole = near < radius
     m = len(parts.faces)
     # only what hangs together with the nearest one: another sheet may pass close by

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.errors import InputError
+from lamella.network.blocks import blocks
 from lamella.network.cell_map import CellMap
 from lamella.network.element_arcs import ElementArcs
 from lamella.network.element_segments import ElementSegments
@@ -142,11 +143,14 @@ def trace_elements(
     chains = len(tracks.family)
     singular = singular_ends(cells, tracks)
     tips = rim_tips(cells, tracks)
-    ends = (cells.positions(Places(tracks.element, local)) for local in (tracks.local_start, tracks.local_end))
-    rough = lengths(np.subtract(*ends))
+    begin = cells.positions(Places(tracks.element, tracks.local_start))
+    # every link ends where the next one begins, but for the last ones
+    end = np.roll(begin, -1, 0)
+    end[tracks.last] = cells.positions(Places(tracks.element[tracks.last], tracks.local_end[tracks.last]))
+    rough = lengths(end - begin)
     length = np.bincount(tracks.owner, rough, chains)
     alive = np.ones(chains, bool)
-    median = np.median(np.repeat(rough / np.maximum(tracks.span, 1e-12), 1)) if len(rough) else 0.0
+    median = np.median(rough / np.maximum(tracks.span, 1e-12)) if len(rough) else 0.0
     alive &= length >= minimum_length * median
     stops = _stops(tracks, alive, singular, tips)
     if not (stops.kinds == REGULAR).any():
@@ -175,9 +179,7 @@ def trace_elements(
     places, points, velocity = segments.velocity(segment, parameter)
     tangents = velocity / lengths(velocity)[:, None]
     points, tangents = segments.lead_out(segment, parameter, points, tangents)
-    normals, shape = _normals_and_shape(cells, places)
-    tangents -= dots(tangents, normals)[:, None] * normals
-    tangents /= lengths(tangents)[:, None]
+    normals, tangents, bend, twist = _frames(cells, places, tangents)
 
     used = np.flatnonzero(np.bincount(chain, minlength=chains) > 0)
     lamella_of = np.full(chains, -1)
@@ -195,7 +197,7 @@ def trace_elements(
     stop_sample[first_stop] = segment_start
     stop_sample[first_stop[last] + 1] = (segment_start + number)[last]
     family = tracks.family[used]
-    darboux = _darboux(shape, tangents, normals, arclengths, offsets)
+    darboux = Darboux(bend, _turning(tangents, normals, arclengths, offsets), twist)
 
     nodes, at = np.unique(stop_node, return_inverse=True)
     at = at.ravel()
@@ -246,26 +248,33 @@ def trace_elements(
     )
 
 
-def _normals_and_shape(cells: CellMap, places: Places) -> tuple[Floats, Floats]:
-    """Unit normals (n, 3) and entries of the shape operator (n, 6), see `NetMesh.shape`."""
+def _frames(cells: CellMap, places: Places, directions: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Unit normals (n, 3), tangents nearest to directions (n, 3), and kn and tg from the surface's shape operator."""
     mesh = cells.mesh
     basis = mesh.connectivity.basis
     nodal = np.column_stack([mesh.normals, mesh.shape])[mesh.connectivity.elements]
-    both = basis.values(basis.coefficients(nodal), places.element, places.local)
-    normal = both[:3] / lengths(both[:3].T)
-    return np.ascontiguousarray(normal.T), both[3:].T
+    coefficients = basis.coefficients(nodal)
+    normals, tangents = np.empty((2, len(places), 3))
+    bend, twist = np.empty((2, len(places)))
+    for block in blocks(len(places)):
+        both = basis.values(coefficients, places.element[block], places.local[block]).T
+        normal = both[:, :3] / lengths(both[:, :3])[:, None]
+        tangent = directions[block] - dots(directions[block], normal)[:, None] * normal
+        tangent /= lengths(tangent)[:, None]
+        image = images(both[:, 3:], tangent)
+        bend[block], twist[block] = dots(image, tangent), dots(image, crosses(normal, tangent))
+        normals[block], tangents[block] = normal, tangent
+    return normals, tangents, bend, twist
 
 
-def _darboux(shape: Floats, tangents: Floats, normals: Floats, arclengths: Floats, offsets: Integers) -> Darboux:
-    """kn and tg from the surface's shape operator along the curve; kg from the curve's own turning."""
-    sideways = crosses(normals, tangents)
-    image = images(shape, tangents)
+def _turning(tangents: Floats, normals: Floats, arclengths: Floats, offsets: Integers) -> Floats:
+    """kg of lamellas from their own turning."""
     index = np.arange(len(tangents))
     count = np.diff(offsets)
     before = np.maximum(index - WIDE, np.repeat(offsets[:-1], count))
     after = np.minimum(index + WIDE, np.repeat(offsets[1:] - 1, count))
-    turning = dots(tangents[after] - tangents[before], sideways) / (arclengths[after] - arclengths[before])
-    return Darboux(dots(image, tangents), turning, dots(image, sideways))
+    turned = tangents.take(after, 0) - tangents.take(before, 0)
+    return dots(turned, crosses(normals, tangents)) / (arclengths[after] - arclengths[before])
 
 
 def _rims(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csc_matrix
 
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.quadrature import triangle_rule
@@ -42,20 +42,26 @@ def project_onto_nodes(
         What is projected.
     """
     basis = space.basis.basis(points)
-    parts = np.matmul(basis.T, values * weights[..., None])
-    n, flat = space.node_count, space.elements.ravel()
-    right: Floats = np.stack([np.bincount(flat, parts[..., c].ravel(), n) for c in range(values.shape[-1])], 1)
-    k = space.elements.shape[1]
-    blocks = weights @ (basis[:, :, None] * basis[:, None, :]).reshape(len(points), -1)
-    rows, columns = np.repeat(space.elements, k, axis=1), np.tile(space.elements, (1, k))
-    matrix = csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), (n, n))
-    inverse_diagonal = 1 / matrix.diagonal()[:, None]
+    n, (m, k), c = space.node_count, space.elements.shape, values.shape[-1]
+    # adds up at each node what its elements have there
+    gathering = csc_matrix((np.ones(m * k), space.elements.ravel(), np.arange(m * k + 1)), (n, m * k)).tocsr()
+    blocks = (weights @ (basis[:, :, None] * basis[:, None, :]).reshape(len(points), -1)).reshape(m, k, k)
+
+    def gathered(parts: Floats) -> Floats:
+        return np.asarray(gathering @ parts.reshape(m * k, c))
+
+    def image_of(nodal: Floats) -> Floats:
+        """The mass matrix times nodal values, element by element."""
+        return gathered(np.matmul(blocks, nodal.take(space.elements, 0)))
+
+    right = gathered(np.matmul(basis.T, values * weights[..., None]))
+    diagonal = gathering @ np.einsum("eii->ei", blocks).ravel()
+    inverse_diagonal = 1 / diagonal[:, None]
     # to begin with: each element's own projection, as if its area element were that of all on average
     share = basis.T * weights.mean(0)
     own = np.matmul(np.linalg.solve(share @ basis, share), values)
-    solution: Floats = np.stack([np.bincount(flat, own[..., c].ravel(), n) for c in range(values.shape[-1])], 1)
-    solution = solution / np.bincount(flat, minlength=n)[:, None]
-    residual = right - matrix @ solution
+    solution = gathered(own) / (gathering @ np.ones(m * k))[:, None]
+    residual = right - image_of(solution)
     conditioned = inverse_diagonal * residual
     direction = conditioned.copy()
     product = _dots(residual, conditioned)
@@ -63,7 +69,7 @@ def project_onto_nodes(
     for _ in range(500):
         if (product <= goal).all():
             break
-        image = matrix @ direction
+        image = image_of(direction)
         step = product / np.maximum(_dots(direction, image), 1e-300)
         solution += step * direction
         residual -= step * image
@@ -123,10 +129,8 @@ def weighted_dirichlet_blocks(
     """Integrals of a weight times grad phi_i . grad phi_j, (m, k, k); the weight divides the area element (m, q)."""
     e, f, g = metric
     q, k = basis_x.shape
-    tables = [
-        (u[:, :, None] * v[:, None, :]).reshape(q, -1)
-        for u, v in ((basis_x, basis_x), (basis_x, basis_y), (basis_y, basis_y))
-    ]
-    blocks = ((g / area) @ tables[0] + (e / area) @ tables[2]).reshape(-1, k, k)
-    mixed = ((f / area) @ tables[1]).reshape(-1, k, k)
-    return np.asarray(blocks - mixed - mixed.transpose(0, 2, 1))
+    xx, xy, yx, yy = (
+        (u[:, :, None] * v[:, None, :]).reshape(q, -1) for u in (basis_x, basis_y) for v in (basis_x, basis_y)
+    )
+    factors = np.concatenate([g, -f, e], 1) / np.tile(area, 3)
+    return np.asarray((factors @ np.concatenate([xx, xy + yx, yy])).reshape(-1, k, k))
