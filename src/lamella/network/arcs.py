@@ -148,7 +148,7 @@ def _speed_series(segments: Pieces, segment: Integers, points: int) -> tuple[Flo
 def _reach(integral: Floats, speed: Floats, member: Integers, fraction: Floats, length: Floats) -> Floats:
     """sigma where a fraction of the length is reached: Newton's method kept inside a shrinking bracket."""
     low, high = np.full(len(member), -1.0), np.full(len(member), 1.0)
-    x = 2 * fraction - 1
+    x: Floats = 2 * fraction - 1
     # to begin with, as if the speed were the first two terms of its series
     bend = (speed[1] / (2 * speed[0])).take(member)
     x = np.clip(x + bend * (1 - x * x), -1, 1)
@@ -160,7 +160,7 @@ def _reach(integral: Floats, speed: Floats, member: Integers, fraction: Floats, 
         # the next step would be its square
         if np.abs(x - before).max() <= LAST_STEP:
             break
-    return (x + 1) / 2
+    return np.asarray((x + 1) / 2)
 
 
 def _clenshaw(coefficients: Floats, member: Integers, x: Floats) -> Floats:

@@ -159,6 +159,7 @@ class ElementSegments:
 
     def _out(self, segment: Integers, side: int) -> Floats:
         """How far segments (k,) are led out from the node at one end, as sigma: inside the node's rosette."""
-        node, beside = (self._velocity(segment, np.full(len(segment), abs(side - away)))[1] for away in (0.0, BESIDE))
+        away = np.repeat([0.0, BESIDE], len(segment))
+        node, beside = np.split(self._velocity(np.tile(segment, 2), np.abs(side - away))[1], 2)
         speed = lengths(beside - node) / BESIDE
         return np.asarray(np.minimum(OUT, self._cells.mesh.radii[self._zeros[segment, side]] / (LEADING[-1] * speed)))

@@ -81,8 +81,8 @@ class ClosestPoint:
             query = np.repeat(np.arange(len(at_vertex)), count)
             fan = fans[np.repeat(first - np.cumsum(count) + count, count) + np.arange(count.sum())]
             tried = points[at_vertex][query]
-            start = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])[fan % 3] * 0.98 + 0.02 / 3
-            found, place = self._search(tried, fan // 3, start)
+            beside = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])[fan % 3] * 0.98 + 0.02 / 3
+            found, place = self._search(tried, fan // 3, beside)
             distance = np.linalg.norm(self._position(found, place) - tried, axis=1)
             by_query = np.lexsort((distance, query))
             best = by_query[np.searchsorted(query, np.arange(len(at_vertex)))]

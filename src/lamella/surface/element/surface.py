@@ -188,9 +188,11 @@ class ElementSurface:
 
     def check_places(self) -> Places:
         """Twelve places inside every element."""
-        points, _ = triangle_rule(6)
-        m = len(self._corners)
-        return Places(np.repeat(np.arange(m), len(points)), np.tile(points, (m, 1)))
+        return Places.everywhere(len(self._corners), triangle_rule(6)[0])
+
+    def check_points(self) -> SurfacePoints:
+        """Everything about these places."""
+        return self.at_everywhere(triangle_rule(6)[0])
 
     @cached_property
     def _search(self) -> ClosestPoint:
@@ -273,7 +275,7 @@ class ElementSurface:
 
     def singular_orders(self) -> tuple[int, ...]:
         """Orders of the umbilics."""
-        if umbilic_reason(self.at(self.check_places())):
+        if umbilic_reason(self.check_points()):
             return ()
         return tuple(self.umbilics.orders.tolist())
 

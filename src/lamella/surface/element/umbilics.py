@@ -107,18 +107,15 @@ def _newton(surface: ElementSurface, start: Places, axes: Floats) -> tuple[Place
     """Zeros from starting places, by the deviator in frames along axes (n, 3); which ended inside their element."""
     element, local = start.element, start.local.copy()
 
-    def deviator(local: Floats) -> Complexes:
-        return _turned(surface.at(Places(element, local)), axes)
-
+    # at a place and a little ahead of it in both local coordinates
     step = 1e-5
+    ahead = step * np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])
+    every, each = np.tile(element, 3), np.tile(axes, (3, 1))
     for _ in range(MOST_STEPS):
-        value = deviator(local)
-        slope = np.empty((len(element), 2, 2))
-        for axis in range(2):
-            ahead = local.copy()
-            ahead[:, axis] += step
-            change = (deviator(ahead) - value) / step
-            slope[:, 0, axis], slope[:, 1, axis] = change.real, change.imag
+        there = Places(every, (local + ahead).reshape(-1, 2))
+        value, *further = _turned(surface.at(there), each).reshape(3, -1)
+        change = (np.stack(further, 1) - value[:, None]) / step
+        slope = np.stack([change.real, change.imag], 1)
         determinant = np.linalg.det(slope)
         slope[np.abs(determinant) < 1e-300] = np.eye(2)
         move = -np.linalg.solve(slope, np.stack([value.real, value.imag], 1)[..., None])[..., 0]
