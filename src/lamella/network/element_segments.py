@@ -66,7 +66,7 @@ class ElementSegments:
         self._stride = 2 * float(tracks.tau.max() + tracks.span.max() + 2)
         self._keys = tracks.owner * self._stride + tracks.tau
 
-    def _find(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats]:
+    def _find(self, segment: Integers, sigma: Floats, near: Places | None = None) -> tuple[Places, Floats]:
         """Places of parameters (k,) of segments (k,), and which way the chain's coordinate runs on their sheets."""
         t, chain = self._tracks, self.owner[segment]
         share = np.clip(sigma, 0, 1)
@@ -83,24 +83,29 @@ class ElementSegments:
         level = t.level[link].astype(float)
         is_a = self._is_a[segment]
         target = np.stack([np.where(is_a, other, level), np.where(is_a, level, other)])
-        places, turn, _ = self._cells.invert(Places(t.element[link], local), target)
+        element = t.element[link]
+        if near is not None:
+            local = np.where((near.element == element)[:, None], near.local, local)
+        places, turn, _ = self._cells.invert(Places(element, local), target)
         return places, turn * t.way[link]
 
-    def velocity(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats, Floats]:
-        """Places, positions (k, 3) and their derivatives by sigma (k, 3), m."""
+    def velocity(self, segment: Integers, sigma: Floats, near: Places | None = None) -> tuple[Places, Floats, Floats]:
+        """Places, positions (k, 3) and their derivatives by sigma (k, 3), m; found sooner from places that are near."""
         places = Places(np.empty(len(segment), np.int64), np.empty((len(segment), 2)))
         position, velocity = np.empty((2, len(segment), 3))
         for block in blocks(len(segment)):
-            at, position[block], velocity[block] = self._velocity(segment[block], sigma[block])
+            at, position[block], velocity[block] = self._velocity(
+                segment[block], sigma[block], None if near is None else near[block]
+            )
             places.element[block], places.local[block] = at.element, at.local
         return places, position, velocity
 
-    def _velocity(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats, Floats]:
+    def _velocity(self, segment: Integers, sigma: Floats, near: Places | None = None) -> tuple[Places, Floats, Floats]:
         # at a singular node chi has no slope: the way out is that of a place just beside it
         zeros = self._zeros[segment]
         beside = np.where((zeros[:, 0] >= 0) & (sigma < BESIDE), BESIDE, sigma)
         beside = np.where((zeros[:, 1] >= 0) & (sigma > 1 - BESIDE), 1 - BESIDE, beside)
-        places, way = self._find(segment, beside)
+        places, way = self._find(segment, beside, near)
         (_, chi_x, chi_y), (position, first, second) = self._cells.jet_and_tangents(places)
         # along the level line, where the other part of chi does not change
         is_a = self._is_a[segment]

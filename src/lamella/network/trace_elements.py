@@ -175,8 +175,8 @@ def trace_elements(
     given = number + last
     segment = np.repeat(np.arange(len(number)), given)
     fraction = ragged_ranges(given) / number[segment]
-    parameter = arcs.parameter(segment, fraction)
-    places, points, velocity = segments.velocity(segment, parameter)
+    parameter, near = arcs.parameter(segment, fraction)
+    places, points, velocity = segments.velocity(segment, parameter, near)
     tangents = velocity / lengths(velocity)[:, None]
     points, tangents = segments.lead_out(segment, parameter, points, tangents)
     normals, tangents, bend, twist = _frames(cells, places, tangents)
