@@ -275,7 +275,7 @@ def compute(
     warnings += cautions.surface_file_cautions(surface)
 
     if depth and until is None and not density:
-        reason = umbilic_reason(surface.at(surface.check_places()))
+        reason = umbilic_reason(surface.check_points())
         if reason:
             depth = 0
             warnings.append(f"the run ends with the surface: it is {reason}, and has no net of lamellas")

@@ -42,6 +42,14 @@ def packed(blocks: Floats) -> Floats:
     return np.asarray(blocks.reshape(len(blocks), -1).take(k * i + j, 1))
 
 
+def counted(numbers: AnyIntegers, count: int) -> AnyIntegers:
+    """Order that sorts whole numbers from 0 to count - 1, equal ones as they come: each is counted to its place."""
+    n = len(numbers)
+    # rows of one entry each, in columns of these numbers: their transpose has what is asked for
+    starts = np.arange(n + 1, dtype=numbers.dtype)
+    return cast(AnyIntegers, sp.csr_matrix((np.zeros(n, np.int8), numbers, starts), (n, count)).tocsc().indices)
+
+
 class SingularError(ArithmeticError):
     """The matrix has no inverse to working precision."""
 
@@ -131,7 +139,8 @@ class SymmetricPattern:
             Default: `default_backend`.
         """
         first, second = np.tril_indices(unknowns.shape[1])
-        one, other = unknowns[:, first].ravel(), unknowns[:, second].ravel()
+        small = unknowns.astype(np.int32) if count < np.iinfo(np.int32).max else unknowns
+        one, other = small.take(first, 1).ravel(), small.take(second, 1).ravel()
         return cls.from_pairs(one, other, count, border=border, backend=backend)
 
     @classmethod
@@ -148,39 +157,35 @@ class SymmetricPattern:
             As `from_elements`.
         """
         size = count + border
-        held = (one < 0) | (other < 0)
-        kept = np.flatnonzero(~held) if held.any() else None
+        free = (one >= 0) & (other >= 0)
+        kept = None if free.all() else np.flatnonzero(free)
         if kept is not None:
-            one, other = one[kept], other[kept]
+            one, other = one.take(kept), other.take(kept)
         pairs = len(one)
-        rows = np.arange(count, size)
-        below = rows[:, None] >= np.arange(size)
+        below = np.arange(count, size)[:, None] >= np.arange(size)
         border_high, border_low = np.nonzero(below)
-        # the whole diagonal is there, whatever the entries; small arrays of 32 bits come in, keys need 64
-        keys = np.empty(size + pairs + len(border_low), np.int64)
-        keys[:size] = np.arange(size) * (size + 1)
-        inner = keys[size : size + pairs]
-        inner[:] = np.minimum(one, other)
-        inner *= size
-        inner += np.maximum(one, other)
-        keys[size + pairs :] = border_low * size + border_high + count
-        order = np.argsort(keys, kind="stable")  # merges the runs that element blocks come in
-        keys = keys[order]
-        new = np.ones(len(keys), bool)
-        new[1:] = keys[1:] != keys[:-1]
-        unique = keys[new]
-        del keys
+        # the whole diagonal is there, whatever the entries; what fits into 32 bits is sorted faster
+        small = np.int32 if size + pairs + len(border_low) < np.iinfo(np.int32).max else np.int64
+        columns, rows = np.empty((2, size + pairs + len(border_low)), small)
+        columns[:size] = rows[:size] = np.arange(size)
+        np.minimum(one, other, out=columns[size : size + pairs], casting="same_kind")
+        np.maximum(one, other, out=rows[size : size + pairs], casting="same_kind")
+        columns[size + pairs :], rows[size + pairs :] = border_low, border_high + count
+        order = counted(rows, size)
+        order = order[counted(columns[order], size)]
+        columns, rows = columns[order], rows[order]
+        new = np.ones(len(order), bool)
+        new[1:] = (columns[1:] != columns[:-1]) | (rows[1:] != rows[:-1])
         # kept for good: 32 bits, as LAPACK's and SuperLU's indices
         entry = np.empty(len(order), np.int32)
-        entry[order] = np.cumsum(new, dtype=np.int32) - 1
-        del order, new
+        entry[order] = np.cumsum(new, dtype=small) - 1
+        del order
         border_target = np.full((border, size), -1)
         border_target[below] = entry[size + pairs :]
-        columns = np.searchsorted(unique, np.arange(size + 1) * size).astype(np.int32)
         return cls(
             size,
-            columns,
-            (unique % size).astype(np.int32),
+            np.searchsorted(columns[new], np.arange(size + 1)).astype(np.int32),
+            rows[new].astype(np.int32),
             border,
             backend or default_backend(),
             entry[size : size + pairs].copy(),

@@ -108,6 +108,9 @@ class Cap:
     def check_places(self) -> Places:
         return self._grid(9)
 
+    def check_points(self) -> SurfacePoints:
+        return self.at(self.check_places())
+
     def measured_mean_curvature(self, where: Places) -> Floats:
         return np.asarray(1 / np.linalg.norm(self.at(where).position, axis=1)) + 1e-3 * (where.theta == 1)
 

@@ -19,6 +19,8 @@ Integers = NDArray[np.int64]
 POINTS, MOST_POINTS = 12, 768
 # share of the speed's series that its last two terms may have
 TAIL = 1e-12
+# of the parameter, when points are divided evenly
+LAST_STEP = 1e-6
 
 
 class Pieces(Protocol):
@@ -146,15 +148,19 @@ def _speed_series(segments: Pieces, segment: Integers, points: int) -> tuple[Flo
 def _reach(integral: Floats, speed: Floats, member: Integers, fraction: Floats, length: Floats) -> Floats:
     """sigma where a fraction of the length is reached: Newton's method kept inside a shrinking bracket."""
     low, high = np.full(len(member), -1.0), np.full(len(member), 1.0)
-    x = 2 * fraction - 1
+    x: Floats = 2 * fraction - 1
+    # to begin with, as if the speed were the first two terms of its series
+    bend = (speed[1] / (2 * speed[0])).take(member)
+    x = np.clip(x + bend * (1 - x * x), -1, 1)
     for _ in range(60):
         miss = _clenshaw(integral, member, x) - fraction * length
-        if np.abs(miss).max() <= 1e-10 * length.max():
-            break
         low, high = np.where(miss < 0, x, low), np.where(miss > 0, x, high)
-        step = x - miss / _clenshaw(speed, member, x)
-        x = np.where((step >= low) & (step <= high), step, (low + high) / 2)
-    return (x + 1) / 2
+        goal = x - miss / _clenshaw(speed, member, x)
+        before, x = x, np.where((goal >= low) & (goal <= high), goal, (low + high) / 2)
+        # the next step would be its square
+        if np.abs(x - before).max() <= LAST_STEP:
+            break
+    return np.asarray((x + 1) / 2)
 
 
 def _clenshaw(coefficients: Floats, member: Integers, x: Floats) -> Floats:
@@ -162,5 +168,5 @@ def _clenshaw(coefficients: Floats, member: Integers, x: Floats) -> Floats:
     after, now = np.zeros_like(x), np.zeros_like(x)
     for n in range(len(coefficients) - 1, -1, -1):
         term: Floats = (2 * n + 1) / (n + 1) * x * now - (n + 1) / (n + 2) * after
-        after, now = now, coefficients[n, member] + term
+        after, now = now, coefficients[n].take(member) + term
     return now

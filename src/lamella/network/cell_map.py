@@ -97,15 +97,15 @@ class CellMap:
         position, first, second = self.jet_and_tangents(where)[1]
         return position, first, second
 
-    def invert(self, start: Places, chi: Complexes) -> tuple[Places, Floats, NDArray[np.bool_]]:
+    def invert(self, start: Places, target: Floats) -> tuple[Places, Floats, NDArray[np.bool_]]:
         """Places of given chi near given ones.
 
         Parameters
         ----------
         start : Places
             Where to begin.
-        chi : (n,) complex
-            Wanted value, on the sheet of the starting element.
+        target : (2, n)
+            Real and imaginary part of the wanted value, on the sheet of the starting element.
 
         Returns
         -------
@@ -115,7 +115,7 @@ class CellMap:
         found : (n,) bool
             Whether the place was reached; else it is the starting one.
         """
-        target, turn = np.stack([chi.real, chi.imag]), np.ones(len(chi))
+        target, turn = target.copy(), np.ones(len(start))
 
         def cross(index: Integers, element: Integers, edge: Integers) -> None:
             through = self.across[element, edge]

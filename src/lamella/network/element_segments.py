@@ -11,10 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import beta, betainc, betaincinv
 
+from lamella.network.blocks import blocks
 from lamella.network.cell_map import CellMap
 from lamella.network.tracks import A, Tracks, passages
 from lamella.surface.element.places import Places
 from lamella.surface.points import Floats
+from lamella.surface.vectors import lengths
 
 Integers = NDArray[np.int64]
 
@@ -64,7 +66,7 @@ class ElementSegments:
         self._stride = 2 * float(tracks.tau.max() + tracks.span.max() + 2)
         self._keys = tracks.owner * self._stride + tracks.tau
 
-    def _find(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats]:
+    def _find(self, segment: Integers, sigma: Floats, near: Places | None = None) -> tuple[Places, Floats]:
         """Places of parameters (k,) of segments (k,), and which way the chain's coordinate runs on their sheets."""
         t, chain = self._tracks, self.owner[segment]
         share = np.clip(sigma, 0, 1)
@@ -78,30 +80,41 @@ class ElementSegments:
         begin = t.local_start.take(link, 0)
         local = begin + along[:, None] * (t.local_end.take(link, 0) - begin)
         other = t.start[link] + ahead * t.way[link]
-        target = np.where(self._is_a[segment], other + 1j * t.level[link], t.level[link] + 1j * other)
-        places, turn, _ = self._cells.invert(Places(t.element[link], local), target)
+        level = t.level[link].astype(float)
+        is_a = self._is_a[segment]
+        target = np.stack([np.where(is_a, other, level), np.where(is_a, level, other)])
+        element = t.element[link]
+        if near is not None:
+            local = np.where((near.element == element)[:, None], near.local, local)
+        places, turn, _ = self._cells.invert(Places(element, local), target)
         return places, turn * t.way[link]
 
-    def velocity(self, segment: Integers, sigma: Floats) -> tuple[Places, Floats, Floats]:
-        """Places, positions (k, 3) and their derivatives by sigma (k, 3), m."""
+    def velocity(self, segment: Integers, sigma: Floats, near: Places | None = None) -> tuple[Places, Floats, Floats]:
+        """Places, positions (k, 3) and their derivatives by sigma (k, 3), m; found sooner from places that are near."""
+        places = Places(np.empty(len(segment), np.int64), np.empty((len(segment), 2)))
+        position, velocity = np.empty((2, len(segment), 3))
+        for block in blocks(len(segment)):
+            at, position[block], velocity[block] = self._velocity(
+                segment[block], sigma[block], None if near is None else near[block]
+            )
+            places.element[block], places.local[block] = at.element, at.local
+        return places, position, velocity
+
+    def _velocity(self, segment: Integers, sigma: Floats, near: Places | None = None) -> tuple[Places, Floats, Floats]:
         # at a singular node chi has no slope: the way out is that of a place just beside it
         zeros = self._zeros[segment]
         beside = np.where((zeros[:, 0] >= 0) & (sigma < BESIDE), BESIDE, sigma)
         beside = np.where((zeros[:, 1] >= 0) & (sigma > 1 - BESIDE), 1 - BESIDE, beside)
-        places, way = self._find(segment, beside)
+        places, way = self._find(segment, beside, near)
         (_, chi_x, chi_y), (position, first, second) = self._cells.jet_and_tangents(places)
-        determinant = chi_x.real * chi_y.imag - chi_x.imag * chi_y.real
+        # along the level line, where the other part of chi does not change
         is_a = self._is_a[segment]
-        step = np.where(
-            is_a[:, None],
-            np.stack([chi_y.imag, -chi_x.imag], 1),
-            np.stack([-chi_y.real, chi_x.real], 1),
-        )
-        rate = way * self._reach[segment] / determinant
+        held_x, held_y = (np.where(is_a, slope.imag, -slope.real) for slope in (chi_x, chi_y))
+        rate = way * self._reach[segment] / (chi_x.real * chi_y.imag - chi_x.imag * chi_y.real)
         bent = np.flatnonzero(self._bent[segment])
         p, q = self._power[segment[bent]].T
         rate[bent] *= beside[bent] ** (p - 1) * (1 - beside[bent]) ** (q - 1) / beta(p, q)
-        velocity = (step[:, :1] * first + step[:, 1:] * second) * rate[:, None]
+        velocity = (rate * held_y)[:, None] * first - (rate * held_x)[:, None] * second
         moved = beside != sigma
         if moved.any():
             places = Places(places.element.copy(), places.local.copy())
@@ -138,7 +151,7 @@ class ElementSegments:
             out = self._out(own, side)
             at = np.r_[0.0, LEADING]
             apart = (out[:, None] * at).ravel()
-            ahead = self.velocity(np.repeat(own, len(at)), np.abs(side - apart))[1].reshape(len(own), len(at), 3)
+            ahead = self._velocity(np.repeat(own, len(at)), np.abs(side - apart))[1].reshape(len(own), len(at), 3)
             series = np.matmul(np.linalg.inv(np.vander(at, increasing=True)), ahead)
             share = np.abs(side - sigma[mine]) / out[row]
             near = share < 1
@@ -146,11 +159,12 @@ class ElementSegments:
             power = np.arange(len(at))
             points[mine] = np.einsum("np,npc->nc", share**power, series)
             away = np.einsum("np,npc->nc", power[1:] * share ** power[:-1], series[:, 1:])
-            tangents[mine] = (1 - 2 * side) * away / np.linalg.norm(away, axis=1)[:, None]
+            tangents[mine] = (1 - 2 * side) * away / lengths(away)[:, None]
         return points, tangents
 
     def _out(self, segment: Integers, side: int) -> Floats:
         """How far segments (k,) are led out from the node at one end, as sigma: inside the node's rosette."""
-        node, beside = (self.velocity(segment, np.full(len(segment), abs(side - away)))[1] for away in (0.0, BESIDE))
-        speed = np.linalg.norm(beside - node, axis=1) / BESIDE
+        away = np.repeat([0.0, BESIDE], len(segment))
+        node, beside = np.split(self._velocity(np.tile(segment, 2), np.abs(side - away))[1], 2)
+        speed = lengths(beside - node) / BESIDE
         return np.asarray(np.minimum(OUT, self._cells.mesh.radii[self._zeros[segment, side]] / (LEADING[-1] * speed)))

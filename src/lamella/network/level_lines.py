@@ -41,8 +41,8 @@ class SmallTriangles:
     element : (t,) int
     corners : (t, 3) int
         Grid points, the same across edges that are not cut.
-    local : (t, 3, 2)
-        Local coordinates of the corners.
+    local : (f, 3, 2)
+        Local coordinates of the corners, the same in every element: its f small triangles follow each other.
     chi : (g,) complex
         At the grid points.
     singular : (g, 2) bool
@@ -146,7 +146,7 @@ def small_triangles(cells: CellMap, cut: NDArray[np.bool_], umbilics: Integers) 
     return SmallTriangles(
         np.repeat(np.arange(m), len(faces)),
         point[:, faces].reshape(-1, 3),
-        np.tile(local[faces], (m, 1, 1)),
+        local[faces],
         chi,
         singular,
         np.stack([left[:, :-1].ravel(), left[:, 1:].ravel()], 1),
@@ -164,38 +164,41 @@ def whole_shifts(cells: CellMap) -> Complexes:
 def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     """All level lines of a family (0: A, Im chi whole; 1: B, Re chi whole)."""
     value, other = (small.chi.imag, small.chi.real) if family == 0 else (small.chi.real, small.chi.imag)
+    at_corners = value.take(small.corners)
+    a, b, c = at_corners.T
+    passed = np.ceil(np.minimum(np.minimum(a, b), c)) <= np.floor(np.maximum(np.maximum(a, b), c))
+    triangle = np.flatnonzero(passed)
     # corners by value, as numbers of all triangles' corners one after the other
-    by_value = 3 * np.arange(len(small.corners))[:, None] + _ranks(value[small.corners])
-    low, middle, high = value.take(small.corners.ravel().take(by_value.T))
+    by_value = 3 * triangle[:, None] + _ranks(at_corners.take(triangle, 0))
+    low, middle, high = at_corners.ravel().take(by_value.T)
     first, last = np.ceil(low).astype(np.int64), np.floor(high).astype(np.int64)
-    count = np.maximum(last - first + 1, 0)
-    triangle = np.repeat(np.arange(len(count)), count)
-    level = first[triangle] + np.arange(len(triangle)) - np.repeat(np.cumsum(count) - count, count)
+    count = last - first + 1
+    own = np.repeat(np.arange(len(count)), count)
+    level = first[own] + np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count)
     # a line that only touches a singular corner is not there
-    keep = (level != low[triangle]) & (level != high[triangle])
-    triangle, level = triangle[keep], level[keep]
-    at_corner = level == middle[triangle]
-    below = level < middle[triangle]
+    keep = (level != low[own]) & (level != high[own])
+    own, level = own[keep], level[keep]
+    at_corner = level == middle[own]
+    below = level < middle[own]
+    triangle = triangle[own]
     # ends of each link: the long edge, and the short one on the level's side
-    mine = by_value.take(triangle, 0)
+    mine = by_value.take(own, 0)
     at_long = mine[:, [0, 2]]
     at_short = np.where(below[:, None], mine[:, :2], mine[:, 1:])
     long_edge, short_edge = (small.corners.ravel().take(at) for at in (at_long, at_short))
     points = len(small.chi)
-
-    def key(edge: Integers) -> Integers:
-        return np.asarray(edge.min(1) * points + edge.max(1))
-
-    edges, number = np.unique(np.concatenate([key(long_edge), key(short_edge)]), return_inverse=True)
     base = int(level.min(initial=0)) - 1
     width = int(level.max(initial=0)) - base + 2
-    crossing = number * width + np.concatenate([level, level]) - base
-    # a link that ends in a singular corner has an end of its own there
+    # a crossing's name: its edge, and which whole number
+    crossing = np.concatenate([_edge_keys(long_edge, points), _edge_keys(short_edge, points)]) * width
+    crossing += np.tile(level - base, 2)
+    # a link that ends in a singular corner has an end of its own there, named beyond all edges
     ended = np.flatnonzero(at_corner)
-    crossing[len(level) + ended] = len(edges) * width + ended
+    beyond = points**2 * width
+    crossing[len(level) + ended] = beyond + ended
     names, crossing = np.unique(crossing, return_inverse=True)
     one, two = crossing[: len(level)], crossing[len(level) :]
-    jump_left, jump_right = _jumps(small, cells, family, edges, names, width, base, points)
+    jump_left, jump_right = _jumps(small, cells, family, names, width, base)
     total = len(names)
     links = len(one)
     tail, head = np.concatenate([one, jump_left]), np.concatenate([two, jump_right])
@@ -206,7 +209,7 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     begin = np.full(chains, -1)
     loose = np.flatnonzero(degree == 1)
     # a singular end goes first
-    is_singular = names >= len(edges) * width
+    is_singular = names >= beyond
     for some in (loose[::-1], loose[is_singular[loose]][::-1]):
         begin[group[some]] = some
     closed = begin < 0
@@ -239,12 +242,13 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     offsets = np.searchsorted(owner, np.arange(chains + 1))
     way = forward[use]
     triangle, level = triangle[use], level[use]
+    corners = small.local.reshape(-1, 2)
     ends = []
     # a line into a singular corner, the middle one, has it as the short edge's first end
     for at, edge in ((at_long[use], long_edge[use]), (at_short[use], short_edge[use])):
         share = (level - value[edge[:, 0]]) / (value[edge[:, 1]] - value[edge[:, 0]])
         t = other[edge[:, 0]] + share * (other[edge[:, 1]] - other[edge[:, 0]])
-        first, second = (small.local.reshape(-1, 2).take(at[:, side], 0) for side in range(2))
+        first, second = (corners.take(at[:, side] % len(corners), 0) for side in range(2))
         ends.append((t, first + share[:, None] * (second - first)))
     (t_long, p_long), (t_short, p_short) = ends
     start, end = np.where(way, t_long, t_short), np.where(way, t_short, t_long)
@@ -255,15 +259,20 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     tips[:, 0] = begin
     far = loose[begin[group[loose]] != loose]
     tips[group[far], 1] = far
-    on_cut = np.isin(edges, key(np.concatenate([small.cut_left, small.cut_right])))
+    cut = _edge_keys(np.concatenate([small.cut_left, small.cut_right]), points)
     for side in range(2):
         at = tips[:, side]
         there = (at >= 0) & ~closed
         name = names[at[there]]
-        edge_number = np.minimum(name // width, len(edges) - 1)
-        kind = np.where(on_cut[edge_number], SEAM_END, RIM)
-        kinds[there, side] = np.where(name >= len(edges) * width, SINGULAR_END, kind)
+        kind = np.where(np.isin(name // width, cut), SEAM_END, RIM)
+        kinds[there, side] = np.where(name >= beyond, SINGULAR_END, kind)
     return Chains(offsets, triangle, level, start, end, local_start, local_end, kinds[chain_rank])
+
+
+def _edge_keys(ends: Integers, points: int) -> Integers:
+    """A whole number below points^2 for each edge between two of so many points, rows of (n, 2)."""
+    one, other = ends.T
+    return np.asarray(np.minimum(one, other) * points + np.maximum(one, other))
 
 
 def _ranks(values: Floats) -> Integers:
@@ -282,11 +291,9 @@ def _jumps(
     small: SmallTriangles,
     cells: CellMap,
     family: int,
-    edges: Integers,
     names: Integers,
     width: int,
     base: int,
-    points: int,
 ) -> tuple[Integers, Integers]:
     """Pairs of crossings that are the same point on both sides of a cut."""
     whole = whole_shifts(cells)
@@ -304,12 +311,9 @@ def _jumps(
     there = cells.signs[piece[edge]] * level + np.rint(shift[edge]).astype(np.int64)
 
     def crossing(pair: Integers, at: Integers) -> tuple[Integers, NDArray[np.bool_]]:
-        key = pair.min(1) * points + pair.max(1)
-        number = np.minimum(np.searchsorted(edges, key), len(edges) - 1)
-        inside = (edges[number] == key) & (at - base >= 0) & (at - base < width)
-        name = number * width + at - base
+        name = _edge_keys(pair, len(small.chi)) * width + at - base
         index = np.minimum(np.searchsorted(names, name), len(names) - 1)
-        return index, inside & (names[index] == name)
+        return index, (at - base >= 0) & (at - base < width) & (names[index] == name)
 
     one, has_one = crossing(left[edge], level)
     two, has_two = crossing(right[edge], there)

@@ -27,6 +27,7 @@ from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.vectors import lengths
 
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -43,8 +44,6 @@ GROWTH = 0.45
 GAP = 0.15
 # radii of the circle on which the order's coefficient is measured, over the rosette's
 MEASURED = 0.5
-# entries of a symmetric matrix that are kept
-ROWS, COLUMNS = np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2])
 
 
 @dataclass(frozen=True)
@@ -82,9 +81,10 @@ class NetMesh:
 
 @dataclass(frozen=True)
 class _TangentPlane:
-    """The plane at an umbilic as the complex plane."""
+    """The plane at an umbilic as the complex plane; `middles` are those of the surface's elements."""
 
     at: SurfacePoints
+    middles: cKDTree
 
     def down(self, points: Floats) -> Complexes:
         """Complex coordinates (...,) of points (..., 3), m."""
@@ -98,8 +98,7 @@ class _TangentPlane:
         # the first of the coefficients is the constant
         coordinates[0] -= (axes @ self.at.position[0])[:, None]
         foot = self.at.position[0] + np.stack([z.real, z.imag], 1) @ axes
-        middles = surface.nodes[surface.connectivity.faces].mean(1)
-        start = Places(cKDTree(middles).query(foot)[1], np.full((len(z), 2), 1 / 3))
+        start = Places(self.middles.query(foot)[1], np.full((len(z), 2), 1 / 3))
         target = np.stack([z.real, z.imag])
         places, found = find_places(surface.connectivity, coordinates, start, target, lambda *_: None)
         lost = np.flatnonzero(~found)
@@ -124,12 +123,13 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     def too_large(corners: Floats, longest: Floats) -> Flags:
         result = np.zeros(len(longest), bool)
         for zero, radius in zip(zeros, radii, strict=True):
-            distance = np.linalg.norm(corners - zero, axis=2).min(1)
+            distance = lengths(corners - zero).min(1)
             result |= (longest > GROWTH * np.maximum(distance, radius)) & (distance < 8 * radius + longest)
         return result
 
     parts = bisect(whole(connectivity, surface.nodes, surface.rim_loop), connectivity, surface.nodes, too_large)
-    planes = [_TangentPlane(surface.at(umbilics.places[number : number + 1])) for number in range(len(zeros))]
+    middles = cKDTree(surface.nodes[connectivity.faces].mean(1))
+    planes = [_TangentPlane(surface.at(umbilics.places[number : number + 1]), middles) for number in range(len(zeros))]
     kept = np.ones(len(parts.faces), bool)
     faces = [parts.faces]
     points = [parts.points]
@@ -176,13 +176,9 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         places, there = plane.up(z, surface)
         positions[names], element[names], local[names] = there, places.element, places.local
     every = Places(element, local)
-    operator = shape_entries(surface, every)
-    return NetMesh(new, positions, every, operator, surface.smooth_normal(every), loop, at, radii)
-
-
-def shape_entries(surface: ElementSurface, where: Places) -> Floats:
-    """Shape operator at n places, 1/m, (n, 6): entries xx, xy, xz, yy, yz, zz."""
-    return np.asarray(surface.at(where).shape_operator[:, ROWS, COLUMNS])
+    return NetMesh(
+        new, positions, every, surface.at(every).shape_entries, surface.smooth_normal(every), loop, at, radii
+    )
 
 
 def _positions(parts: Parts, surface: ElementSurface) -> Floats:
@@ -217,7 +213,7 @@ def _argument(surface: ElementSurface, plane: _TangentPlane, order: int, radius:
 
 def _hole(parts: Parts, nodes: Floats, centre: Floats, radius: float) -> Flags:
     """Parts that reach nearer to a place of the surface than a radius, as one piece without holes."""
-    near = np.linalg.norm(nodes - centre, axis=2).min(1)
+    near = lengths(nodes - centre).min(1)
     hole = near < radius
     m = len(parts.faces)
     # only what hangs together with the nearest one: another sheet may pass close by

@@ -110,7 +110,8 @@ class Poisson:
         for index, row in held.items():
             at[index] = row
         unknown, s = home[sector], sign[sector]
-        blocks = self.blocks * s[:, :, None] * s[:, None, :]
+        one, other = np.tril_indices(sector.shape[1])
+        blocks = packed(self.blocks) * (s.take(one, 1) * s.take(other, 1))
         flat = number[unknown].ravel()
         inside = flat >= 0
         size = int(free.sum())
@@ -123,7 +124,7 @@ class Poisson:
         right = [gathered(self.pull.real), gathered(self.pull.imag)]
         right += [-gathered(np.matmul(self.blocks, part[..., None])[..., 0]) for part in fixed]
         pattern = SymmetricPattern.from_elements(number[unknown], size)
-        solved = pattern.factor(pattern.assemble(packed(blocks))).solve(np.stack(right, 1))
+        solved = pattern.factor(pattern.assemble(blocks)).solve(np.stack(right, 1))
         padded = np.vstack([solved, np.zeros((1, solved.shape[1]))])[number]
         base = s * (padded[unknown, 0] + 1j * padded[unknown, 1])
         moves = np.array([s * padded[unknown, 2 + t] + part for t, part in enumerate(fixed)])

@@ -14,7 +14,6 @@ import numpy as np
 from lamella.network.gluing import best_shifts, links
 from lamella.network.holonomy import vertex_relations
 from lamella.network.isothermic import Isothermic, sectors
-from lamella.network.net_mesh import shape_entries
 from lamella.network.poisson import Poisson
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.enclosed import enclosed_volume
@@ -123,7 +122,7 @@ def shift_rates(
             surface.nodes + step * field[:, None] * directions,
             surface.rim_loop,
         )
-        there = replace(mesh, nodes=moved.measured(mesh.places).position, shape=shape_entries(moved, mesh.places))
+        there = replace(mesh, nodes=moved.measured(mesh.places).position, shape=moved.at(mesh.places).shape_entries)
         other = Poisson.of(there, iso.sign)
         # the root's branch is that of each element's own middle: the same one on both surfaces
         same = (other.form_a * system.form_a.conj() + other.form_b * system.form_b.conj()).real.sum(1)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lamella.errors import InputError
 from lamella.network.arcs import ArcLengths, Segments
+from lamella.network.blocks import blocks
 from lamella.network.density import Density
 from lamella.network.domain import A
 from lamella.network.domain_of import domain_of
@@ -25,8 +26,6 @@ Integers = NDArray[np.int64]
 
 # samples a cell (docs/files.md)
 FINE, COARSE, FINE_LIMIT = 16, 8, 20_000
-# samples worked on at a time, so that their arrays stay in the processor's cache
-BLOCK = 16_384
 
 
 def _ids(families: Integers) -> tuple[str, ...]:
@@ -67,8 +66,7 @@ def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, segment: 
         np.empty(count, np.complex128),
     )
     leaning = isinstance(segments.domain, LeaningBand)
-    for start in range(0, count, BLOCK):
-        block = slice(start, start + BLOCK)
+    for block in blocks(count):
         zeta, derivative = segments.where(segment[block], arcs.parameter(segment[block], fraction[block]))
         at = surface.at(zeta)
         heading = derivative / np.abs(derivative)

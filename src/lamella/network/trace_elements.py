@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.errors import InputError
+from lamella.network.blocks import blocks
 from lamella.network.cell_map import CellMap
 from lamella.network.element_arcs import ElementArcs
 from lamella.network.element_segments import ElementSegments
@@ -28,6 +29,7 @@ from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import element_rims
 from lamella.surface.points import Floats
+from lamella.surface.vectors import crosses, dots, images, lengths
 
 Integers = NDArray[np.int64]
 
@@ -54,16 +56,10 @@ def _crossings(tracks: Tracks, alive: NDArray[np.bool_]) -> tuple[Integers, Floa
     link = np.repeat(np.arange(len(count)), count)
     whole = first[link] + ragged_ranges(count)
     is_a = tracks.family[tracks.owner[link]] == A
-    name = np.stack(
-        [
-            tracks.triangle[link],
-            np.where(is_a, whole, tracks.level[link]),
-            np.where(is_a, tracks.level[link], whole),
-        ],
-        1,
-    )
-    _, number = np.unique(name, axis=0, return_inverse=True)
-    number = number.ravel()
+    levels = [np.where(is_a, tracks.level[link], whole), np.where(is_a, whole, tracks.level[link])]
+    parts = [tracks.triangle[link], *(level - level.min(initial=0) for level in levels)]
+    name = np.ravel_multi_index(parts, [int(part.max(initial=0)) + 1 for part in parts])
+    _, number = np.unique(name, return_inverse=True)
     both = (np.bincount(number[is_a], minlength=number.max(initial=-1) + 1) == 1) & (
         np.bincount(number[~is_a], minlength=number.max(initial=-1) + 1) == 1
     )
@@ -146,11 +142,14 @@ def trace_elements(
     chains = len(tracks.family)
     singular = singular_ends(cells, tracks)
     tips = rim_tips(cells, tracks)
-    ends = (cells.positions(Places(tracks.element, local)) for local in (tracks.local_start, tracks.local_end))
-    rough = np.linalg.norm(np.subtract(*ends), axis=1)
+    begin = cells.positions(Places(tracks.element, tracks.local_start))
+    # every link ends where the next one begins, but for the last ones
+    end = np.roll(begin, -1, 0)
+    end[tracks.last] = cells.positions(Places(tracks.element[tracks.last], tracks.local_end[tracks.last]))
+    rough = lengths(end - begin)
     length = np.bincount(tracks.owner, rough, chains)
     alive = np.ones(chains, bool)
-    median = np.median(np.repeat(rough / np.maximum(tracks.span, 1e-12), 1)) if len(rough) else 0.0
+    median = np.median(rough / np.maximum(tracks.span, 1e-12)) if len(rough) else 0.0
     alive &= length >= minimum_length * median
     stops = _stops(tracks, alive, singular, tips)
     if not (stops.kinds == REGULAR).any():
@@ -175,13 +174,11 @@ def trace_elements(
     given = number + last
     segment = np.repeat(np.arange(len(number)), given)
     fraction = ragged_ranges(given) / number[segment]
-    parameter = arcs.parameter(segment, fraction)
-    places, points, velocity = segments.velocity(segment, parameter)
-    tangents = velocity / np.linalg.norm(velocity, axis=1)[:, None]
+    parameter, near = arcs.parameter(segment, fraction)
+    places, points, velocity = segments.velocity(segment, parameter, near)
+    tangents = velocity / lengths(velocity)[:, None]
     points, tangents = segments.lead_out(segment, parameter, points, tangents)
-    normals, shape = _normals_and_shape(cells, places)
-    tangents -= (tangents * normals).sum(1)[:, None] * normals
-    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+    normals, tangents, bend, twist = _frames(cells, places, tangents)
 
     used = np.flatnonzero(np.bincount(chain, minlength=chains) > 0)
     lamella_of = np.full(chains, -1)
@@ -199,7 +196,7 @@ def trace_elements(
     stop_sample[first_stop] = segment_start
     stop_sample[first_stop[last] + 1] = (segment_start + number)[last]
     family = tracks.family[used]
-    darboux = _darboux(shape, tangents, normals, arclengths, offsets)
+    darboux = Darboux(bend, turning(tangents, crosses(normals, tangents), arclengths, offsets), twist)
 
     nodes, at = np.unique(stop_node, return_inverse=True)
     at = at.ravel()
@@ -250,26 +247,23 @@ def trace_elements(
     )
 
 
-def _normals_and_shape(cells: CellMap, places: Places) -> tuple[Floats, Floats]:
-    """Unit normals (n, 3) and entries of the shape operator (n, 6), see `NetMesh.shape`."""
+def _frames(cells: CellMap, places: Places, directions: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Unit normals (n, 3), tangents nearest to directions (n, 3), and kn and tg from the surface's shape operator."""
     mesh = cells.mesh
     basis = mesh.connectivity.basis
     nodal = np.column_stack([mesh.normals, mesh.shape])[mesh.connectivity.elements]
-    both = basis.values(basis.coefficients(nodal), places.element, places.local)
-    normal = both[:3] / np.sqrt((both[:3] ** 2).sum(0))
-    return np.ascontiguousarray(normal.T), both[3:].T
-
-
-def _darboux(shape: Floats, tangents: Floats, normals: Floats, arclengths: Floats, offsets: Integers) -> Darboux:
-    """kn and tg from the surface's shape operator along the curve; kg from the curve's own turning."""
-    sideways = np.cross(normals, tangents)
-    xx, xy, xz, yy, yz, zz = shape.T
-    x, y, z = tangents.T
-    # S t
-    image = np.stack([xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z], 1)
-    return Darboux(
-        (image * tangents).sum(1), turning(tangents, sideways, arclengths, offsets), (image * sideways).sum(1)
-    )
+    coefficients = basis.coefficients(nodal)
+    normals, tangents = np.empty((2, len(places), 3))
+    bend, twist = np.empty((2, len(places)))
+    for block in blocks(len(places)):
+        both = basis.values(coefficients, places.element[block], places.local[block]).T
+        normal = both[:, :3] / lengths(both[:, :3])[:, None]
+        tangent = directions[block] - dots(directions[block], normal)[:, None] * normal
+        tangent /= lengths(tangent)[:, None]
+        image = images(both[:, 3:], tangent)
+        bend[block], twist[block] = dots(image, tangent), dots(image, crosses(normal, tangent))
+        normals[block], tangents[block] = normal, tangent
+    return normals, tangents, bend, twist
 
 
 def _rims(
@@ -289,7 +283,7 @@ def _rims(
     _, first, second = cells.tangents(at)
     directions = np.zeros((len(kinds), 3))
     directions[boundary] = along[:, :1] * first + along[:, 1:] * second
-    directions[boundary] /= np.linalg.norm(directions[boundary], axis=1)[:, None]
+    directions[boundary] /= lengths(directions[boundary])[:, None]
     vertex = mesh.connectivity.faces[at.element, edge]
     loops = []
     for rim in rims:

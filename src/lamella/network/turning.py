@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.surface.points import Floats
+from lamella.surface.vectors import dots
 
 # samples to either side over which a lamella turns by its geodesic curvature: the kinks at elements average out
 WIDE = 3
@@ -27,6 +28,5 @@ def turning(tangents: Floats, sideways: Floats, arclengths: Floats, offsets: NDA
     count = np.diff(offsets)
     before = np.maximum(index - WIDE, np.repeat(offsets[:-1], count))
     after = np.minimum(index + WIDE, np.repeat(offsets[1:] - 1, count))
-    return np.asarray(
-        ((tangents[after] - tangents[before]) * sideways).sum(1) / (arclengths[after] - arclengths[before])
-    )
+    turned = tangents.take(after, 0) - tangents.take(before, 0)
+    return np.asarray(dots(turned, sideways) / (arclengths[after] - arclengths[before]))

@@ -77,6 +77,10 @@ class ClosedForm(ABC):
         """A grid over the whole outline."""
         return self.places(17, 17)[0]
 
+    def check_points(self) -> SurfacePoints:
+        """Everything about these places."""
+        return self.at(self.check_places())
+
     def mesh(self, tolerance: float = 1e-3) -> SurfaceMesh:
         """The surface sampled for files and pictures.
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.surface.vectors import symmetric
+
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
@@ -46,14 +48,15 @@ class SurfacePoints:
         return np.asarray(np.einsum("ij,ij->i", vectors, self.e_u) + 1j * np.einsum("ij,ij->i", vectors, self.e_v))
 
     @property
-    def shape_operator(self) -> Floats:
-        """Shape operator S as symmetric matrices in space, S t = -dn(t), 1/m, (n, 3, 3)."""
-        uu = self.e_u[:, :, None] * self.e_u[:, None, :]
-        vv = self.e_v[:, :, None] * self.e_v[:, None, :]
-        uv = self.e_u[:, :, None] * self.e_v[:, None, :]
+    def shape_entries(self) -> Floats:
+        """Shape operator S, S t = -dn(t), as a symmetric matrix in space, 1/m, (n, 6): xx, xy, xz, yy, yz, zz."""
         h, d = self.mean_curvature, self.deviator
-        diagonal = (h + d.real)[:, None, None] * uu + (h - d.real)[:, None, None] * vv
-        return np.asarray(diagonal - d.imag[:, None, None] * (uv + uv.transpose(0, 2, 1)))
+        return symmetric(self.e_u, self.e_v, h + d.real, -d.imag, h - d.real)
+
+    @property
+    def shape_operator(self) -> Floats:
+        """The same as matrices, (n, 3, 3)."""
+        return self.shape_entries[:, [[0, 1, 2], [1, 3, 4], [2, 4, 5]]]
 
     @property
     def principal_curvatures(self) -> tuple[Floats, Floats]:

@@ -44,6 +44,9 @@ class Surface(Protocol[Where]):
     def check_places(self) -> Where:
         """Places spread over the whole surface, at which a run measures it."""
 
+    def check_points(self) -> SurfacePoints:
+        """Everything about these places."""
+
     def measured_mean_curvature(self, where: Where) -> Floats:
         """H at n places from positions alone, 1/m, (n,): not from the equation that made the surface."""
 

@@ -48,7 +48,7 @@ def refuse_umbilic(surface: Surface[Any]) -> None:
     As a surface it is as good as any other. But the isothermic coordinates are the integral of (H^2 - K)^(1/4) times
     the principal directions: where H^2 = K all directions bend alike, and nothing tells where a lamella should go.
     """
-    what = umbilic_reason(surface.at(surface.check_places()))
+    what = umbilic_reason(surface.check_points())
     if what:
         raise InputError(
             f"the surface is {what}. There every point is umbilic: all directions bend alike, so no net of "

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.places import Places
 from lamella.surface.points import Floats
+from lamella.surface.vectors import lengths
 
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -79,15 +80,15 @@ def bisect(
     """
     for _ in range(MOST_ROUNDS):
         corners = parts.points[parts.faces]
-        lengths = np.linalg.norm(corners - np.roll(corners, -1, 1), axis=2)
-        marked = too_large(corners, lengths.max(1))
+        edges = lengths(corners - np.roll(corners, -1, 1))
+        marked = too_large(corners, edges.max(1))
         if not marked.any():
             return parts
-        parts = _cut(parts, connectivity, nodes, lengths, marked)
+        parts = _cut(parts, connectivity, nodes, edges, marked)
     raise ValueError(f"elements are still too large after {MOST_ROUNDS} rounds of cuts")
 
 
-def _cut(parts: Parts, connectivity: Connectivity, nodes: Floats, lengths: Floats, marked: Flags) -> Parts:
+def _cut(parts: Parts, connectivity: Connectivity, nodes: Floats, long: Floats, marked: Flags) -> Parts:
     """Cut the longest edges of marked triangles, and what that asks of their neighbours."""
     faces, vertices = parts.faces, len(parts.points)
     ends = np.stack([faces, np.roll(faces, -1, 1)], 2)
@@ -95,7 +96,7 @@ def _cut(parts: Parts, connectivity: Connectivity, nodes: Floats, lengths: Float
     edge = edge.reshape(-1, 3)
     # one order of all edges, the same seen from either triangle
     length = np.zeros(len(keys))
-    length[edge] = lengths
+    length[edge] = long
     rank = np.empty(len(keys), np.int64)
     rank[np.lexsort((keys, length))] = np.arange(len(keys))
     longest = rank[edge].argmax(1)
@@ -128,16 +129,18 @@ def _cut(parts: Parts, connectivity: Connectivity, nodes: Floats, lengths: Float
     # corners 0, 1, 2 and the middles of the edges 0-1, 1-2, 2-0 as 3, 4, 5
     name = np.concatenate([faces, at_edge], 1)
     place = np.concatenate([local, middle], 1)
+    # by the edges that are cut: 0-1 counts 1, 1-2 counts 2, 2-0 counts 4
     children = {
-        (False, False, False): [(0, 1, 2)],
-        (True, False, False): [(0, 3, 2), (3, 1, 2)],
-        (True, True, False): [(0, 3, 2), (3, 1, 4), (3, 4, 2)],
-        (True, False, True): [(0, 3, 5), (3, 2, 5), (3, 1, 2)],
-        (True, True, True): [(0, 3, 5), (3, 2, 5), (3, 1, 4), (3, 4, 2)],
+        0: [(0, 1, 2)],
+        1: [(0, 3, 2), (3, 1, 2)],
+        3: [(0, 3, 2), (3, 1, 4), (3, 4, 2)],
+        5: [(0, 3, 5), (3, 2, 5), (3, 1, 2)],
+        7: [(0, 3, 5), (3, 2, 5), (3, 1, 4), (3, 4, 2)],
     }
+    kind = cut @ [1, 2, 4]
     parent, new_corners, new_faces = [], [], []
     for case, triangles in children.items():
-        mine = np.flatnonzero((cut == case).all(1))
+        mine = np.flatnonzero(kind == case)
         for triangle in triangles:
             parent.append(parts.parent[mine])
             new_corners.append(place[mine][:, triangle])

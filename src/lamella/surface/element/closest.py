@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
@@ -35,13 +37,19 @@ class ClosestPoint:
 
     def __init__(self, connectivity: Connectivity, nodes: Floats) -> None:
         self._connectivity, self._nodes = connectivity, nodes
-        self._local, _ = subdivision(SAMPLES)
-        samples = np.matmul(connectivity.basis.basis(self._local), nodes[connectivity.elements])
-        self._tree = cKDTree(samples.reshape(-1, 3))
-        # corners 3 e + c of all elements, by vertex
-        vertices = connectivity.faces.ravel()
-        self._fans = np.argsort(vertices, kind="stable")
-        self._fan_offsets = np.searchsorted(vertices[self._fans], np.arange(connectivity.faces.max() + 2))
+
+    @cached_property
+    def _tree(self) -> cKDTree:
+        """The samples of all elements, element by element."""
+        basis = self._connectivity.basis.basis(subdivision(SAMPLES)[0])
+        return cKDTree(np.matmul(basis, self._nodes[self._connectivity.elements]).reshape(-1, 3))
+
+    @cached_property
+    def _fans(self) -> tuple[Integers, Integers]:
+        """Corners 3 e + c of all elements, by vertex, and where each vertex's begin."""
+        vertices = self._connectivity.faces.ravel()
+        fans = np.argsort(vertices, kind="stable")
+        return fans, np.searchsorted(vertices[fans], np.arange(self._connectivity.faces.max() + 2))
 
     def __call__(self, points: Floats) -> tuple[Places, Floats]:
         """Closest places and their positions.
@@ -57,18 +65,24 @@ class ClosestPoint:
             m.
         """
         _, sample = self._tree.query(points)
-        element, local = self._search(points, sample // len(self._local), self._local[sample % len(self._local)])
+        local, _ = subdivision(SAMPLES)
+        return self.near(points, Places(sample // len(local), local[sample % len(local)]))
+
+    def near(self, points: Floats, start: Places) -> tuple[Places, Floats]:
+        """The same, searched from places that are near: no need of samples."""
+        element, local = self._search(points, start.element, start.local)
         # a search that ends in a vertex may have its way on through any element there
         at_vertex = np.flatnonzero(np.column_stack([1 - local.sum(1), local]).max(1) > 1 - 1e-9)
         if len(at_vertex):
             corner = np.column_stack([1 - local.sum(1), local])[at_vertex].argmax(1)
             vertex = self._connectivity.faces[element[at_vertex], corner]
-            first, count = self._fan_offsets[vertex], np.diff(self._fan_offsets)[vertex]
+            fans, offsets = self._fans
+            first, count = offsets[vertex], np.diff(offsets)[vertex]
             query = np.repeat(np.arange(len(at_vertex)), count)
-            fan = self._fans[np.repeat(first - np.cumsum(count) + count, count) + np.arange(count.sum())]
+            fan = fans[np.repeat(first - np.cumsum(count) + count, count) + np.arange(count.sum())]
             tried = points[at_vertex][query]
-            start = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])[fan % 3] * 0.98 + 0.02 / 3
-            found, place = self._search(tried, fan // 3, start)
+            beside = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])[fan % 3] * 0.98 + 0.02 / 3
+            found, place = self._search(tried, fan // 3, beside)
             distance = np.linalg.norm(self._position(found, place) - tried, axis=1)
             by_query = np.lexsort((distance, query))
             best = by_query[np.searchsorted(query, np.arange(len(at_vertex)))]

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.sparse import SymmetricPattern
 from lamella.surface.element.lagrange import EDGES, Lagrange, lagrange
 
 Integers = NDArray[np.int64]
@@ -44,6 +46,19 @@ class Connectivity:
     def rim_nodes(self) -> Integers:
         """Nodes along each boundary edge, corners included, (b, order + 1); the surface lies to the left."""
         return np.asarray(self.elements[self.rim_elements[:, None], self.basis.edge_nodes[self.rim_edges]])
+
+    @cached_property
+    def inner_unknowns(self) -> Integers:
+        """Number of each node's unknown where the whole boundary is held, (n,); -1: on the boundary."""
+        inside = np.ones(self.node_count, bool)
+        inside[self.rim_nodes] = False
+        return np.where(inside, np.cumsum(inside) - 1, -1)
+
+    @cached_property
+    def inner_pattern(self) -> SymmetricPattern:
+        """Pattern of problems with the whole boundary held: its analysis serves them all."""
+        unknowns = self.inner_unknowns
+        return SymmetricPattern.from_elements(unknowns[self.elements], int(unknowns.max()) + 1)
 
 
 def connect(faces: Integers, vertex_count: int, order: int) -> Connectivity:

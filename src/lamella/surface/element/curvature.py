@@ -8,6 +8,7 @@ import numpy as np
 
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.points import Complexes, Floats
+from lamella.surface.vectors import crosses, dots, lengths
 
 
 @dataclass(frozen=True)
@@ -56,22 +57,17 @@ class ElementPoints:
 
 def frames(position: Floats, first: Floats, second: Floats) -> ElementFrames:
     """Frames at points (n, 3) with tangent vectors (n, 3) along the local coordinates."""
-    cross = np.cross(first, second)
-    area = np.sqrt(_dots(cross, cross))
+    cross = crosses(first, second)
+    area = lengths(cross)
     normal = cross / area[:, None]
-    length = np.sqrt(_dots(first, first))
+    length = lengths(first)
     e_u = first / length[:, None]
-    e_v = np.cross(normal, e_u)
+    e_v = crosses(normal, e_u)
     # first = length e_u, second = skew e_u + height e_v
-    skew, height = _dots(second, e_u), area / length
+    skew, height = dots(second, e_u), area / length
     to_local = np.zeros((len(position), 2, 2))
     to_local[:, 0, 0], to_local[:, 0, 1], to_local[:, 1, 1] = 1 / length, -skew / length / height, 1 / height
     return ElementFrames(position, normal, e_u, e_v, to_local)
-
-
-def _dots(one: Floats, other: Floats) -> Floats:
-    """Products of rows (n, 3), (n,)."""
-    return np.asarray(np.einsum("nc,nc->n", one, other))
 
 
 def element_points(connectivity: Connectivity, corners: Floats, local: Floats, paired: bool) -> ElementPoints:
@@ -91,7 +87,7 @@ def element_points(connectivity: Connectivity, corners: Floats, local: Floats, p
     else:
         x, a, b, aa, ab, bb = (np.matmul(f, corners).reshape(-1, 3) for f in jet)
     there = frames(x, a, b)
-    laa, lab, lbb = ((d * there.normal).sum(1) for d in (aa, ab, bb))
+    laa, lab, lbb = (dots(d, there.normal) for d in (aa, ab, bb))
     # second fundamental form in the frame: e_u = p a, e_v = q a + r b
     p, q, r = there.to_local[:, 0, 0], there.to_local[:, 0, 1], there.to_local[:, 1, 1]
     suu = laa * p**2

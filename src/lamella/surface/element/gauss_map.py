@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamella.sparse import SymmetricPattern, packed
+from lamella.sparse import packed
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.geometry import dirichlet_blocks, smooth_normals, tangents
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.points import Floats
+from lamella.surface.vectors import dots, lengths
 
 # |A|^2 is that of the pass before
 PASSES = 2
@@ -26,17 +27,15 @@ def harmonic_normals(connectivity: Connectivity, nodes: Floats) -> Floats:
     value, x, y = (basis.basis(points, *d) for d in ((0, 0), (1, 0), (0, 1)))
     blocks, (e, f, g), area = dirichlet_blocks(x, y, *tangents(x, y, nodes[connectivity.elements]), weights)
     normals = smooth_normals(connectivity, nodes)
-    inside = np.ones(connectivity.node_count, bool)
-    inside[connectivity.rim_nodes] = False
-    unknowns = np.where(inside, np.cumsum(inside) - 1, -1)
-    pattern = SymmetricPattern.from_elements(unknowns[connectivity.elements], int(inside.sum()))
+    inside = connectivity.inner_unknowns >= 0
+    pattern = connectivity.inner_pattern
     factor = pattern.factor(pattern.assemble(packed(blocks)))
     held = np.matmul(blocks, np.where(inside[:, None], 0, normals)[connectivity.elements])
     flat = connectivity.elements.ravel()
     for _ in range(PASSES):
         local = normals[connectivity.elements]
         n_x, n_y = np.matmul(x, local), np.matmul(y, local)
-        xx, xy, yy = (np.einsum("eqc,eqc->eq", u, v) for u, v in ((n_x, n_x), (n_x, n_y), (n_y, n_y)))
+        xx, xy, yy = (dots(u, v) for u, v in ((n_x, n_x), (n_x, n_y), (n_y, n_y)))
         # |grad n|^2 times the weighted area element
         bend = (g * xx - 2 * f * xy + e * yy) / area
         parts = np.matmul(value.T, np.matmul(value, local) * bend[..., None]) - held
@@ -46,5 +45,5 @@ def harmonic_normals(connectivity: Connectivity, nodes: Floats) -> Floats:
         ]
         normals = normals.copy()
         normals[inside] = factor.solve(np.stack(right, 1))
-        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        normals /= lengths(normals)[:, None]
     return normals

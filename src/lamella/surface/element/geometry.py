@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csc_matrix
 
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.points import Floats
+from lamella.surface.vectors import crosses, dots, lengths
 
 
 def tangents(basis_x: Floats, basis_y: Floats, corners: Floats) -> tuple[Floats, Floats]:
@@ -17,8 +18,8 @@ def tangents(basis_x: Floats, basis_y: Floats, corners: Floats) -> tuple[Floats,
 
 def normal_and_area(first: Floats, second: Floats) -> tuple[Floats, Floats]:
     """Unit normal (..., 3) and area element (...) of two tangent vectors."""
-    cross = np.cross(first, second)
-    area = np.linalg.norm(cross, axis=-1)
+    cross = crosses(first, second)
+    area = lengths(cross)
     return cross / area[..., None], area
 
 
@@ -41,20 +42,26 @@ def project_onto_nodes(
         What is projected.
     """
     basis = space.basis.basis(points)
-    parts = np.matmul(basis.T, values * weights[..., None])
-    n, flat = space.node_count, space.elements.ravel()
-    right: Floats = np.stack([np.bincount(flat, parts[..., c].ravel(), n) for c in range(values.shape[-1])], 1)
-    k = space.elements.shape[1]
-    blocks = weights @ (basis[:, :, None] * basis[:, None, :]).reshape(len(points), -1)
-    rows, columns = np.repeat(space.elements, k, axis=1), np.tile(space.elements, (1, k))
-    matrix = csr_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), (n, n))
-    inverse_diagonal = 1 / matrix.diagonal()[:, None]
+    n, (m, k), c = space.node_count, space.elements.shape, values.shape[-1]
+    # adds up at each node what its elements have there
+    gathering = csc_matrix((np.ones(m * k), space.elements.ravel(), np.arange(m * k + 1)), (n, m * k)).tocsr()
+    blocks = (weights @ (basis[:, :, None] * basis[:, None, :]).reshape(len(points), -1)).reshape(m, k, k)
+
+    def gathered(parts: Floats) -> Floats:
+        return np.asarray(gathering @ parts.reshape(m * k, c))
+
+    def image_of(nodal: Floats) -> Floats:
+        """The mass matrix times nodal values, element by element."""
+        return gathered(np.matmul(blocks, nodal.take(space.elements, 0)))
+
+    right = gathered(np.matmul(basis.T, values * weights[..., None]))
+    diagonal = gathering @ np.einsum("eii->ei", blocks).ravel()
+    inverse_diagonal = 1 / diagonal[:, None]
     # to begin with: each element's own projection, as if its area element were that of all on average
     share = basis.T * weights.mean(0)
     own = np.matmul(np.linalg.solve(share @ basis, share), values)
-    solution: Floats = np.stack([np.bincount(flat, own[..., c].ravel(), n) for c in range(values.shape[-1])], 1)
-    solution = solution / np.bincount(flat, minlength=n)[:, None]
-    residual = right - matrix @ solution
+    solution = gathered(own) / (gathering @ np.ones(m * k))[:, None]
+    residual = right - image_of(solution)
     conditioned = inverse_diagonal * residual
     direction = conditioned.copy()
     product = _dots(residual, conditioned)
@@ -62,7 +69,7 @@ def project_onto_nodes(
     for _ in range(500):
         if (product <= goal).all():
             break
-        image = matrix @ direction
+        image = image_of(direction)
         step = product / np.maximum(_dots(direction, image), 1e-300)
         solution += step * direction
         residual -= step * image
@@ -87,7 +94,7 @@ def smooth_normals(connectivity: Connectivity, nodes: Floats) -> Floats:
     basis_x, basis_y = (connectivity.basis.basis(points, *d) for d in ((1, 0), (0, 1)))
     normal, area = normal_and_area(*tangents(basis_x, basis_y, nodes[connectivity.elements]))
     projected = project_onto_nodes(connectivity, points, area * weights, normal)
-    return np.asarray(projected / np.linalg.norm(projected, axis=1)[:, None])
+    return np.asarray(projected / lengths(projected)[:, None])
 
 
 def dirichlet_blocks(
@@ -111,7 +118,7 @@ def dirichlet_blocks(
     area : (m, q)
         Area element over the weight: the metric's inverse times the weighted area is (G, -F, E) / area.
     """
-    e, f, g = (np.einsum("eqc,eqc->eq", u, v) for u, v in ((first, first), (first, second), (second, second)))
+    e, f, g = (dots(u, v) for u, v in ((first, first), (first, second), (second, second)))
     area = np.sqrt(np.maximum(e * g - f * f, 1e-12 * e * g)) / weights
     return weighted_dirichlet_blocks(basis_x, basis_y, (e, f, g), area), (e, f, g), area
 
@@ -122,10 +129,8 @@ def weighted_dirichlet_blocks(
     """Integrals of a weight times grad phi_i . grad phi_j, (m, k, k); the weight divides the area element (m, q)."""
     e, f, g = metric
     q, k = basis_x.shape
-    tables = [
-        (u[:, :, None] * v[:, None, :]).reshape(q, -1)
-        for u, v in ((basis_x, basis_x), (basis_x, basis_y), (basis_y, basis_y))
-    ]
-    blocks = ((g / area) @ tables[0] + (e / area) @ tables[2]).reshape(-1, k, k)
-    mixed = ((f / area) @ tables[1]).reshape(-1, k, k)
-    return np.asarray(blocks - mixed - mixed.transpose(0, 2, 1))
+    xx, xy, yx, yy = (
+        (u[:, :, None] * v[:, None, :]).reshape(q, -1) for u in (basis_x, basis_y) for v in (basis_x, basis_y)
+    )
+    factors = np.concatenate([g, -f, e], 1) / np.tile(area, 3)
+    return np.asarray((factors @ np.concatenate([xx, xy + yx, yy])).reshape(-1, k, k))

@@ -80,6 +80,13 @@ class Lagrange:
         """Values of polynomials of elements at places, (c, n), see `jet`."""
         return np.asarray(self._in_portions(coefficients, element, local, 1)[0])
 
+    def values_everywhere(self, coefficients: Floats, local: Floats, x_order: int = 0, y_order: int = 0) -> Floats:
+        """Values or derivatives at the same local coordinates (q, 2) of every element, element by element, (c, m q)."""
+        # of the monomials at these places
+        table = self.basis(local, x_order, y_order) @ self._monomials(self.nodes)
+        values = np.tensordot(coefficients, table, (0, 1))
+        return values.reshape(len(values), -1)
+
     def _in_portions(self, coefficients: Floats, element: NDArray[np.int64], local: Floats, parts: int) -> Floats:
         result = np.empty((parts, coefficients.shape[1], len(element)))
         # as many places at a time as stay in the processor's cache

@@ -29,3 +29,8 @@ class Places:
 
     def __getitem__(self, index: NDArray[np.int64] | NDArray[np.bool_] | slice) -> Places:
         return Places(self.element[index], self.local[index])
+
+    @classmethod
+    def everywhere(cls, elements: int, local: Floats) -> Places:
+        """The same local coordinates (q, 2) in every one of so many elements, element by element."""
+        return cls(np.repeat(np.arange(elements), len(local)), np.tile(local, (elements, 1)))

@@ -22,6 +22,7 @@ from lamella.surface.element.umbilics import Umbilics, find_umbilics
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.points import Complexes, Floats, SurfacePoints
 from lamella.surface.umbilic import umbilic_reason
+from lamella.surface.vectors import dots, images, lengths, symmetric
 
 Integers = NDArray[np.int64]
 
@@ -104,16 +105,13 @@ class ElementSurface:
         along = there.to_local
         n_u = along[:, 0, 0, None] * n_x + along[:, 1, 0, None] * n_y
         n_v = along[:, 0, 1, None] * n_x + along[:, 1, 1, None] * n_y
-        s_uu, s_vv = -(n_u * there.e_u).sum(1), -(n_v * there.e_v).sum(1)
-        s_uv = -((n_u * there.e_v).sum(1) + (n_v * there.e_u).sum(1)) / 2
-        h, half = self._mean(s_uu, s_vv)[:, None], ((s_uu - s_vv) / 2)[:, None]
-        uu, vv = (e[:, _ROWS] * e[:, _COLUMNS] for e in (there.e_u, there.e_v))
-        uv = there.e_u[:, _ROWS] * there.e_v[:, _COLUMNS] + there.e_v[:, _ROWS] * there.e_u[:, _COLUMNS]
-        tensor = (h + half) * uu + (h - half) * vv + s_uv[:, None] * uv
-        square = half[:, 0] ** 2 + s_uv**2
+        s_uu, s_vv = -dots(n_u, there.e_u), -dots(n_v, there.e_v)
+        s_uv = -(dots(n_u, there.e_v) + dots(n_v, there.e_u)) / 2
+        mean, half = self._mean(s_uu, s_vv), (s_uu - s_vv) / 2
+        shape = symmetric(there.e_u, there.e_v, mean + half, s_uv, mean - half)
         # the area element is 1 / det(to_local)
         area = 1 / (along[:, 0, 0] * along[:, 1, 1]).reshape(m, q)
-        values = np.column_stack([tensor, square]).reshape(m, q, 7)
+        values = np.concatenate([shape, (half**2 + s_uv**2)[:, None]], 1).reshape(m, q, 7)
         space = self._smooth_space
         nodal = project_onto_nodes(space, points, area * weights, values)
         return space.basis.coefficients(nodal[space.elements])
@@ -135,9 +133,14 @@ class ElementSurface:
     def shape_at(self, where: Places) -> tuple[ElementFrames, Floats, Complexes]:
         """Frames, mean curvature H (n,) and deviator (n,), 1/m, at n places, see `SurfacePoints`."""
         there = self.frames(where)
-        smooth = self._smooth_space.basis.values(self._smoothed[:, :6], where.element, where.local).T
-        uu, vv, uv = (_form(smooth, a, b) for a, b in ((there.e_u,) * 2, (there.e_v,) * 2, (there.e_u, there.e_v)))
-        return there, self._mean(uu, vv), (uu - vv) / 2 - 1j * uv
+        smooth = self._smooth_space.basis.values(self._smoothed[:, :6], where.element, where.local)
+        return there, *self._shape(there, smooth)
+
+    def _shape(self, there: ElementFrames, smooth: Floats) -> tuple[Floats, Complexes]:
+        """Mean curvature and deviator (n,) from the smoothed shape operator (6, n)."""
+        u, v = images(smooth.T, there.e_u), images(smooth.T, there.e_v)
+        uu, vv = dots(u, there.e_u), dots(v, there.e_v)
+        return self._mean(uu, vv), (uu - vv) / 2 - 1j * dots(u, there.e_v)
 
     def _mean(self, uu: Floats, vv: Floats) -> Floats:
         """H from the shape operator's entries: the surface's own."""
@@ -145,10 +148,23 @@ class ElementSurface:
 
     def at(self, where: Places) -> SurfacePoints:
         """Everything about n places, in one evaluation."""
-        there, mean, deviator = self.shape_at(where)
-        _, by_x, by_y = self._smooth_space.basis.jet(self._smoothed[:, 6:], where.element, where.local)[:, 0]
+        basis = self._smooth_space.basis
+        smooth = basis.values(self._smoothed[:, :6], where.element, where.local)
+        _, by_x, by_y = basis.jet(self._smoothed[:, 6:], where.element, where.local)[:, 0]
+        return self._points(self.frames(where), smooth, by_x, by_y)
+
+    def at_everywhere(self, local: Floats) -> SurfacePoints:
+        """The points at the same local coordinates (q, 2) of every element, element by element: sooner than by `at`."""
+        basis = self._smooth_space.basis
+        smooth = basis.values_everywhere(self._smoothed[:, :6], local)
+        by_x, by_y = (basis.values_everywhere(self._smoothed[:, 6:], local, *d)[0] for d in ((1, 0), (0, 1)))
+        return self._points(self._frames_everywhere(local), smooth, by_x, by_y)
+
+    def _points(self, there: ElementFrames, smooth: Floats, by_x: Floats, by_y: Floats) -> SurfacePoints:
+        """Points with the smoothed shape operator (6, n) and the slopes (n,) of H^2 - K."""
+        mean, deviator = self._shape(there, smooth)
+        square = np.maximum(deviator.real**2 + deviator.imag**2, np.finfo(float).tiny)
         along = there.to_local[:, 0] * by_x[:, None] + there.to_local[:, 1] * by_y[:, None]
-        square = np.maximum(np.abs(deviator) ** 2, np.finfo(float).tiny)
         return SurfacePoints(
             there.position,
             there.e_u,
@@ -162,15 +178,19 @@ class ElementSurface:
     def frames(self, where: Places) -> ElementFrames:
         """Position and frame at n places."""
         jet = self.connectivity.basis.jet(self.polynomials, where.element, where.local)
-        position, first, second = np.ascontiguousarray(jet.transpose(0, 2, 1))
-        return frames(position, first, second)
+        return frames(*np.ascontiguousarray(jet.transpose(0, 2, 1)))
+
+    def _frames_everywhere(self, local: Floats) -> ElementFrames:
+        basis = self.connectivity.basis
+        orders = ((0, 0), (1, 0), (0, 1))
+        return frames(*(np.ascontiguousarray(basis.values_everywhere(self.polynomials, local, *d).T) for d in orders))
 
     def smooth_normal(self, where: Places) -> Floats:
         """Unit normal of the harmonic Gauss map at n places, (n, 3): it does not jump between elements."""
         basis = self.connectivity.basis
         coefficients = basis.coefficients(self._gauss[self.connectivity.elements])
         normal = basis.values(coefficients, where.element, where.local).T
-        return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])
+        return np.asarray(normal / lengths(normal)[:, None])
 
     def measured(self, where: Places) -> ElementPoints:
         """Position, frame and unsmoothed shape operator at n places."""
@@ -187,9 +207,11 @@ class ElementSurface:
 
     def check_places(self) -> Places:
         """Twelve places inside every element."""
-        points, _ = triangle_rule(6)
-        m = len(self._corners)
-        return Places(np.repeat(np.arange(m), len(points)), np.tile(points, (m, 1)))
+        return Places.everywhere(len(self._corners), triangle_rule(6)[0])
+
+    def check_points(self) -> SurfacePoints:
+        """Everything about these places."""
+        return self.at_everywhere(triangle_rule(6)[0])
 
     @cached_property
     def _search(self) -> ClosestPoint:
@@ -198,6 +220,10 @@ class ElementSurface:
     def closest(self, points: Floats) -> tuple[Places, Floats]:
         """Closest places to points (n, 3), and their positions (n, 3), m."""
         return self._search(points)
+
+    def closest_near(self, points: Floats, start: Places) -> tuple[Places, Floats]:
+        """The same, searched from places (n,) that are near."""
+        return self._search.near(points, start)
 
     def area(self) -> float:
         """m^2."""
@@ -276,7 +302,7 @@ class ElementSurface:
 
     def singular_orders(self) -> tuple[int, ...]:
         """Orders of the umbilics."""
-        if umbilic_reason(self.at(self.check_places())):
+        if umbilic_reason(self.check_points()):
             return ()
         return tuple(self.umbilics.orders.tolist())
 
@@ -287,14 +313,3 @@ class ElementSurface:
     def warnings(self) -> tuple[str, ...]:
         """What a user should know about this surface before building it."""
         return self.notes
-
-
-# entries of a symmetric 3 x 3 matrix that are kept
-_ROWS, _COLUMNS = np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2])
-_HALF = np.where(_ROWS == _COLUMNS, 0.5, 1.0)
-
-
-def _form(tensor: Floats, a: Floats, b: Floats) -> Floats:
-    """a . T b for symmetric matrices given by six entries."""
-    both = a[:, _ROWS] * b[:, _COLUMNS] + a[:, _COLUMNS] * b[:, _ROWS]
-    return np.asarray((tensor * both * _HALF).sum(1))

@@ -13,7 +13,8 @@ from scipy.spatial import cKDTree
 
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
-from lamella.surface.points import Complexes, Floats
+from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.vectors import dots
 
 if TYPE_CHECKING:
     from lamella.surface.element.surface import ElementSurface
@@ -60,22 +61,22 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
     """
     local, faces = subdivision(PARTS)
     m = len(surface.connectivity.elements)
-    every = Places(np.repeat(np.arange(m), len(local)), np.tile(local, (m, 1)))
-    value = deviator_in_element(surface, every).reshape(m, len(local))
+    axes = surface.frames(Places.everywhere(m, np.full((1, 2), 1 / 3))).e_u
+    value = _turned(surface.at_everywhere(local), np.repeat(axes, len(local), 0)).reshape(m, -1)
     corners = value[:, faces]
     turn = np.angle(np.roll(corners, -1, 2) / np.where(corners == 0, 1, corners)).sum(2) / (2 * np.pi)
     # a small value beside the corners' differences may hide a zero next to the triangle's edge
     spread = np.abs(corners - np.roll(corners, 1, 2)).max(2)
     start = (np.rint(turn) != 0) | (np.abs(corners).min(2) < 0.5 * spread)
     element, small = np.nonzero(start)
-    found, inside = _newton(surface, Places(element, local[faces[small]].mean(1)))
+    found, inside = _newton(surface, Places(element, local[faces[small]].mean(1)), axes[element])
     found = found[inside]
     size = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
     if not len(found):
         return Umbilics(found, np.zeros((0, 3)), np.zeros(0, np.int64))
-    position = surface.frames(found).position
+    places, position = found, surface.frames(found).position
     for reach in REACHES:
-        places, position, orders = _gathered(surface, position, reach * size)
+        places, position, orders = _gathered(surface, places, position, reach * size)
         # the Hopf differential is holomorphic: a negative turn is noise next to a zero of higher order
         if (orders >= 0).all():
             break
@@ -83,42 +84,38 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
     return Umbilics(places[kept], position[kept], orders[kept])
 
 
-def _gathered(surface: ElementSurface, position: Floats, reach: float) -> tuple[Places, Floats, Integers]:
+def _gathered(
+    surface: ElementSurface, places: Places, position: Floats, reach: float
+) -> tuple[Places, Floats, Integers]:
     """Zeros nearer to each other than `reach` (m) as one, with the turns of the deviator around them."""
     pairs = np.array(list(cKDTree(position).query_pairs(reach)), np.int64).reshape(-1, 2)
     graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), (len(position), len(position)))
     _, group = connected_components(graph, directed=False)
     centre = np.stack([np.bincount(group, position[:, c]) for c in range(3)], 1) / np.bincount(group)[:, None]
-    places, position = surface.closest(centre)
-    return places, position, _turns(surface, position, reach)
+    _, first = np.unique(group, return_index=True)
+    places, position = surface.closest_near(centre, places[first])
+    return places, position, _turns(surface, places, position, reach)
 
 
-def deviator_in_element(surface: ElementSurface, where: Places) -> Complexes:
-    """Trace-free shape operator in one orthonormal frame an element, 1/m, (n,): no turn of the frame is in it."""
-    m = len(surface.connectivity.elements)
-    middle = surface.frames(Places(np.arange(m), np.full((m, 2), 1 / 3)))
-    at = surface.at(where)
-    return np.asarray(at.deviator * _frame_turn(at.e_u, at.e_v, middle.e_u[where.element]) ** 2)
+def _turned(at: SurfacePoints, axes: Floats) -> Complexes:
+    """Trace-free shape operators, 1/m, (n,), in frames along the tangents nearest to given directions (n, 3)."""
+    turn = dots(axes, at.e_u) + 1j * dots(axes, at.e_v)
+    return np.asarray(at.deviator * (turn / np.abs(turn)) ** 2)
 
 
-def _frame_turn(e_u: Floats, e_v: Floats, reference: Floats) -> Complexes:
-    """Unit complex number of a reference direction in frames (e_u, e_v)."""
-    turn = (reference * e_u).sum(1) + 1j * (reference * e_v).sum(1)
-    return np.asarray(turn / np.abs(turn))
-
-
-def _newton(surface: ElementSurface, start: Places) -> tuple[Places, NDArray[np.bool_]]:
-    """Zeros from starting places; which of them ended inside their element."""
+def _newton(surface: ElementSurface, start: Places, axes: Floats) -> tuple[Places, NDArray[np.bool_]]:
+    """Zeros from starting places, by the deviator in frames along axes (n, 3); which ended inside their element."""
     element, local = start.element, start.local.copy()
+
+    # at a place and a little ahead of it in both local coordinates
     step = 1e-5
+    ahead = step * np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])
+    every, each = np.tile(element, 3), np.tile(axes, (3, 1))
     for _ in range(MOST_STEPS):
-        value = deviator_in_element(surface, Places(element, local))
-        slope = np.empty((len(element), 2, 2))
-        for axis in range(2):
-            ahead = local.copy()
-            ahead[:, axis] += step
-            change = (deviator_in_element(surface, Places(element, ahead)) - value) / step
-            slope[:, 0, axis], slope[:, 1, axis] = change.real, change.imag
+        there = Places(every, (local + ahead).reshape(-1, 2))
+        value, *further = _turned(surface.at(there), each).reshape(3, -1)
+        change = (np.stack(further, 1) - value[:, None]) / step
+        slope = np.stack([change.real, change.imag], 1)
         determinant = np.linalg.det(slope)
         slope[np.abs(determinant) < 1e-300] = np.eye(2)
         move = -np.linalg.solve(slope, np.stack([value.real, value.imag], 1)[..., None])[..., 0]
@@ -132,19 +129,17 @@ def _newton(surface: ElementSurface, start: Places) -> tuple[Places, NDArray[np.
     return Places(element, np.clip(local, 0, 1)), inside
 
 
-def _turns(surface: ElementSurface, centre: Floats, radius: float) -> Integers:
-    """Turns of the deviator once around places on the surface, at a radius (m), (n,)."""
+def _turns(surface: ElementSurface, places: Places, centre: Floats, radius: float) -> Integers:
+    """Turns of the deviator once around places of the surface, at a radius (m), (n,)."""
     count = 48
-    at, _ = surface.closest(centre)
-    frame = surface.at(at)
+    frame = surface.at(places)
     angle = 2 * np.pi * np.arange(count) / count
     ring = (
         centre[:, None]
         + radius * np.cos(angle)[:, None] * frame.e_u[:, None]
         + radius * np.sin(angle)[:, None] * frame.e_v[:, None]
     )
-    there = surface.at(surface.closest(ring.reshape(-1, 3))[0])
-    reference = np.repeat(frame.e_u, count, axis=0)
-    value = (there.deviator * _frame_turn(there.e_u, there.e_v, reference) ** 2).reshape(-1, count)
+    around, _ = surface.closest_near(ring.reshape(-1, 3), places[np.repeat(np.arange(len(places)), count)])
+    value = _turned(surface.at(around), np.repeat(frame.e_u, count, axis=0)).reshape(-1, count)
     turns = np.angle(np.roll(value, -1, 1) / value).sum(1) / (2 * np.pi)
     return np.asarray(np.rint(turns), np.int64)

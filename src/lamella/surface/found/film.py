@@ -95,7 +95,7 @@ class Film:
         """The same elements with other nodes."""
         result = replace(self, nodes=nodes)
         # what hangs on the elements alone is worked out once
-        for name in ("unknowns", "pattern", "inner_unknowns", "inner_pattern", "bordered_pattern", "_sliding"):
+        for name in ("unknowns", "pattern", "bordered_pattern", "_sliding"):
             if name in self.__dict__:
                 result.__dict__[name] = self.__dict__[name]
         return result
@@ -124,8 +124,9 @@ class Film:
     @cached_property
     def unknowns(self) -> Integers:
         """Number of each node's unknown, (n,); -1: held."""
-        free = np.ones(self.connectivity.node_count, bool)
-        free[self.connectivity.rim_nodes] = False
+        if not self._sliding:
+            return self.connectivity.inner_unknowns
+        free = self.connectivity.inner_unknowns >= 0
         for nodes, _ in self._sliding:
             free[nodes] = True
         return np.where(free, np.cumsum(free) - 1, -1)
@@ -133,22 +134,9 @@ class Film:
     @cached_property
     def pattern(self) -> SymmetricPattern:
         """Pattern of the second variation."""
-        return SymmetricPattern.from_elements(self.unknowns[self.connectivity.elements], int(self.unknowns.max()) + 1)
-
-    @cached_property
-    def inner_unknowns(self) -> Integers:
-        """Number of each node's unknown where the whole boundary is held, (n,); -1: on the boundary."""
-        inside = np.ones(self.connectivity.node_count, bool)
-        inside[self.connectivity.rim_nodes] = False
-        return np.where(inside, np.cumsum(inside) - 1, -1)
-
-    @cached_property
-    def inner_pattern(self) -> SymmetricPattern:
-        """Pattern of a problem with the whole boundary held."""
         if not self._sliding:
-            return self.pattern
-        unknowns = self.inner_unknowns
-        return SymmetricPattern.from_elements(unknowns[self.connectivity.elements], int(unknowns.max()) + 1)
+            return self.connectivity.inner_pattern
+        return SymmetricPattern.from_elements(self.unknowns[self.connectivity.elements], int(self.unknowns.max()) + 1)
 
     @cached_property
     def bordered_pattern(self) -> SymmetricPattern:
@@ -203,14 +191,14 @@ def _harmonic(film: Film, held: Floats, mean_curvature: float = 0.0) -> Floats:
     value, x, y = (basis.basis(points, *d) for d in ((0, 0), (1, 0), (0, 1)))
     a, b = tangents(x, y, film.nodes[connectivity.elements])
     blocks, _, _ = dirichlet_blocks(x, y, a, b, weights)
-    free = film.inner_unknowns >= 0
+    free = connectivity.inner_unknowns >= 0
     pull = np.matmul(blocks, np.where(free[:, None], 0, held)[connectivity.elements])
     if mean_curvature:
         pull += 2 * mean_curvature * np.matmul(value.T, np.cross(a, b) * weights[:, None])
     flat = connectivity.elements.ravel()
     right = [-np.bincount(flat, pull[..., c].ravel(), len(free))[free].astype(np.float64) for c in range(3)]
     values = held.copy()
-    pattern = film.inner_pattern
+    pattern = connectivity.inner_pattern
     try:
         values[free] = pattern.factor(pattern.assemble(packed(blocks))).solve(np.stack(right, 1))
     except SingularError as error:

@@ -75,7 +75,7 @@ class Kept(NamedTuple):
 def fitted_film(film: Film, points: Floats, areas: Floats, detail: Progress) -> tuple[Film, Floats]:
     """The film nearest to points, its rim held, and their distances, m, (n,)."""
     connectivity, basis = film.connectivity, film.connectivity.basis
-    free = film.inner_unknowns >= 0
+    free = connectivity.inner_unknowns >= 0
     distance = np.zeros(len(points))
     for step in range(MOST_STEPS):
         directions = film.directions()
