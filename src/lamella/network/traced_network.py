@@ -119,12 +119,7 @@ class TracedNetwork:
             if unreal > LEAST_SHARE:
                 parts.append(f"{unreal:.1%} of the surface has no direction of normal curvature {wanted:g} 1/m")
             if flat > LEAST_SHARE:
-                parts.append(
-                    f"{'in ' if unreal > LEAST_SHARE else ''}{flat:.1%} {'more' if unreal > LEAST_SHARE else 'of it'} "
-                    f"the two families cross at less than {LEAST_ANGLE:g} deg"
-                    if unreal > LEAST_SHARE
-                    else f"in {flat:.1%} of the surface the two families cross at less than {LEAST_ANGLE:g} deg"
-                )
+                parts.append(f"in {flat:.1%} of the surface the two families cross at less than {LEAST_ANGLE:g} deg")
             yield (
                 f"{', '.join(parts)}: no lamellas there, {self.inner_ends} of their ends lie inside the surface "
                 "(another normal_curvature moves that edge)"
