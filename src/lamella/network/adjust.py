@@ -184,11 +184,14 @@ class _Search:
     def _targets(self, net: FilmNet, lattice: Lattice) -> list[Complexes]:
         """Whole shifts (t,) in the order of the change they ask for, to first order."""
         step = lattice.step
-        rates = self.films.cell_rates(net, step)
-        near = net.whole.easiest(net.cells(step), rates * np.append(np.ones(len(net.shares)), SPACING), MOST_LOOKED_AT)
-        counted = self._counted(net, net.cells(step), lattice)
-        near = [whole for whole in near if self._counted(net, whole, lattice) == counted]
-        cost = [self._solved(net, rates, whole - net.cells(step))[1] for whole in near]
+        shifts, rates = net.cells(step), self.films.cell_rates(net, step)
+        counted = self._counted(net, shifts, lattice)
+        easy = net.whole.easiest(shifts, rates * np.append(np.ones(len(net.shares)), SPACING), MOST_LOOKED_AT)
+        # where the boundary may hardly change, only another spacing is easy: other cells than were asked for
+        near = net.whole.nearest(shifts, MOST_TRIED)
+        near += [whole for whole in easy if not any(np.array_equal(whole, one) for one in near)]
+        near = [whole for whole in near if self._counted(net, whole, lattice) == counted] or near
+        cost = [self._solved(net, rates, whole - shifts)[1] for whole in near]
         return [near[k] for k in np.argsort(cost, kind="stable")[:MOST_TRIED].tolist()]
 
     def _counted(self, net: FilmNet, shifts: Complexes, lattice: Lattice) -> int:
