@@ -238,10 +238,14 @@ def examples_page(results: dict[str, Results]) -> str:
 
 def _figures(summary: dict[str, Any]) -> Iterator[str]:
     s, n, m, f = (summary[stage] for stage in ("surface", "network", "lamellas", "fabrication"))
-    radius = (
-        f", radius of the strips {1 / abs(s['mean_curvature']):.4g} m" if s["mean_curvature"] else ", straight strips"
-    )
-    yield f"| mean curvature | {s['mean_curvature']:.4g} 1/m{radius if n else ''} |"
+    kn = n["normal_curvature"] if n else 0.0
+    radius = f", radius of the strips {1 / abs(kn):.4g} m" if kn else ", straight strips"
+    if "mean_curvature_range" in s:
+        low, high = s["mean_curvature_range"]
+        yield f"| mean curvature | from {low:.2g} to {high:.2g} 1/m |"
+        yield f"| normal curvature of the lamellas | {kn:.4g} 1/m{radius} |"
+    else:
+        yield f"| mean curvature | {s['mean_curvature']:.4g} 1/m{radius if n else ''} |"
     yield f"| area | {s['area']:.4g} m2 |"
     if "elements" in s:
         yield from _found_figures(s)
@@ -255,6 +259,9 @@ def _figures(summary: dict[str, Any]) -> Iterator[str]:
         if n["umbilics"]:
             nodes = sum(umbilic["node"] for umbilic in n["umbilics"])
             yield f"| umbilics | {len(n['umbilics'])}, {nodes} of them nodes |"
+    if "node_angle_mean_deg" in n:
+        angles = " / ".join(f"{n[f'node_angle_{which}_deg']:.1f}" for which in ("min", "mean", "max"))
+        yield f"| node angle, least / mean / most | {angles} deg |"
     edges = f"{n['cell_edge_min']:.2g} / {n['cell_edge_median']:.3g} / {n['cell_edge_max']:.3g}"
     yield f"| cell edge, least / median / most | {edges} m |"
     yield f"| largest kg, tg | {m['geodesic_curvature_max']:.3f}, {m['geodesic_torsion_max']:.3f} 1/m |"
@@ -268,14 +275,19 @@ def _figures(summary: dict[str, Any]) -> Iterator[str]:
 
 
 def _found_figures(s: dict[str, Any]) -> Iterator[str]:
-    deviation = f"{s['mean_curvature_deviation']:.1e} (tolerance {s['tolerance']:g})"
-    yield f"| largest deviation from it, over the curvature scale {s['curvature_scale']:.3g} 1/m | {deviation} |"
-    if s["mean_curvature"]:
+    kept = "curvature_jump" in s
+    what = "jump of the curvature between elements" if kept else "largest deviation from it"
+    error = s["curvature_jump" if kept else "mean_curvature_deviation"]
+    scale = f"over the curvature scale {s['curvature_scale']:.3g} 1/m"
+    yield f"| {what}, {scale} | {error:.1e} (tolerance {s['tolerance']:g}) |"
+    if not kept and s["mean_curvature"]:
         yield f"| volume, with lids over the loops | {s['volume']:.4g} m3 |"
-    yield f"| lowest Jacobi eigenvalue | {s['jacobi_eigenvalue']:.3g} 1/m2: {s['stability']} |"
+    if not kept:
+        yield f"| lowest Jacobi eigenvalue | {s['jacobi_eigenvalue']:.3g} 1/m2: {s['stability']} |"
     yield f"| elements | {s['elements']:,} curved triangles of order {s['order']}, {s['surface_nodes']:,} nodes |"
-    way = "on the whole path" if s["continuation"] else "from the start"
-    yield f"| Newton steps | {s['newton_steps']} {way} |"
+    if not kept:
+        way = "on the whole path" if s["continuation"] else "from the start"
+        yield f"| Newton steps | {s['newton_steps']} {way} |"
     if "distance_max" in s:
         yield f"| distance from the mesh, typical / largest | {s['distance_rms']:.2g} / {s['distance_max']:.2g} m |"
 

@@ -226,7 +226,7 @@ def of_any_machine(text: str) -> str:
     A refined mesh follows the last digits of its machine's linear algebra: where an estimate is about as large as its
     tolerance, one machine refines once more than another. What the run is for (areas, lamellas, nodes, stresses) stays.
     """
-    rows = "elements|Newton steps|isothermic coordinates off by|largest deviation from it"
+    rows = "elements|Newton steps|isothermic coordinates off by|largest deviation from it|jump of the curvature"
     return re.sub(rf"^\| ({rows})\b.*$", r"| \1: of the mesh |", text, flags=re.M)
 
 

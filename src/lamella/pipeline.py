@@ -24,7 +24,7 @@ from lamella.surface.closed_form import ClosedForm
 from lamella.surface.closed_forms import CLOSED_FORMS
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
-from lamella.surface.umbilic import umbilic_reason
+from lamella.surface.umbilic import refuse_umbilic, umbilic_reason
 
 if TYPE_CHECKING:
     from lamella.network.adjust import Adjusted
@@ -353,6 +353,7 @@ def _trace(surface: Surface[Any], project: Project, progress: Progress) -> Trace
     """The network of lines that follow from no lattice."""
     from lamella.network.traced_network import traced_network
 
+    refuse_umbilic(surface)
     table = project.network
     return traced_network(
         ground_of(surface),

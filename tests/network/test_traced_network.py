@@ -15,13 +15,15 @@ from conftest import run_of_example
 from exact_elements import catenoid_map, on_map
 from lamella import Enneper, Helicoid, InputError, Scherk, make_network, parse_project
 from lamella.files.network_json import network_bytes
+from lamella.network.element_ground import ElementGround
 from lamella.network.flow import finished, trace
-from lamella.network.ground import ElementGround
 from lamella.network.line_field import LEAST_ANGLE, LineField
 from lamella.network.network import BOUNDARY, REGULAR, Network
 from lamella.network.pattern import Pattern
+from lamella.network.plane_ground import PlaneGround
 from lamella.network.traced_network import TracedNetwork, traced_network
 from lamella.pipeline import compute
+from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
 from measure_network import measure
 from network.test_found_network import shaken_grid
@@ -135,9 +137,20 @@ def off_the_helicoid(wanted: float, cells: int) -> float:
 
 
 def test_lines_of_a_helicoid() -> None:
-    """Runge and Kutta's error falls by the fourth power of the step; lines of 0.2 end inside, where it is shortened."""
     assert off_the_helicoid(0.2, 12) < 1e-6
-    errors = [off_the_helicoid(0.05, cells) for cells in (24, 48)]
+
+
+def test_the_order_of_tracing() -> None:
+    """Runge and Kutta's error falls by the fourth power of the step: where a line ends, against one traced finely."""
+    ground, field = PlaneGround(Helicoid(4.0, 0.5, 3.0, 0.5)), LineField(0.05, 1.0)
+    seeds = Places(np.zeros(3, np.int64), np.array([[1.2, 0.6], [1.5, 1.2], [1.8, 2.0]]))
+
+    def ends(step: float) -> np.ndarray:
+        flow = finished(trace(ground, field, seeds, np.array([True, False, True]), step=step, longest=9.0))
+        return np.concatenate([flow.at(np.arange(3), s)[1].position for s in (0 * flow.lengths, flow.lengths)])
+
+    exact = ends(0.002)
+    errors = [np.linalg.norm(ends(step) - exact, axis=1).max() for step in (0.03, 0.015)]
     assert np.log2(errors[0] / errors[1]) > 3.5
 
 

@@ -29,7 +29,7 @@ HALVINGS = 46
 # turn of a line in a step, rad
 MOST_TURN = 0.1
 # of the way on which directions would stop being real if they went on as in the last step; least step over the longest
-APPROACH, SLOWEST = 0.5, 16
+APPROACH, SLOWEST = 0.5, 8
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ def trace(ground: Ground, field: LineField, seeds: Places, is_a: Booleans, *, st
         ds = np.minimum(ground.reach(where) / np.linalg.norm(velocity, axis=1), step)
         ds = np.minimum(np.minimum(ds, most), MOST_TURN / np.maximum(bend, 1e-300))
         kept.append((left, way, where, tangent, look.position))
-        ahead = ground.settle(_step(ground, field, where, tangent, family[left], ds))
+        ahead = ground.settle(_step(ground, field, where, tangent, family[left], ds, velocity))
         seen = ground.look(ahead)
         before, margin = margin, field.margin(seen.mean, seen.deviator)
         # a step must not pass over a place without directions, around a flat point for instance
@@ -247,14 +247,22 @@ def _tangent(field: LineField, look: Look, is_a: Booleans, onwards: Floats) -> F
     return np.asarray(np.where((tangent * onwards).sum(1) < 0, -1.0, 1.0)[:, None] * tangent)
 
 
-def _step(ground: Ground, field: LineField, start: Places, onwards: Floats, is_a: Booleans, ds: Floats) -> Places:
-    """Places arc lengths ds (n,) further on, in the charts of their starts."""
+def _step(
+    ground: Ground,
+    field: LineField,
+    start: Places,
+    onwards: Floats,
+    is_a: Booleans,
+    ds: Floats,
+    first: Floats | None = None,
+) -> Places:
+    """Places arc lengths ds (n,) further on, in the charts of their starts; `first`: d(x, y) / ds there, if known."""
 
     def rate(local: Floats) -> Floats:
         return _velocity(field, ground.look(Places(start.element, local)), is_a, onwards)
 
     h, x = ds[:, None], start.local
-    k1 = rate(x)
+    k1 = rate(x) if first is None else first
     k2 = rate(x + h / 2 * k1)
     k3 = rate(x + h / 2 * k2)
     k4 = rate(x + h * k3)

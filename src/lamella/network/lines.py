@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from lamella.errors import InputError
-from lamella.network.ground import ElementGround, Ground, PlaneGround
+from lamella.network.element_ground import ElementGround
+from lamella.network.ground import Ground
 from lamella.network.pattern import Pattern
+from lamella.network.plane_ground import PlaneGround
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.revolution import SurfaceOfRevolution

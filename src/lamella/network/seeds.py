@@ -31,9 +31,9 @@ AROUND, ACROSS = 0.98, 0.17
 CLOSE, GAP = 0.6, 1.0
 MOST_ROUNDS = 60
 # gaps filled at once, and how far apart they are, in spacings
-MOST_GAPS, APART = 8, 6.0
+MOST_GAPS, APART = 24, 4.0
 # steps a spacing, and longest half over the surface's size
-STEPS, LONGEST = 4, 12.0
+STEPS, LONGEST = 3, 12.0
 # points of the rim that tell how deep inside a place is
 RIM_POINTS = 200
 # of the size: what a place loses for being this far from the middle

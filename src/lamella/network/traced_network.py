@@ -12,25 +12,28 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from lamella.errors import InputError
 from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
-from lamella.network.faces import Faces, trace_faces
-from lamella.network.flow import ENDLESS, RIM, Flow
+from lamella.network.flow import ENDLESS
 from lamella.network.ground import Ground
 from lamella.network.lattice import ragged_ranges
 from lamella.network.line_field import LEAST_ANGLE, LineField
 from lamella.network.meetings import Crossings, find_crossings
-from lamella.network.network import BOUNDARY, REGULAR, Network
+from lamella.network.network import Network
 from lamella.network.pattern import Pattern
 from lamella.network.seeds import Guide, Seeded, choose_guide, seeded_lines
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
+from lamella.network.traced_stops import (
+    faces_of,
+    line_stops,
+    long_enough,
+    median_edge,
+    merged_stops,
+    stop_nodes,
+)
 from lamella.network.turning import turning
 from lamella.surface.darboux import Darboux
-from lamella.surface.element.places import Places
 from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
@@ -38,7 +41,7 @@ Booleans = NDArray[np.bool_]
 Progress = Callable[[str], None]
 
 # how far the median cell edge may be from the spacing asked for, and how often seeds are spaced anew for it
-OFF_SPACING, MOST_TRIES = 0.05, 5
+OFF_SPACING, MOST_TRIES = 0.1, 3
 # of the spacing: ends and crossings this near to each other are one node (docs/files.md)
 SAME_NODE = 1e-6
 # samples of a piece of lamella, however short
@@ -185,7 +188,7 @@ def traced_network(
     for _ in range(MOST_TRIES):
         tried = seeded_lines(ground, field, guide, distance, size)
         met = find_crossings(tried.flow, distance * guide.share)
-        median = _median_edge(tried.flow, met)
+        median = median_edge(tried.flow, met)
         progress(f"  {tried.flow.count} lines from even seeds, {len(met.a):,} crossings {median:.3g} m apart")
         off = abs(np.log(median / spacing)) if spacing and np.isfinite(median) else 0.0
         if off < best:
@@ -264,37 +267,6 @@ def _next_distance(known: list[tuple[float, float]]) -> float:
     return float(np.exp(b + (a - b) * np.clip(-low / (high - low), 0.1, 0.9)))
 
 
-class _Stops(NamedTuple):
-    """Stops in order along the lines."""
-
-    line: Integers
-    s: Floats
-    crossing: Integers  # -1: an end
-    is_end: Booleans
-
-
-def _stops(flow: Flow, crossings: Crossings) -> _Stops:
-    lines, count = np.arange(flow.count), len(crossings.a)
-    line = np.r_[crossings.a, crossings.b, lines, lines]
-    s = np.r_[crossings.s_a, crossings.s_b, np.zeros(flow.count), flow.lengths]
-    crossing = np.r_[np.arange(count), np.arange(count), np.full(2 * flow.count, -1)]
-    order = np.lexsort((s, line))
-    return _Stops(line[order], s[order], crossing[order], crossing[order] < 0)
-
-
-def _median_edge(flow: Flow, crossings: Crossings) -> float:
-    """Median distance of neighbouring crossings, m; nan without any."""
-    stops = _stops(flow, crossings)
-    inner = ~stops.is_end[1:] & ~stops.is_end[:-1] & (stops.line[1:] == stops.line[:-1])
-    return float(np.median(np.diff(stops.s)[inner])) if inner.any() else np.nan
-
-
-def _long_enough(flow: Flow, crossings: Crossings, minimum_length: float) -> Integers:
-    """Lines that are not shorter than so many median cell edges."""
-    least = minimum_length * _median_edge(flow, crossings)
-    return np.flatnonzero(flow.lengths >= (least if np.isfinite(least) else 0.0))
-
-
 def _network(
     ground: Ground,
     seeded: Seeded,
@@ -306,7 +278,7 @@ def _network(
     key: str,
 ) -> tuple[Network, int, tuple[float, float]]:
     """The network of lines and crossings, how many lamellas' ends lie inside, and `TracedNetwork.missed`."""
-    kept = _long_enough(seeded.flow, crossings, minimum_length)
+    kept = long_enough(seeded.flow, crossings, minimum_length)
     number = np.full(seeded.flow.count, -1)
     number[kept] = np.arange(len(kept))
     flow = seeded.flow.take(kept)
@@ -320,10 +292,10 @@ def _network(
             "raise network.cells, or lower network.spacing and network.minimum_length",
             key,
         )
-    median = _median_edge(flow, crossings)
+    median = median_edge(flow, crossings)
     spacing = median if np.isfinite(median) else distance
-    stops = _merged(flow, _stops(flow, crossings), SAME_NODE * spacing)
-    node, kinds, inner = _nodes(ground, flow, stops, SAME_NODE * spacing)
+    stops = merged_stops(flow, line_stops(flow, crossings), SAME_NODE * spacing)
+    node, kinds, inner = stop_nodes(ground, flow, stops, SAME_NODE * spacing)
 
     owner = stops.line
     first = np.flatnonzero(owner[1:] == owner[:-1])
@@ -352,7 +324,7 @@ def _network(
     missed = np.abs(mean - look.mean + ((deviator - look.deviator) * heading**2).real)
     node_sample = np.empty(len(kinds), np.int64)
     node_sample[node[::-1]] = stop_sample[::-1]
-    faces = _faces(
+    faces = faces_of(
         ground, where[node_sample], look.normal[node_sample], tangents, node, stop_sample, first, kinds, inner
     )
     families = np.where(flow.is_a, "A", "B")
@@ -388,72 +360,4 @@ def _network(
         ),
         int(inner.sum()),
         (float(missed.max()), float(np.percentile(missed, 95))),
-    )
-
-
-def _merged(flow: Flow, stops: _Stops, same: float) -> _Stops:
-    """Stops without those crossings that are an end of their line: the end stays and is the crossing."""
-    crossing = stops.crossing.copy()
-    gone = np.zeros(len(stops.line), bool)
-    close = (np.diff(stops.s) <= same) & (stops.line[1:] == stops.line[:-1])
-    start = np.flatnonzero(close & stops.is_end[:-1] & ~stops.is_end[1:])
-    crossing[start], gone[start + 1] = crossing[start + 1], True
-    end = np.flatnonzero(close & ~stops.is_end[:-1] & stops.is_end[1:])
-    crossing[end + 1], gone[end] = crossing[end], True
-    return _Stops(stops.line[~gone], stops.s[~gone], crossing[~gone], stops.is_end[~gone])
-
-
-def _nodes(ground: Ground, flow: Flow, stops: _Stops, same: float) -> tuple[Integers, Integers, Booleans]:
-    """Node of each stop; kind of each node; whether it is an end inside the surface."""
-    count = len(stops.line)
-    ends = np.flatnonzero(stops.is_end)
-    _, look, _ = flow.at(stops.line[ends], stops.s[ends])
-    pairs = cKDTree(look.position).query_pairs(same, output_type="ndarray")
-    # stops of one crossing, and ends in one place
-    order = np.argsort(stops.crossing, kind="stable")
-    order = order[stops.crossing[order] >= 0]
-    pair = np.flatnonzero(stops.crossing[order][1:] == stops.crossing[order][:-1])
-    i, j = np.r_[ends[pairs[:, 0]], order[pair]], np.r_[ends[pairs[:, 1]], order[pair + 1]]
-    _, group = connected_components(coo_array((np.ones(len(i)), (i, j)), (count, count)), directed=False)
-    # numbered in the order in which the lamellas meet them
-    used, first, node = np.unique(group, return_index=True, return_inverse=True)
-    rank = np.empty(len(used), np.int64)
-    rank[np.argsort(first, kind="stable")] = np.arange(len(used))
-    node = rank[node.ravel()]
-    kinds = np.full(len(used), REGULAR)
-    kinds[node[ends]] = BOUNDARY
-    halves = 2 * stops.line[ends] + (stops.s[ends] > 0)
-    inner = np.zeros(len(used), bool)
-    inner[node[ends]] = flow.ends[halves] != RIM
-    return node, kinds, inner
-
-
-def _faces(
-    ground: Ground,
-    where: Places,
-    normals: Floats,
-    tangents: Floats,
-    node: Integers,
-    stop_sample: Integers,
-    first: Integers,
-    kinds: Integers,
-    inner: Booleans,
-) -> Faces:
-    """Faces; none across the ends inside the surface."""
-    rim = np.flatnonzero((kinds == BOUNDARY) & ~inner)
-    places = ground.rim_places(where[rim])
-    order = np.lexsort((places.along, places.loop))
-    loops = np.split(rim[order], np.flatnonzero(np.diff(places.loop[order])) + 1)
-    directions = np.zeros((len(kinds), 3))
-    directions[rim] = places.tangent
-    starts, ends = stop_sample[first], stop_sample[first + 1]
-    tails, heads = node[first], node[first + 1]
-    return trace_faces(
-        normals,
-        np.r_[tails, heads],
-        np.r_[heads, tails],
-        np.vstack([tangents[starts], -tangents[ends]]),
-        loops,
-        directions,
-        seam=inner,
     )
