@@ -296,7 +296,7 @@ def test_surface_of_another_mesh_is_refused(
 ) -> None:
     (tmp_path / "u.toml").write_text(PROJECT)
     mesh = lamella_patch(UNDULOID, 9, 1.0)
-    path = put(tmp_path / "a.obj", mesh.at(mesh.vertices + [5.0, 0, 0]))
+    path = put(tmp_path / "a.obj", mesh.at(mesh.vertices + np.array([5.0, 0, 0])))
     command = ["optimise", str(path), "--as", problem, "--surface", str(tmp_path / "u.toml"), *options]
     assert main([*command, "--out", str(tmp_path / "o.obj")]) == 2
     assert "half of the vertices are more than" in capsys.readouterr().err
