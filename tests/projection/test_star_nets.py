@@ -135,6 +135,16 @@ def test_free_radius_is_found(seed: int) -> None:
     assert np.abs(net.radius * stars.curvature - 1).max() <= 1e-6
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("form", ["circles", "faces"])
+def test_free_radius_of_10000_vertices_is_found_in_a_few_steps(form: str) -> None:
+    """Centres as unknowns, and vertices pulled hard to where they were, took 70 steps."""
+    net = sphere_stars(noisy(lamella_patch(UNDULOID, 100, 2.0), NOISE, 6), form=form, iterations=25)
+    assert net.solution.solved
+    assert not net.ill_determined
+    assert net.radius == pytest.approx(2.0, rel=1e-3)
+
+
 @pytest.mark.parametrize(("count", "span", "ill"), [(8, 1.0, True), (14, 1.6, False)])
 def test_uncertainty_of_the_radius_is_that_of_draws(count: int, span: float, ill: bool) -> None:
     """(r - 2) / uncertainty over draws of the noise has root mean square 1, within what 24 draws tell."""
