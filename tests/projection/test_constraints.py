@@ -35,6 +35,7 @@ from lamella.projection.constraints.leg_directions import LegDirections
 from lamella.projection.constraints.node_angle import NodeAngle
 from lamella.projection.constraints.planar_face import PlanarFace
 from lamella.projection.constraints.right_angle import RightAngle
+from lamella.projection.constraints.shared_length import SharedLength
 from lamella.projection.constraints.spherical_star import SphericalStar
 from lamella.projection.constraints.symmetry import mirrored, turned
 from lamella.projection.constraints.unit_length import UnitLength
@@ -70,6 +71,10 @@ def draw(name: str, rng: np.random.Generator) -> tuple[list[Block], list[Constra
         return [points, normals], [faces, units]
     if name == "UnitLength":
         return [Block("normals", rng.normal(size=(4, 3)))], [units]
+    if name == "SharedLength":
+        share = Block("share", rng.uniform(0.5, 2, 1))
+        vectors = Block("normals", rng.normal(size=(4, 3)))
+        return [vectors, share], [SharedLength(name=name, block="normals", length="share", index=np.arange(4))]
     if name in ("CurvedStar", "planar CurvedStar"):
         curvature = 0.0 if name.startswith("planar") else 0.8
         star = CurvedStar(name=name, centres=middles, neighbours=legs, curvature=curvature, edge=EDGE)
@@ -141,7 +146,15 @@ def draw(name: str, rng: np.random.Generator) -> tuple[list[Block], list[Constra
 
 
 NAMES = [
-    *("PlanarFace", "UnitLength", "CurvedStar", "planar CurvedStar", "SphericalStar", "shared SphericalStar"),
+    *(
+        "PlanarFace",
+        "UnitLength",
+        "SharedLength",
+        "CurvedStar",
+        "planar CurvedStar",
+        "SphericalStar",
+        "shared SphericalStar",
+    ),
     *(
         "InvertedEdge",
         "RightAngle",

@@ -69,9 +69,9 @@ def check_noisy_catenoid(count: int, form: str, seed: int) -> None:
     assert distance(CATENOID, net.mesh) < distance(CATENOID, mesh) / 5
 
 
-@pytest.mark.parametrize("form", ["faces", "circles", "chords"])
-def test_noisy_catenoid_of_2500_vertices(form: str) -> None:
-    check_noisy_catenoid(50, form, 0)
+@pytest.mark.parametrize(("form", "seed"), [("faces", 0), ("faces", 1), ("circles", 2), ("chords", 3)])
+def test_noisy_catenoid_of_2500_vertices(form: str, seed: int) -> None:
+    check_noisy_catenoid(50, form, seed)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -79,8 +79,7 @@ def test_noisy_catenoids(seed: int) -> None:
     check_noisy_catenoid(24, "faces", seed)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("form", ["faces", "circles"])
+@pytest.mark.parametrize("form", ["faces", pytest.param("circles", marks=pytest.mark.slow)])
 def test_noisy_catenoid_of_10000_vertices(form: str) -> None:
     check_noisy_catenoid(100, form, 1)
 
@@ -99,10 +98,10 @@ def test_whole_ring() -> None:
     assert free.radius == pytest.approx(0.8, rel=0.01)
 
 
-@pytest.mark.parametrize(("centre", "span"), [(0.0, 2.0), (0.9, 3.0)])
-def test_noisy_unduloid_with_given_radius(centre: float, span: float) -> None:
+@pytest.mark.parametrize(("centre", "span", "seed"), [(0.0, 2.0, 3), (0.0, 2.0, 11), (0.9, 3.0, 12)])
+def test_noisy_unduloid_with_given_radius(centre: float, span: float, seed: int) -> None:
     """DESIGN section 5: 3 conditions on 3 unknowns a vertex hold together where the boundary is free."""
-    mesh = noisy(lamella_patch(UNDULOID, 50, span, centre), NOISE, 3)
+    mesh = noisy(lamella_patch(UNDULOID, 50, span, centre), NOISE, seed)
     net = sphere_stars(mesh, radius=2.0)
     stars = star_spheres(net.mesh, net.mesh.inner)
     assert net.solution.solved
@@ -115,8 +114,18 @@ def test_noisy_unduloid_with_given_radius(centre: float, span: float) -> None:
     assert (net.radius, net.radius_uncertainty) == (2.0, 0.0)
 
 
-def test_free_radius_is_found() -> None:
-    mesh = noisy(lamella_patch(UNDULOID, 50, 2.0), NOISE, 4)
+def test_right_angles_between_chords_are_right_between_circles_too() -> None:
+    """They differ by the square of the edge: 0.01 degrees at 2,500 vertices."""
+    mesh = noisy(lamella_patch(UNDULOID, 50, 2.0), NOISE, 5)
+    net = sphere_stars(mesh, radius=2.0, form="chords")
+    assert net.solution.solved
+    assert np.abs(chord_angles(net.mesh, net.mesh.inner) - 90).max() <= 1e-4
+    assert np.abs(circle_angles(net.mesh, net.mesh.inner) - 90).max() <= 0.01
+
+
+@pytest.mark.parametrize("seed", [4, 5])
+def test_free_radius_is_found(seed: int) -> None:
+    mesh = noisy(lamella_patch(UNDULOID, 50, 2.0), NOISE, seed)
     net = sphere_stars(mesh)
     stars = star_spheres(net.mesh, net.mesh.inner)
     assert net.solution.solved
@@ -124,6 +133,16 @@ def test_free_radius_is_found() -> None:
     assert net.radius == pytest.approx(2.0, rel=0.01)
     assert stars.deviation.max() <= 1e-9 * mesh.mean_edge
     assert np.abs(net.radius * stars.curvature - 1).max() <= 1e-6
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("form", ["circles", "faces"])
+def test_free_radius_of_10000_vertices_is_found_in_a_few_steps(form: str) -> None:
+    """Centres as unknowns, and vertices pulled hard to where they were, took 70 steps."""
+    net = sphere_stars(noisy(lamella_patch(UNDULOID, 100, 2.0), NOISE, 6), form=form, iterations=25)
+    assert net.solution.solved
+    assert not net.ill_determined
+    assert net.radius == pytest.approx(2.0, rel=1e-3)
 
 
 @pytest.mark.parametrize(("count", "span", "ill"), [(8, 1.0, True), (14, 1.6, False)])

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.fixed import Fixed
-from lamella.projection.constraints.spherical_star import SphericalStar
+from lamella.projection.constraints.shared_length import SharedLength
 from lamella.projection.determination import uncertainty
 from lamella.projection.problems.crossing import AngleForm, crossing
 from lamella.projection.quad_mesh import QuadMesh
@@ -18,8 +19,9 @@ from lamella.projection.unknowns import Block, Floats, Integers, dot
 from lamella.projection.vertex_normals import smoothed_normals
 from lamella.sparse import Backend
 
-# weight of the given vertices and its fade: while it lasts the radius follows the whole net
-STAY, FADE = 0.1, 0.1
+# weight of the given vertices and its fade: while it lasts the radius follows the whole net; a heavier one pulls the
+# net off its constraints, and the way back through its softest modes is long
+STAY, FADE = 0.01, 0.3
 # largest radius to look for, in sizes of the mesh: a flatter net is a plane, whose radius nothing determines
 FLATTEST = 1e3
 
@@ -68,17 +70,13 @@ def find_radius(
     more, angles = crossing(start, angle, form)
     blocks = [
         Block("vertices", start.vertices, edge, mesh.vertices),
-        Block("centres", start.vertices[inner] + np.copysign(radius, bend) * normals, radius),
-        Block("radii", np.array([radius]), radius),
+        Block("normals", np.copysign(1, bend) * normals),
+        Block("share", np.array([1.0])),
         *more,
     ]
-    stars = SphericalStar(
-        name="stars",
-        middles=inner,
-        neighbours=neighbours,
-        radius_of=np.zeros(len(inner), np.int64),
-        size=radius,
-        edge=edge,
+    stars = (
+        CurvedStar(name="stars", centres=inner, neighbours=neighbours, curvature=1 / radius, edge=edge),
+        SharedLength(name="one radius", block="normals", length="share", index=np.arange(len(inner))),
     )
     stay = Fixed(
         name="given vertices",
@@ -91,19 +89,20 @@ def find_radius(
     )
     solution = solve(
         blocks,
-        [stars, *angles, stay],
+        [*stars, *angles, stay],
         iterations=iterations,
         tolerance=tolerance,
         on_iteration=on_iteration,
         backend=backend,
     )
-    found = abs(float(solution.values["radii"][0, 0]))
+    found = radius * abs(float(solution.values["share"][0, 0]))
     if not solution.solved:
         return StarRadius(found, np.inf)
     taken = max(3 * len(inner) - 1, 1)
     noise = solution.last.drift["vertices"] * np.sqrt(mesh.vertices.size / taken)
     ended = [Block(block.name, solution.values[block.name], block.scale) for block in blocks]
-    return StarRadius(found, uncertainty(ended, [stars, *angles], "radii", "vertices", noise, backend=backend))
+    doubt = uncertainty(ended, [*stars, *angles], "share", "vertices", noise, backend=backend)
+    return StarRadius(found, radius * doubt)
 
 
 def star_curvature(vertices: Floats, middles: Integers, neighbours: Integers, normals: Floats) -> float:
