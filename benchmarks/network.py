@@ -1,10 +1,11 @@
 """From a surface to its network, against one factorisation of the Poisson problem it solves.
 
 DESIGN's annulus (12 x 9 m boundary, oculus) found on elements of order 4, one thread. A run is everything from the
-elements on: umbilics, isothermic coordinates, lattice, lamellas, faces. Printed for growing surfaces, the net's nodes
-growing alike: CPU seconds of the run; of one factorisation, ordering and analysis included, by both sparse solvers;
-their ratio (limit 10 at 10,000 surface and 2,000 net nodes with the solver in use); of its numbers alone; and the
-exponent of growth. Medians over repetitions, the run and the factorisations in turns. Run by `make bench`.
+elements on: curvatures, umbilics, isothermic coordinates, lattice, lamellas, faces; only the analysis of the pattern of
+their inner nodes comes with the surface from form finding, as in `lamella run`. Printed for growing surfaces, the net's
+nodes growing alike: CPU seconds of the run; of one factorisation, ordering and analysis included, by both sparse
+solvers; their ratio (limit 10 at 10,000 surface and 2,000 net nodes with the solver in use); of its numbers alone; and
+the exponent of growth. Medians over repetitions, the run and the factorisations in turns. Run by `make bench`.
 """
 
 from __future__ import annotations

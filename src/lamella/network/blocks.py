@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-BLOCK = 8192
+BLOCK = 8000
 
 
 def blocks(count: int) -> Iterator[slice]:

@@ -19,7 +19,7 @@ EDGES = ((0, 1), (1, 2), (2, 0))
 """Corners of the local edges."""
 
 # numbers an array has that is worked on at a time
-CACHED = 40_000
+CACHED = 20_000
 
 
 @dataclass(frozen=True)
@@ -99,18 +99,20 @@ class Lagrange:
 
     def _horner(self, coefficients: Floats, element: NDArray[np.int64], x: Floats, y: Floats, result: Floats) -> None:
         """sum_j y^j (sum_i c_ij x^i), and its derivatives where `result` has room for them, by Horner's scheme."""
-        value, *derivatives = np.zeros((len(result), coefficients.shape[1], len(x)))
+        row, slope, term = np.empty((3, coefficients.shape[1], len(x)))
+        result[:] = 0
+        value, *derivatives = result
         end = len(coefficients)
         for j in range(self.order, -1, -1):
             top, end = end - 1, end - (self.order + 1 - j)
-            row = coefficients[top].take(element, 1)
-            slope = np.zeros_like(row) if derivatives else row
-            for term in range(top - 1, end - 1, -1):
+            coefficients[top].take(element, 1, out=row, mode="clip")
+            slope[:] = 0
+            for i in range(top - 1, end - 1, -1):
                 if derivatives:
                     slope *= x
                     slope += row
                 row *= x
-                row += coefficients[term].take(element, 1)
+                row += coefficients[i].take(element, 1, out=term, mode="clip")
             if derivatives:
                 by_x, by_y = derivatives
                 by_x *= y
@@ -119,9 +121,6 @@ class Lagrange:
                 by_y += value
             value *= y
             value += row
-        result[0] = value
-        if derivatives:
-            result[1], result[2] = derivatives
 
     def second_jet(self, local: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         """Values and derivatives x, y, xx, xy, yy of the basis at local coordinates (n, 2), each (n, k)."""
