@@ -138,7 +138,7 @@ def loops_of(text: str) -> tuple[Loop, ...]:
         ),
         (MESH.replace('file = "a.obj"\n', ""), 1, ["surface.file: missing: Mesh of", "add file = 'surface.obj'"]),
         (MESH.replace(".obj", ".step"), 3, ["'a.step' is no file that can be read", ".obj, .ply, .stl, .3dm"]),
-        (MESH + "mean_curvature = 'fitt'\n", 4, ["surface.mean_curvature: 'fitt' is not \"fit\" or a number"]),
+        (MESH + "mean_curvature = 'fitt'\n", 4, ["surface.mean_curvature: 'fitt' is not \"fit\", \"varying\" or a number"]),
         (MESH + "mean_curvature = inf\n", 4, ["surface.mean_curvature: inf 1/m is out of range"]),
         (MESH + "deviation = 2\n", 4, ["surface.deviation: 2 is out of range: has to be above 0 and at most 1"]),
         (MESH + "corner_angle = 180\n", 4, ["surface.corner_angle: 180 deg is out of range"]),

@@ -87,7 +87,8 @@ class WholeShifts:
     def nearest(self, shifts: Complexes, count: int = 1) -> list[Complexes]:
         """The nearest whole shifts to given ones, (t,) each, by the energy of the change, the nearest first."""
         wanted = self.coordinates(shifts - self.offset)
-        one, other = (_closest(self.energy, part, count) for part in (wanted.real, wanted.imag))
+        upper = np.asarray(np.linalg.cholesky(self.energy).T, float)
+        one, other = (_closest(upper, part, count) for part in (wanted.real, wanted.imag))
         pairs = sorted((e + f, j, k) for j, (e, _) in enumerate(one) for k, (f, _) in enumerate(other))
         return [self.offset + (one[j][1] + 1j * other[k][1]) @ self.basis for _, j, k in pairs[:count]]
 
@@ -105,12 +106,15 @@ class WholeShifts:
         d = len(self.basis)
         now, moved = self.coordinates(shifts - self.offset), self.coordinates(rates)
         reach = np.vstack([moved.real, moved.imag])
-        square = reach @ reach.T
+        axes, rate, _ = np.linalg.svd(reach, full_matrices=True)
+        rate = np.append(rate, np.zeros(2 * d - len(rate)))
         # p parameters need not reach everything: what they do not is far away
-        effort = np.linalg.inv(square + UNREACHED * np.trace(square) * np.eye(2 * d))
-        short, energy = _reduced(np.eye(2 * d, dtype=np.int64), effort)
+        root = axes / np.sqrt(rate**2 + UNREACHED * (rate**2).sum())
+        short, _ = _reduced(np.eye(2 * d, dtype=np.int64), root @ root.T)
         wanted = np.linalg.solve(short.T.astype(float), np.concatenate([now.real, now.imag]))
-        ways = [x @ short for _, x in _closest(energy, wanted, count)]
+        # the energy itself may be too uneven for rounding: its root is not
+        _, upper = np.linalg.qr((short @ root).T)
+        ways = [x @ short for _, x in _closest(upper, wanted, count)]
         return [self.offset + (x[:d] + 1j * x[d:]) @ self.basis for x in ways]
 
 
@@ -155,14 +159,13 @@ def _reduced(basis: Integers, gram: Floats) -> tuple[Integers, Floats]:
         basis[one] -= int(times[one, other]) * basis[other]
 
 
-def _closest(energy: Floats, wanted: Floats, count: int) -> list[tuple[float, Integers]]:
-    """The whole vectors (d,) of least (x - wanted) energy (x - wanted), with these, the least first.
+def _closest(upper: Floats, wanted: Floats, count: int) -> list[tuple[float, Integers]]:
+    """The whole vectors (d,) of least |upper (x - wanted)|^2, upper triangular, with these, the least first.
 
     Fincke and Pohst, Math. Comp. 44 (1985) 463: a sum of squares from the last coordinate to the first, each tried from
     the nearest whole number outwards until the sum is larger than what was found.
     """
     d = len(wanted)
-    upper = np.linalg.cholesky(energy).T if d else energy
     found: list[tuple[float, Integers]] = []
     x = np.zeros(d, np.int64)
     looked_at = 0
