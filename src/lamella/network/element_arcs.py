@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.blocks import blocks
 from lamella.network.arcs import ArcLengths
-from lamella.network.blocks import blocks
 from lamella.network.element_segments import ElementSegments
 from lamella.surface.element.places import Places
 from lamella.surface.points import Floats

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import beta, betainc, betaincinv
 
-from lamella.network.blocks import blocks
+from lamella.blocks import blocks
 from lamella.network.cell_map import CellMap
 from lamella.network.tracks import A, Tracks, passages
 from lamella.surface.element.places import Places

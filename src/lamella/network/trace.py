@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.blocks import blocks
 from lamella.errors import InputError
 from lamella.network.arcs import ArcLengths, Segments
-from lamella.network.blocks import blocks
 from lamella.network.density import Density
 from lamella.network.domain import A
 from lamella.network.domain_of import domain_of

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.blocks import blocks
 from lamella.errors import InputError
-from lamella.network.blocks import blocks
 from lamella.network.cell_map import CellMap
 from lamella.network.element_arcs import ElementArcs
 from lamella.network.element_segments import ElementSegments

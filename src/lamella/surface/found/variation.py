@@ -16,10 +16,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.blocks import blocks
 from lamella.sparse import packed
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.points import Floats
+
+# worked on at a time: their tables stay in the processor's cache
+ELEMENTS = 192
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,11 @@ class FirstVariation:
 def _cross(a: Floats, b: Floats) -> Floats:
     """Cross product of vectors given by components (3, ...)."""
     return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def _across(normals: Floats, local: Floats) -> Floats:
+    """Products d_i . n (m, q, k) of normals (3, m, q) and directions (3, m, k)."""
+    return np.asarray(np.matmul(normals.transpose(1, 2, 0), local.transpose(1, 0, 2)))
 
 
 class Variation:
@@ -116,7 +125,7 @@ class Variation:
 
     def across(self, first: FirstVariation) -> Floats:
         """Cosines d_i . n of each element's directions and the normals at its integration points, (m, q, k)."""
-        return np.asarray(np.matmul(first.normals.transpose(1, 2, 0), self._local.transpose(1, 0, 2)))
+        return _across(first.normals, self._local)
 
     def second(self, nodes: Floats, first: FirstVariation, mean_curvature: float) -> Floats:
         """Second variation of A + 2 H V at nodes (n, 3), as packed blocks (m, k (k + 1) / 2).
@@ -124,11 +133,24 @@ class Variation:
         With e_1 = a / |a|, e_2 = n x e_1 the part of dN_i across n is D_i (-phi_i,1 |N| / |a|) along e_1 and
         D_i (phi_i,1 b . e_1 - phi_i,2 |a|) along e_2, D_i = d_i . n.
         """
-        a, b = first.tangents
-        area = first.elements
+        m, k = len(self.connectivity.elements), self._local.shape[2]
+        result = np.empty((m, k * (k + 1) // 2))
+        for some in blocks(m, ELEMENTS):
+            self._second_of(some, first, result[some])
+        if mean_curvature:
+            _, x, y = self._volume_basis
+            a, b = self._tangents(nodes, x, y)
+            mixed = (2 * mean_curvature) * (b @ self._volume_tables[0] - a @ self._volume_tables[1])
+            result[:, self._below] += (mixed * self._cross).sum(0)
+        return result
+
+    def _second_of(self, some: slice, first: FirstVariation, result: Floats) -> None:
+        """The area's part in some elements."""
+        a, b = first.tangents[:, :, some]
+        area, normals = first.elements[some], first.normals[:, some]
         length = np.sqrt((a**2).sum(0))
         root = np.sqrt(self._weights / area)
-        across = self.across(first)
+        across = _across(normals, self._local[:, some])
         m, q, k = across.shape
         changes = np.empty((m, 2, q, k))
         np.multiply(across, (root * area / length)[..., None] * self._x, out=changes[:, 0])
@@ -136,14 +158,8 @@ class Variation:
         slope -= (root * length)[..., None] * self._y
         np.multiply(across, slope, out=changes[:, 1])
         flat = changes.reshape(m, 2 * q, k)
-        blocks = packed(np.matmul(flat.transpose(0, 2, 1), flat))
-        mixed = first.normals @ self._area_table
-        if mean_curvature:
-            _, x, y = self._volume_basis
-            a, b = self._tangents(nodes, x, y)
-            mixed += (2 * mean_curvature) * (b @ self._volume_tables[0] - a @ self._volume_tables[1])
-        blocks[:, self._below] += (mixed * self._cross).sum(0)
-        return blocks
+        result[:] = packed(np.matmul(flat.transpose(0, 2, 1), flat))
+        result[:, self._below] += ((normals @ self._area_table) * self._cross[:, some]).sum(0)
 
     def mass(self, first: FirstVariation) -> Floats:
         """Integrals of phi_i phi_j (d_i . n) (d_j . n), packed blocks (m, k (k + 1) / 2), m^2."""
