@@ -138,7 +138,7 @@ def loops_of(text: str) -> tuple[Loop, ...]:
         ),
         (MESH.replace('file = "a.obj"\n', ""), 1, ["surface.file: missing: Mesh of", "add file = 'surface.obj'"]),
         (MESH.replace(".obj", ".step"), 3, ["'a.step' is no file that can be read", ".obj, .ply, .stl, .3dm"]),
-        (MESH + "mean_curvature = 'fitt'\n", 4, ["surface.mean_curvature: 'fitt' is not \"fit\", \"varying\" or a num"]),
+        (
             MESH + "mean_curvature = 'fitt'\n",
             4,
             ['surface.mean_curvature: \'fitt\' is not "fit", "varying" or a number'],
