@@ -383,6 +383,7 @@ def test_annulus_with_two_hexagonal_nodes() -> None:
     assert figures["node_angle_deviation_mean_deg"] < 0.02
     assert figures["node_angle_deviation_max_deg"] < 0.1
     assert figures["normal_curvature_error_p95"] < 1e-3 * figures["curvature_scale"]
+    assert figures["normal_curvature_error_max"] < 2e-3 * figures["curvature_scale"]
 
 
 def cell_spread(network: Network) -> float:
