@@ -26,7 +26,7 @@ from lamella.surface.vectors import dots, images, lengths, symmetric
 
 Integers = NDArray[np.int64]
 
-# order of the shape operator's continuous field, by that of the elements: that of the normals' derivatives
+# order of continuous fields from second derivatives of positions, by that of the elements
 SMOOTHED_ORDER = {2: 1, 3: 2, 4: 3}
 # most parts an element's edge is cut into for files and pictures
 MOST_PARTS = 64
@@ -88,9 +88,18 @@ class ElementSurface:
 
     @cached_property
     def _smooth_space(self) -> Connectivity:
-        """Polynomials of the continuous fields."""
+        """Polynomials of continuous fields from second derivatives of positions."""
         connectivity = self.connectivity
         return connect(connectivity.faces, int(connectivity.faces.max()) + 1, SMOOTHED_ORDER[connectivity.basis.order])
+
+    @property
+    def _shape_space(self) -> Connectivity:
+        """Polynomials of the continuous shape operator.
+
+        The elements' own: with those of the normals' derivatives, one order less, a net's periods are four times as
+        far off.
+        """
+        return self.connectivity
 
     @cached_property
     def _smoothed(self) -> Floats:
@@ -112,7 +121,7 @@ class ElementSurface:
         # the area element is 1 / det(to_local)
         area = 1 / (along[:, 0, 0] * along[:, 1, 1]).reshape(m, q)
         values = np.concatenate([shape, (half**2 + s_uv**2)[:, None]], 1).reshape(m, q, 7)
-        space = self._smooth_space
+        space = self._shape_space
         nodal = project_onto_nodes(space, points, area * weights, values)
         return space.basis.coefficients(nodal[space.elements])
 
@@ -133,7 +142,7 @@ class ElementSurface:
     def shape_at(self, where: Places) -> tuple[ElementFrames, Floats, Complexes]:
         """Frames, mean curvature H (n,) and deviator (n,), 1/m, at n places, see `SurfacePoints`."""
         there = self.frames(where)
-        smooth = self._smooth_space.basis.values(self._smoothed[:, :6], where.element, where.local)
+        smooth = self._shape_space.basis.values(self._smoothed[:, :6], where.element, where.local)
         return there, *self._shape(there, smooth)
 
     def _shape(self, there: ElementFrames, smooth: Floats) -> tuple[Floats, Complexes]:
@@ -148,14 +157,14 @@ class ElementSurface:
 
     def at(self, where: Places) -> SurfacePoints:
         """Everything about n places, in one evaluation."""
-        basis = self._smooth_space.basis
+        basis = self._shape_space.basis
         smooth = basis.values(self._smoothed[:, :6], where.element, where.local)
         _, by_x, by_y = basis.jet(self._smoothed[:, 6:], where.element, where.local)[:, 0]
         return self._points(self.frames(where), smooth, by_x, by_y)
 
     def at_everywhere(self, local: Floats) -> SurfacePoints:
         """The points at the same local coordinates (q, 2) of every element, element by element: sooner than by `at`."""
-        basis = self._smooth_space.basis
+        basis = self._shape_space.basis
         smooth = basis.values_everywhere(self._smoothed[:, :6], local)
         by_x, by_y = (basis.values_everywhere(self._smoothed[:, 6:], local, *d)[0] for d in ((1, 0), (0, 1)))
         return self._points(self._frames_everywhere(local), smooth, by_x, by_y)

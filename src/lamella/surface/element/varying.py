@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.geometry import smooth_normals
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.points import Floats
@@ -24,6 +25,11 @@ class VaryingSurface(ElementSurface):
     @cached_property
     def _gauss(self) -> Floats:
         return smooth_normals(self.connectivity, self.nodes)
+
+    @property
+    def _shape_space(self) -> Connectivity:
+        # its normals are no better than the elements' own
+        return self._smooth_space
 
     def _mean(self, uu: Floats, vv: Floats) -> Floats:
         return np.asarray((uu + vv) / 2)
