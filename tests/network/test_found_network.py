@@ -386,6 +386,37 @@ def test_annulus_with_two_hexagonal_nodes() -> None:
     assert figures["normal_curvature_error_max"] < 2e-3 * figures["curvature_scale"]
 
 
+def test_annulus_of_ten_thousand_nodes() -> None:
+    """Issue 4: DESIGN's annulus itself, its rim at 96 places, on at most 10,000 surface nodes."""
+    t = 2 * np.pi * np.arange(96) / 96
+    rim = np.column_stack([6 * np.cos(t), 4.5 * np.sin(t), 2.5 - 2.5 * np.cos(2 * t)])
+    loops = [
+        {"name": "rim", "points": rim.tolist()},
+        {"name": "oculus", "circle": {"center": [0, 0, 2], "radius": 1.3}},
+    ]
+    tables = {"surface": {"kind": "form-found", "tolerance": 9e-3, "boundary": loops}, "network": {"cells": 24}}
+    results = compute(parse_project(tables), until="network")
+    network, told = results.network, results.summary["network"]
+    assert network is not None
+    assert results.summary["surface"]["surface_nodes"] <= 10_000
+    for joint in told["joints"]:
+        assert joint["off_cells"] < 1e-4
+    for cells in network.periods[0][1:]:
+        assert cells == pytest.approx(24, abs=1e-4)
+    singular = network.node_points[network.node_kinds == SINGULAR]
+    assert len(singular) == 2
+    assert np.linalg.norm(np.abs(singular) - (0, 2.253137, 2.865947), axis=1).max() < 1e-3
+    figures = ruler(network)
+    scale = figures["curvature_scale"]
+    print({key: figures[key] / scale for key in ("normal_curvature_error_p95", "normal_curvature_error_max")})
+    assert figures["normal_curvature_error_p95"] < 1e-3 * scale
+    assert figures["normal_curvature_error_max"] < 2e-3 * scale
+    assert figures["node_angle_deviation_mean_deg"] < 0.02
+    assert figures["node_angle_deviation_max_deg"] < 0.1
+    assert cell_spread(network) < 1e-3
+    assert figures["family_sign_errors"] == 0
+
+
 def cell_spread(network: Network) -> float:
     """Largest relative departure of the integral of sqrt|tg| ds over a cell from l0 / sqrt 2, between regular nodes."""
     owner = network.stop_owner
