@@ -147,9 +147,9 @@ class NetworkTable(Table):
             )
         if self.closing == "adjust" and self.normal_curvature is not None:
             raise Refusal(
-                f'closing = "adjust" moves the boundary of a surface that is found, and normal_curvature = '
-                f"{self.normal_curvature:g} 1/m is offered on closed forms of revolution",
-                'write closing = "open" or "round", or leave normal_curvature out',
+                f'closing = "adjust" makes the lattice of a net whole, and lines of normal_curvature = '
+                f"{self.normal_curvature:g} 1/m have none on a surface that is found",
+                'write closing = "open", or leave normal_curvature out',
                 "closing",
             )
         return self
@@ -254,7 +254,7 @@ class FilesTable(Table):
 
     mesh_tolerance: float = number(
         "Largest distance between the faces of surface.obj and surface.ply and the surface, over the diagonal of its "
-        "bounding box. The files say in metres what they keep, which is more where a million triangles would not do.",
+        "bounding box. The files say in metres what they keep; it is more where some hundred thousand faces do not do.",
         "",
         ge=1e-6,
         le=0.1,

@@ -6,7 +6,7 @@ is the line d u + x t. It crosses the layer d' of the other lamella, of tangent 
     x = (d' - d cos) / sin,       cos = t . t',     sin = t . (n x t'),
 
 so that layers are slotted at stations of their own, shifted by -d cot, and slots lie 1 / |sin| as far from each other.
-A strip of thickness T that goes through another one askew needs T |cot| more than at a right angle, all over |sin|.
+A slot that is w wide at a right angle is (w + T |cos|) / |sin| wide for a strip of thickness T that goes through askew.
 """
 
 from __future__ import annotations

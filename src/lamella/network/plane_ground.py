@@ -15,7 +15,7 @@ from lamella.surface.scherk import Scherk, asymptotic_to_conformal
 Integers = NDArray[np.int64]
 
 # parts of the longest way across a closed form's parameters in a step, and samples along either parameter
-PARTS, SAMPLES = 60, 60
+PARTS, SAMPLES = 80, 60
 # difference of parameters along the rim, of the size
 DELTA = 1e-6
 
@@ -33,7 +33,8 @@ class PlaneGround:
         self.surface = surface
         places, _ = surface.places(SAMPLES, SAMPLES)
         self._middle = complex(places.real.min() + places.real.max(), places.imag.min() + places.imag.max()) / 2
-        self._size = float(max(np.ptp(places.real), np.ptp(places.imag)))
+        self._sides = float(np.ptp(places.real)), float(np.ptp(places.imag))
+        self._size = max(self._sides)
 
     def look(self, where: Places) -> Look:
         zeta = _complex(where)
@@ -72,12 +73,11 @@ class PlaneGround:
 
     def samples(self) -> tuple[Places, Floats]:
         # cells of a grid over the parameters, by their middles
-        side = self._size / (2 * SAMPLES)
-        line = side * (np.arange(2 * SAMPLES) + 0.5 - SAMPLES)
-        x, y = (a.ravel() for a in np.meshgrid(line, line, indexing="ij"))
+        share = (np.arange(2 * SAMPLES) + 0.5) / (2 * SAMPLES) - 0.5
+        x, y = (a.ravel() for a in np.meshgrid(*(side * share for side in self._sides), indexing="ij"))
         zeta = self._middle + x + 1j * y
         zeta = zeta[self._gap(zeta) > 0]
-        return _places(zeta), self.surface.metric(zeta) ** 2 * side**2
+        return _places(zeta), self.surface.metric(zeta) ** 2 * self._sides[0] * self._sides[1] / (2 * SAMPLES) ** 2
 
     def rim_places(self, where: Places) -> RimPlaces:
         # the outlines are convex about their middles, or as good as that (Scherk's)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from lamella.errors import InputError
 from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
-from lamella.network.flow import ENDLESS
+from lamella.network.flow import ENDLESS, Flow
 from lamella.network.ground import Ground
 from lamella.network.lattice import ragged_ranges
 from lamella.network.line_field import LEAST_ANGLE, LineField
@@ -85,8 +85,6 @@ class TracedNetwork:
         Guides the seeds were counted along.
     inner_ends : int
         Lamellas' ends inside the surface, where directions stop being real.
-    endless : int
-        Ends of lamellas that were given up.
     missed : (float, float)
         Difference of the normal curvature from the one asked for, by the surface's second derivatives alone, at most
         and at 95 % of the samples, 1/m.
@@ -97,7 +95,6 @@ class TracedNetwork:
     reach: Reach
     guides: int
     inner_ends: int
-    endless: int
     missed: tuple[float, float]
 
     def describe(self) -> dict[str, Any]:
@@ -126,11 +123,6 @@ class TracedNetwork:
             yield (
                 f"{', '.join(parts)}: no lamellas there, {self.inner_ends} of their ends lie inside the surface "
                 "(another normal_curvature moves that edge)"
-            )
-        if self.endless:
-            yield (
-                f"{self.endless} ends of lamellas were given up after {self.network.lengths.max():.3g} m: they wind "
-                "around without reaching the rim"
             )
 
 
@@ -184,22 +176,39 @@ def traced_network(
     guide = choose_guide(ground, field, size)
     distance, requested, key = _wanted(guide, cells, spacing)
     _refuse_many(area[usable].sum(), field.crossing_sine(look.mean, look.deviator)[usable], guide, distance, key)
-    best, known = np.inf, []
+    best, known, chosen = np.inf, [], None
     for _ in range(MOST_TRIES):
         tried = seeded_lines(ground, field, guide, distance, size)
+        _refuse_endless(tried.flow, pattern)
         met = find_crossings(tried.flow, distance * guide.share)
         median = median_edge(tried.flow, met)
         progress(f"  {tried.flow.count} lines from even seeds, {len(met.a):,} crossings {median:.3g} m apart")
-        off = abs(np.log(median / spacing)) if spacing and np.isfinite(median) else 0.0
-        if off < best:
-            best, seeded, crossings, step = off, tried, met, distance
+        off = 0.0 if spacing is None else abs(np.log(median / spacing)) if np.isfinite(median) else np.inf
+        if chosen is None or off < best:
+            best, chosen = off, (tried, met, distance)
         if spacing is None or off <= OFF_SPACING or not np.isfinite(median):
             break
         known.append((np.log(distance), np.log(median / spacing)))
         distance = _next_distance(known)
+    assert chosen is not None
+    seeded, crossings, step = chosen
     network, inner, missed = _network(ground, seeded, crossings, pattern, mean_curvature, step, minimum_length, key)
-    endless = int((seeded.flow.ends == ENDLESS).sum())
-    return TracedNetwork(network, requested, reach, seeded.guides, inner, endless, missed)
+    return TracedNetwork(network, requested, reach, seeded.guides, inner, missed)
+
+
+def _refuse_endless(flow: Flow, pattern: Pattern) -> None:
+    """Lines that come back to themselves, or wind on: each turn would cross the other family anew."""
+    endless = (flow.ends.reshape(-1, 2) == ENDLESS).any(1)
+    if endless.any():
+        longest = float(flow.lengths[endless].max())
+        raise InputError(
+            f"{endless.sum()} of {flow.count} lines wind around without reaching the rim (given up after "
+            f"{longest:.3g} m): closed lines are offered on surfaces of constant mean curvature only",
+            'cut the surface open where they go around, or write surface.mean_curvature = "fit"'
+            if pattern.kind == "principal"
+            else "cut the surface open where they go around, or choose another normal_curvature",
+            "network.kind" if pattern.kind == "principal" else "network.normal_curvature",
+        )
 
 
 def _refuse_nowhere(reach: Reach, usable: Booleans, mean: Floats, half: Floats, pattern: Pattern) -> None:

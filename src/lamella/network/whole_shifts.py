@@ -109,7 +109,7 @@ class WholeShifts:
         axes, rate, _ = np.linalg.svd(reach, full_matrices=True)
         rate = np.append(rate, np.zeros(2 * d - len(rate)))
         # p parameters need not reach everything: what they do not is far away
-        root = axes / np.sqrt(rate**2 + UNREACHED * (rate**2).sum())
+        root = axes / np.sqrt(rate**2 + max(UNREACHED * (rate**2).sum(), np.finfo(float).tiny))
         short, _ = _reduced(np.eye(2 * d, dtype=np.int64), root @ root.T)
         wanted = np.linalg.solve(short.T.astype(float), np.concatenate([now.real, now.imag]))
         # the energy itself may be too uneven for rounding: its root is not
@@ -152,7 +152,7 @@ def _reduced(basis: Integers, gram: Floats) -> tuple[Integers, Floats]:
         times = np.rint(energy / square) if len(basis) else energy
         np.fill_diagonal(times, 0)
         gain = 2 * times * energy - times**2 * square
-        if not len(basis) or gain.max() <= 1e-9 * square.max():
+        if not len(basis) or not gain.max() > 1e-9 * square.max():
             return basis, energy
         one, other = np.unravel_index(gain.argmax(), gain.shape)
         basis = basis.copy()

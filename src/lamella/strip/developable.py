@@ -36,6 +36,9 @@ def buildable_height(points: Floats, normals: Floats) -> Floats:
         Infinite where nothing limits it, 0 where kg is 0 or changes its sign and tg is not 0.
     """
     kn, kg, tg, s = polyline_darboux(points, normals)
+    # at the ends differences are of first order only
+    for values in (kg, tg):
+        values[[0, -1]] = values[[1, -2]]
     least = NEGLIGIBLE * np.sqrt(kn**2 + kg**2 + tg**2).max()
     kg, tg = (np.where(np.abs(x) > least, x, 0.0) for x in (kg, tg))
     # times kg^2, so that nothing is divided by a small kg
