@@ -96,6 +96,8 @@ class Notes:
             spread = float(rules.spread[-1])
             edge = min(edge for _, edge in self.unslotted)
             smallest = f"their smallest cell edge is {1e3 * edge:.1f} mm; " if np.isfinite(edge) else ""
+            if edge < 0:
+                smallest = "on layers beside the middle slots of theirs change places; "
             offset = f", an offset of {1e3 * between:.1f} mm" if rules.layers > 1 else ""
             layers = f"{rules.layers} layer{'s' if rules.layers > 1 else ''}"
             yield (

@@ -10,6 +10,8 @@ from lamella.surface.vectors import dots
 
 # samples to either side over which a lamella turns by its geodesic curvature: the kinks at elements average out
 WIDE = 3
+# of the median distance over which turning is measured: shorter ones tell nothing
+STUB = 0.02
 
 
 def turning(tangents: Floats, sideways: Floats, arclengths: Floats, offsets: NDArray[np.int64]) -> Floats:
@@ -28,5 +30,15 @@ def turning(tangents: Floats, sideways: Floats, arclengths: Floats, offsets: NDA
     count = np.diff(offsets)
     before = np.maximum(index - WIDE, np.repeat(offsets[:-1], count))
     after = np.minimum(index + WIDE, np.repeat(offsets[1:] - 1, count))
+    span = arclengths[after] - arclengths[before]
     turned = tangents.take(after, 0) - tangents.take(before, 0)
-    return np.asarray(dots(turned, sideways) / (arclengths[after] - arclengths[before]))
+    result = np.asarray(dots(turned, sideways) / span)
+    # in a stub between two stops next to each other the tangents differ by their errors: as at the sample next to it
+    long = np.flatnonzero(span > STUB * np.median(span))
+    right = np.searchsorted(long, index).clip(0, len(long) - 1)
+    left = (right - 1).clip(0)
+    curve = np.repeat(np.arange(len(count)), count)
+    near = np.where(index - long[left] < long[right] - index, long[left], long[right])
+    other = np.where(near == long[left], long[right], long[left])
+    near = np.where(curve[near] == curve, near, other)
+    return np.where((span > STUB * np.median(span)) | (curve[near] != curve), result, result[near])

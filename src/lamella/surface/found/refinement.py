@@ -15,7 +15,7 @@ from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError
 from lamella.surface.found.stability import stability_of
 from lamella.surface.points import Floats
 
-MOST_ROUNDS = 8
+MOST_ROUNDS = 12
 # at the limit of nodes another round is worth its time while it lowers the deviation by more than this
 SLOW = 0.7
 # of the curvature scale: a film that is off by more is none to speak of
@@ -96,8 +96,9 @@ def adapted(
         raise InputError(
             f"H is off by up to {deviation.largest:.2g} of the curvature scale {deviation.scale:.3g} 1/m, more than "
             f"tolerance = {tolerance:g}, {_place(here.film, deviation.of_element)}: {shortfall}",
-            f"write tolerance = {_rounded_up(deviation.largest):g}, raise most_nodes, or make the boundary smoother "
-            "there"
+            f"write tolerance = {_rounded_up(deviation.largest):g}"
+            + (", raise most_nodes," if "most_nodes" in shortfall else "")
+            + " or make the boundary smoother there (a spline through more points)"
             if deviation.largest < WRONG
             else "make the boundary less bent or less narrow there, or raise most_nodes",
             "surface.tolerance",
