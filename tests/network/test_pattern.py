@@ -424,7 +424,7 @@ def test_every_refused(every: Any) -> None:
 
 
 def test_adjust_is_not_for_lines_of_other_normal_curvature() -> None:
-    with pytest.raises(InputError, match='closing = "adjust" moves the boundary of a surface that is found') as refused:
+    with pytest.raises(InputError, match='closing = "adjust" makes the lattice of a net whole') as refused:
         parse_project({"surface": ENNEPER, "network": {"closing": "adjust", "normal_curvature": 0.5}})
     assert refused.value.where == "network.closing"
     for more in ({"kind": "principal"}, {"every": 2}):
