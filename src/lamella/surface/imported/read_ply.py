@@ -273,7 +273,9 @@ class Binary(Body):
     def take(self, positions: Integers, kind: str) -> NDArray[np.float64] | Integers:
         raw = self.bytes[positions[:, None] + np.arange(int(kind[1]))]
         found = np.ascontiguousarray(raw).view(self.order + kind)[:, 0]
-        return found.astype(np.float64) if kind[0] == "f" else found.astype(np.int64)
+        # bytes that are no numbers are found out later
+        with np.errstate(invalid="ignore"):
+            return found.astype(np.float64) if kind[0] == "f" else found.astype(np.int64)
 
 
 def _cut_off(element: Element) -> Exception:

@@ -40,7 +40,9 @@ def _binary_corners(data: bytes) -> Floats:
         raise mesh_error(f"the .stl says {count} facets, which take {expected} bytes, but has {len(data)} bytes", again)
     if count > MAXIMUM_FACES:
         raise mesh_error(f"the .stl has {count} facets; at most {MAXIMUM_FACES} are read", "reduce the mesh")
-    return np.frombuffer(data, FACET, count, HEADER)["corners"].reshape(-1, 3).astype(np.float64)
+    # bytes that are no numbers are found out later, with the place
+    with np.errstate(invalid="ignore"):
+        return np.frombuffer(data, FACET, count, HEADER)["corners"].reshape(-1, 3).astype(np.float64)
 
 
 def _text_corners(data: bytes) -> Floats:
