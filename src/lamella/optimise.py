@@ -197,7 +197,7 @@ def _straighten(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: T
             "closeness, directions and squares are 4 conditions on 3 coordinates of a vertex: a remainder of the "
             "square of the edge stays where the surface has no symmetry",
         )
-        if not found.solution.solved
+        if found.solution.verdict in ("settled", "stagnated")
         else (),
     )
 

@@ -174,12 +174,15 @@ def _not_solved(solution: Solution) -> str:
     what = f"not met, in edges or radians: {missing}" if missing else "the steps had not ended"
     if solution.verdict == "collapsed":
         what = "edges have lost their length"
+    if solution.verdict == "left the surface":
+        what = "vertices have gone over the border of the surface, where only its tangent planes go on"
     share = fallen(solution)
     used_up = "allow more with --iterations" if share < SLOW else "ask for less, or start from a fairer mesh nearer by"
     remedy = {
         "iterations used up": f"{used_up}: the last {min(LATELY, state.number)} brought the remainder down to "
         f"{share:.2g} of what it was",
         "broken off": "start from a fairer mesh, without folds and flattened faces",
+        "left the surface": "give a larger surface with --surface, or a mesh whose faces are more nearly square",
         "collapsed": "there is no such net near this mesh: take another radius, angle, --form or surface",
     }.get(solution.verdict, "ask for less, or take this, the least remainder nearby; --tolerance says what is met")
     return f"not all conditions hold: {solution.verdict} after {state.number} iterations; {what}\n  remedy: {remedy}"

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from nets import grid_faces
 
-from lamella import Enneper, InputError, Unduloid
+from lamella import Catenoid, Enneper, InputError, Unduloid
 from lamella.projection.foot_points import foot_surface
 from lamella.projection.problems.straighten import edge_middles, straighten
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.star_measures import circle_angles, star_spheres
+from surface.found.films import surface, tube
 
 UNDULOID = Unduloid(0.6, 1.4, (-8.0, 8.0))
 
@@ -50,6 +51,16 @@ def test_ring_of_an_unduloid() -> None:
     assert angles[1] < 0.2
     assert np.log2(angles[0] / angles[1]) > 1.7
     assert np.log2(curvatures[0] / curvatures[1]) > 1.7
+
+
+def test_a_mesh_that_grows_beyond_its_surface_is_told() -> None:
+    """Squares of 24 around take twice the height: over the border of elements there are tangent planes only."""
+    angle, height = np.meshgrid(np.arange(24) * np.pi / 12, np.linspace(-1.2, 1.0, 14))
+    points = np.stack([np.cosh(height) * np.cos(angle), np.cosh(height) * np.sin(angle), height], -1)
+    mesh = quad_mesh(points.reshape(-1, 3), grid_faces(14, 24, True)[:, ::-1])
+    film = tube(lambda s: (np.cosh(s), s), np.linspace(-1.2, 1.0, 9), 16, 4)
+    assert straighten(mesh, foot_surface(surface(film)), tolerance=1e-6).solution.verdict == "left the surface"
+    assert straighten(mesh, foot_surface(Catenoid(1.0, (-1.6, 1.6)))).solution.solved
 
 
 def test_patch_without_symmetry() -> None:

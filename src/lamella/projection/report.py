@@ -7,7 +7,7 @@ from typing import Literal
 
 from lamella.projection.unknowns import Floats
 
-Verdict = Literal["solved", "settled", "stagnated", "iterations used up", "broken off", "collapsed"]
+Verdict = Literal["solved", "settled", "stagnated", "iterations used up", "broken off", "collapsed", "left the surface"]
 """How it ended.
 
 solved
@@ -23,6 +23,8 @@ broken off
     The equations cannot be solved, or values grow beyond all numbers.
 collapsed
     Edges have lost their length: a point meets most constraints. There is no such net nearby.
+left the surface
+    Vertices have gone over its border, where only its tangent planes go on.
 """
 
 

@@ -20,6 +20,8 @@ from lamella.projection.solve import solve
 from lamella.projection.unknowns import Block, Floats
 from lamella.sparse import Backend
 
+# of the mean edge: a vertex farther from its foot point is beyond the surface's border
+BEYOND = 0.1
 # weight of third differences at the start and per iteration
 FAIR, FADE = 0.1, 0.3
 
@@ -98,8 +100,12 @@ def straighten(
         backend=backend,
     )
     isothermic = mesh.at(solution.values["vertices"])
+    # closeness counts across the surface only
+    away = np.linalg.norm(isothermic.vertices - surface.foot(isothermic.vertices).position, axis=1)
     if collapsed(mesh, isothermic):
         solution = replace(solution, verdict="collapsed")
+    elif away.max() > BEYOND * edge:
+        solution = replace(solution, verdict="left the surface")
     middles = edge_middles(isothermic)
     return Straightened(
         isothermic,
