@@ -481,7 +481,9 @@ def test_a_full_disk_leaves_nothing_where_nothing_was(here: Path) -> None:
 def kill_half_way(here: Path, number: signal.Signals) -> tuple[int, str]:
     """Kill a run once it has begun to write; it stops there, so that the moment is always the same."""
     code = (
-        "import sys, time, lamella.output as output\n"
+        "import signal, sys, time, lamella.output as output\n"
+        # a suite in the background of a shell has it ignored, and its processes inherit that
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "write = output.write_network\n"
         "def stop(*a, **k):\n"
         "    print('half-way', file=sys.stderr, flush=True)\n"
