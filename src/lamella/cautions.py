@@ -13,6 +13,7 @@ from lamella.strip.lamellas import Lamellas, layer_drift
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
+from lamella.wording import counted
 
 # m; the largest timber gridshells span well under 200 m
 LARGE = 250.0
@@ -82,8 +83,8 @@ def network_cautions(network: Network, height: float, closing: str = "open") -> 
             ", ".join(f"{x:.3g}" for x in point) for point in network.node_points[network.faces_left_out[:3]]
         )
         yield (
-            f"{len(network.faces_left_out)} faces of more than six corners between lamellas and rim are left out (near "
-            f"{places} m): more cells make them smaller"
+            f"{counted(len(network.faces_left_out), 'face')} of more than six corners between lamellas and rim left "
+            f"out (near {places} m): more cells make them smaller"
         )
     count, large = large_cells(network)
     if large:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
@@ -17,6 +16,7 @@ from lamella.network.density import Density, choose_density
 from lamella.network.lines import check_traced, ground_of, is_traced, told_mean_curvature
 from lamella.network.network import Network
 from lamella.network.trace import trace_closed_form
+from lamella.progress import Progress, silent
 from lamella.project import Project
 from lamella.project_file import located, read_project
 from lamella.strip.lamellas import Lamellas, Section, make_lamellas
@@ -36,11 +36,6 @@ LAST_STAGE = "fabrication"
 
 # Is told what is being done, a line at a time and before it is done: stages without indent, what they do below two
 # spaces, details below four (Newton steps, say; the command line shows those with --verbose only).
-Progress = Callable[[str], None]
-
-
-def _silent(message: str) -> None:
-    """Tell nobody."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +89,7 @@ class _Clock:
         self._progress(f"  {result} ({self.seconds[stage]:.2f} s)")
 
 
-def make_surface(project: Project, folder: Path = Path(), progress: Progress = _silent) -> Surface[Any]:
+def make_surface(project: Project, folder: Path = Path(), progress: Progress = silent) -> Surface[Any]:
     """The surface a project describes.
 
     Parameters
@@ -133,7 +128,7 @@ def make_surface(project: Project, folder: Path = Path(), progress: Progress = _
 
 
 def plan(
-    project: Project, *, until: str | None = None, folder: Path = Path(), progress: Progress = _silent
+    project: Project, *, until: str | None = None, folder: Path = Path(), progress: Progress = silent
 ) -> tuple[Surface[Any], Density | None]:
     """The surface of a project and, where that is arithmetic, the density of its net.
 
@@ -239,7 +234,7 @@ def _check_fabrication(project: Project, curvature: float) -> None:
 
 
 def compute(
-    project: Project, *, until: str | None = None, folder: Path = Path(), progress: Progress = _silent
+    project: Project, *, until: str | None = None, folder: Path = Path(), progress: Progress = silent
 ) -> Results:
     """Run the stages of a project up to `until`, in memory.
 
@@ -403,8 +398,8 @@ def run(
     *,
     out: Path | None = None,
     until: str | None = None,
-    progress: Progress = _silent,
-    warn: Progress = _silent,
+    progress: Progress = silent,
+    warn: Progress = silent,
 ) -> Path:
     """Run a project file and write its folder.
 
@@ -446,7 +441,7 @@ def run(
     return target
 
 
-def write(results: Results, target: Path, *, progress: Progress = _silent) -> None:
+def write(results: Results, target: Path, *, progress: Progress = silent) -> None:
     """Write the folder of a run; it appears whole or not at all.
 
     Parameters

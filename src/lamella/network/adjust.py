@@ -7,7 +7,6 @@ of what each parameter is allowed, that makes the misses nought. The spacing of 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +22,7 @@ from lamella.network.element_lattice import Lattice, choose_lattice
 from lamella.network.film_net import FilmNet
 from lamella.network.holonomy import around_holes, holonomies
 from lamella.network.pattern import LAMELLAS, Pattern
+from lamella.progress import Progress
 from lamella.surface.boundary.curve import Loop
 from lamella.surface.boundary.freedom import Freedom
 from lamella.surface.boundary.tables import boundary_loops
@@ -32,7 +32,6 @@ from lamella.surface.points import Complexes, Floats
 if TYPE_CHECKING:
     from lamella.project import FormFoundTable
 
-Progress = Callable[[str], None]
 
 # cells: misses below it end the search; a tenth of what counts as closed
 CLOSED = 1e-4

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
@@ -21,22 +21,18 @@ from lamella.network.network import SINGULAR, Network, Period
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.network.trace_elements import trace_elements
 from lamella.network.whole_shifts import WholeShifts
+from lamella.progress import Progress, silent
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.points import Complexes, Floats
 from lamella.surface.umbilic import refuse_umbilic
 
-Progress = Callable[[str], None]
 Closing = Literal["open", "round"]
 
 # of a cell: a shift nearer to whole numbers closes the net (docs/files.md)
 CLOSES = 1e-3
 # rounding: the nearest whole numbers may put two umbilics on one node; then the next ones are tried
 MOST_WAYS = 8
-
-
-def _silent(message: str) -> None:
-    """Tell nobody."""
 
 
 class Joint(NamedTuple):
@@ -140,7 +136,7 @@ def element_network(
     minimum_length: float = 0.5,
     pattern: Pattern = LAMELLAS,
     loop_names: tuple[str, ...] = (),
-    progress: Progress = _silent,
+    progress: Progress = silent,
 ) -> ElementNetwork:
     """The network of lamellas, or of principal lines, on a surface of elements.
 

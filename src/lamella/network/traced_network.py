@@ -6,7 +6,7 @@ lines are traced one beside the other (`lamella.network.flow`) from even seeds (
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -33,12 +33,12 @@ from lamella.network.traced_stops import (
     stop_nodes,
 )
 from lamella.network.turning import turning
+from lamella.progress import Progress, silent
 from lamella.surface.darboux import Darboux
 from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
 Booleans = NDArray[np.bool_]
-Progress = Callable[[str], None]
 
 # how far the median cell edge may be from the spacing asked for, and how often seeds are spaced anew for it
 OFF_SPACING, MOST_TRIES = 0.1, 3
@@ -48,10 +48,6 @@ SAME_NODE = 1e-6
 FEWEST = 3
 # share of the area worth telling
 LEAST_SHARE = 1e-3
-
-
-def _silent(message: str) -> None:
-    """Tell nobody."""
 
 
 class Reach(NamedTuple):
@@ -134,7 +130,7 @@ def traced_network(
     cells: int | None = None,
     spacing: float | None = None,
     minimum_length: float = 0.5,
-    progress: Progress = _silent,
+    progress: Progress = silent,
 ) -> TracedNetwork:
     """The network of lines of a given normal curvature, or of principal lines.
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from lamella.errors import InputError
+from lamella.progress import LONG, patient
 from lamella.surface.boundary import make_loop
 from lamella.surface.boundary.arcs import arc_through
 from lamella.surface.boundary.pieces import lines, stack
@@ -15,7 +16,6 @@ from lamella.surface.boundary.splines import closed_spline
 from lamella.surface.found.along_family import FoldError, to_curvature
 from lamella.surface.found.find import find_film
 from lamella.surface.found.newton import find_equilibrium
-from lamella.surface.found.progress import LONG, patient
 from surface.found.exact_patches import ring
 from surface.found.films import disc_film
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from lamella.errors import InputError
+from lamella.progress import Progress, patient, silent
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.film import Film, Loop
@@ -17,7 +17,6 @@ from lamella.surface.found.found_film import Found
 from lamella.surface.found.limits import refuse_afloat, refuse_impossible, refuse_single
 from lamella.surface.found.newton import Equilibrium, find_equilibrium
 from lamella.surface.found.not_found import not_found
-from lamella.surface.found.progress import patient
 from lamella.surface.found.refinement import adapted
 from lamella.surface.found.self_crossing import self_crossing
 
@@ -26,14 +25,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Found", "adapted", "find_film", "notes_on", "surface_of_table"]
 
-Progress = Callable[[str], None]
 
-
-def _silent(message: str) -> None:
-    """Tell nobody."""
-
-
-def surface_of_table(table: FormFoundTable, folder: Path, progress: Progress = _silent) -> ElementSurface:
+def surface_of_table(table: FormFoundTable, folder: Path, progress: Progress = silent) -> ElementSurface:
     """The surface of a project's table.
 
     Parameters
@@ -97,7 +90,7 @@ def find_film(
     tolerance: float = 5e-3,
     branch: Literal["stable", "unstable"] = "stable",
     most_nodes: int = 100_000,
-    progress: Progress = _silent,
+    progress: Progress = silent,
 ) -> Found:
     """The film of a mean curvature, or of a volume, in boundary loops.
 

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.progress import silent
 from lamella.sparse import Factor, SingularError
 from lamella.surface.found.film import Film
 from lamella.surface.found.no_film import NoFilmError
@@ -79,10 +80,6 @@ class Way:
 Detail = Callable[[str], None]
 
 
-def _silent(message: str) -> None:
-    """Tell nobody."""
-
-
 def find_equilibrium(
     film: Film,
     mean_curvature: float = 0.0,
@@ -91,7 +88,7 @@ def find_equilibrium(
     way: Way | None = None,
     stable: bool = True,
     most_steps: int = 30,
-    detail: Detail = _silent,
+    detail: Detail = silent,
 ) -> Equilibrium:
     """The film of a mean curvature near a given one.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lamella.errors import InputError
+from lamella.progress import Progress, silent
 from lamella.surface.boundary import Loop, check_loops
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.surface import ElementSurface
@@ -30,7 +30,6 @@ from lamella.surface.imported.read_mesh import read_mesh
 if TYPE_CHECKING:
     from lamella.project import MeshTable
 
-Progress = Callable[[str], None]
 
 # of the curvature scale: an H below it, and below what a mesh can tell, is that of a minimal surface; above the other
 # the user is warned of it
@@ -47,11 +46,7 @@ FAR = 0.05
 OFF = 2e-4
 
 
-def _silent(message: str) -> None:
-    """Tell nobody."""
-
-
-def surface_of_table(table: MeshTable, folder: Path, progress: Progress = _silent) -> ElementSurface:
+def surface_of_table(table: MeshTable, folder: Path, progress: Progress = silent) -> ElementSurface:
     """The surface of a project's table.
 
     Parameters

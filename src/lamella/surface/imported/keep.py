@@ -13,7 +13,6 @@ doi:10.1016/j.cma.2003.12.032.)
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,6 +20,7 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from lamella.errors import InputError
+from lamella.progress import Progress
 from lamella.surface.boundary import Loop
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.curvature import element_points, frames
@@ -39,7 +39,6 @@ from lamella.surface.points import Floats
 if TYPE_CHECKING:
     from lamella.project import MeshTable
 
-Progress = Callable[[str], None]
 
 # weights of the jumps of slope and of curvature
 SLOPE, CURVATURE = 1e-3, 1e-5
