@@ -147,7 +147,7 @@ def test_order_two_is_told_before_it_is_tried() -> None:
     with pytest.raises(InputError, match=r"surface\.tolerance: H is off") as refusal:
         make_surface(project, progress=told.append)
     assert refusal.value.remedy.startswith("write order = 3 or 4, or ")
-    assert told[0].startswith("  order = 2 takes about 40,000 nodes for tolerance = 0.01 (most_nodes = 500)")
+    assert told[0].startswith("  order = 2 takes about 20,000 nodes for tolerance = 0.01 (most_nodes = 500)")
     told.clear()
     found = make_surface(parse_project({"surface": surface | {"order": 3, "most_nodes": 15_000}}), progress=told.append)
     assert not any("order = " in line for line in told)
@@ -160,7 +160,7 @@ def test_nodes_of_order_two_grow_as_told() -> None:
     surface = {"kind": "form-found", "order": 2, "boundary": rings}
     for tolerance in (0.1, 0.03):
         nodes = make_surface(parse_project({"surface": surface | {"tolerance": tolerance}})).describe()["surface_nodes"]
-        assert 1 / 3 < nodes / (4 / tolerance**2) < 3
+        assert 1 / 3 < nodes / (2 / tolerance**2) < 3
 
 
 def test_a_surface_file_without_nurbs_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -167,13 +167,13 @@ def test_what_is_wrong_is_said_with_key_line_and_remedy(tmp_path: Path, text: st
 def test_the_defaults() -> None:
     table = parse_project(tomllib.loads(HEAD + RING + RING.replace("3", "1"))).surface
     assert isinstance(table, FormFoundTable)
-    assert (table.mean_curvature, table.volume, table.order, table.tolerance) == (0, None, 4, 5e-3)
+    assert (table.mean_curvature, table.volume, table.order, table.tolerance) == (0, None, 4, 2e-3)
     assert (table.branch, table.most_nodes) == ("stable", 100_000)
     assert [loop.name for loop in table.boundary] == ["outer", "hole 1"]
     mesh = parse_project(tomllib.loads(MESH)).surface
     assert isinstance(mesh, MeshTable)
     assert (mesh.mean_curvature, mesh.unit, mesh.corner_angle, mesh.deviation) == ("fit", None, 40, 0.1)
-    assert (mesh.order, mesh.tolerance, mesh.most_nodes) == (4, 5e-3, 100_000)
+    assert (mesh.order, mesh.tolerance, mesh.most_nodes) == (4, 2e-3, 100_000)
     number = parse_project(tomllib.loads(MESH + "mean_curvature = 1\n")).surface
     assert isinstance(number, MeshTable)
     assert number.mean_curvature == 1.0

@@ -41,10 +41,10 @@ def size_cautions(mesh: SurfaceMesh, height: float) -> Iterator[str]:
 def order_caution(order: int, tolerance: float, most_nodes: int) -> str:
     """That elements of order 2 will need too many nodes, before they are made; empty: they will not.
 
-    Their curvature is off by the first power of their size, 2 / sqrt(nodes) of the curvature scale on films between
-    rings.
+    Their curvature is off by the first power of their size: 0.6 to 2.4 / sqrt(nodes) of the curvature scale on films
+    between rings, caps and saddles.
     """
-    nodes = 4 / tolerance**2
+    nodes = 2 / tolerance**2
     if order > 2 or nodes <= most_nodes:
         return ""
     return (

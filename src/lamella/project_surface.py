@@ -193,7 +193,7 @@ def _tolerance() -> Any:
         "",
         ge=1e-6,
         le=0.5,
-        default=5e-3,
+        default=2e-3,
     )
 
 

@@ -57,7 +57,7 @@ def test_annulus_of_ten_thousand_nodes() -> None:
         {"name": "rim", "points": rim.tolist()},
         {"name": "oculus", "circle": {"center": [0, 0, 2], "radius": 1.3}},
     ]
-    tables = {"surface": {"kind": "form-found", "tolerance": 9e-3, "boundary": loops}, "network": {"cells": 24}}
+    tables = {"surface": {"kind": "form-found", "boundary": loops}, "network": {"cells": 24}}
     results = compute(parse_project(tables), until="network")
     network, told = results.network, results.summary["network"]
     assert network is not None

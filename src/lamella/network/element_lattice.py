@@ -13,6 +13,7 @@ from lamella.network.isothermic import Isothermic
 from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.points import Floats
+from lamella.surface.vectors import crosses, lengths
 
 # of the longest principal line: a shorter period around a hole is none to count cells on
 LEAST_PERIOD = 1e-2
@@ -109,8 +110,16 @@ def lattice_origin(iso: Isothermic, step: float, pattern: Pattern) -> complex:
         return place if len(iso.odd) else place - complex(pattern.isothermic(np.array([MIDDLE]), step)[0])
     # nothing turns w: an umbilic of even order may be a node
     corner = iso.value[:, :3]
+    faces = iso.mesh.connectivity.faces
     inside = iso.mesh.umbilics[iso.mesh.umbilics >= 0]
-    return complex(corner[iso.mesh.connectivity.faces == inside[0]].mean() if len(inside) else corner.mean())
+    if len(inside):
+        return complex(corner[faces == inside[0]].mean())
+    # next to the mean over the surface, so that the net does not hang on its elements; rows of nodes follow each other
+    # by half of l0, and both ends of the longest principal line of a symmetric surface are midway between two
+    one, two, three = iso.mesh.nodes[faces].transpose(1, 0, 2)
+    area = lengths(crosses(two - one, three - one))
+    middle = complex(area @ corner.mean(1) / area.sum())
+    return middle + step / 4 * (1 if np.ptp(corner.real) > np.ptp(corner.imag) else 1j)
 
 
 def _cell_densities(iso: Isothermic, points: Floats, weights: Floats, pattern: Pattern) -> tuple[Floats, Floats]:

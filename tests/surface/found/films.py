@@ -10,8 +10,9 @@ from lamella.surface.element.size_field import SizeField
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.chart import make_chart
 from lamella.surface.found.film import Film, harmonic_over_itself
-from lamella.surface.found.meshing import start_film, straightened, with_sizes
+from lamella.surface.found.meshing import start_film, with_sizes
 from lamella.surface.found.newton import Equilibrium, find_equilibrium
+from lamella.surface.found.redistribution import redistributed
 from surface.found.exact_patches import ArcLength, circle, disc, ring
 
 
@@ -23,8 +24,8 @@ def start(loops, order: int) -> Film:
 def on_sizes(film: Film, size: float, mean_curvature: float = 0.0, *, stable: bool = True) -> Equilibrium:
     """A film found again on elements of an edge length (m)."""
     even = SizeField(film.nodes[:1], np.array([size]), size)
-    film = find_equilibrium(straightened(with_sizes(film, even)), mean_curvature, stable=stable).film
-    return find_equilibrium(straightened(film), mean_curvature, stable=stable)
+    film = find_equilibrium(with_sizes(film, even), mean_curvature, stable=stable).film
+    return find_equilibrium(redistributed(film, mean_curvature), mean_curvature, stable=stable)
 
 
 def surface(film: Film, mean_curvature: float = 0.0) -> ElementSurface:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csc_matrix
 
+from lamella.surface.element.conjugate_gradients import conjugate_gradients
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.points import Floats
@@ -56,33 +57,11 @@ def project_onto_nodes(
 
     right = gathered(np.matmul(basis.T, values * weights[..., None]))
     diagonal = gathering @ np.einsum("eii->ei", blocks).ravel()
-    inverse_diagonal = 1 / diagonal[:, None]
     # to begin with: each element's own projection, as if its area element were that of all on average
     share = basis.T * weights.mean(0)
     own = np.matmul(np.linalg.solve(share @ basis, share), values)
-    solution = gathered(own) / (gathering @ np.ones(m * k))[:, None]
-    residual = right - image_of(solution)
-    conditioned = inverse_diagonal * residual
-    direction = conditioned.copy()
-    product = _dots(residual, conditioned)
-    goal = tolerance**2 * _dots(right, right * inverse_diagonal)
-    for _ in range(500):
-        if (product <= goal).all():
-            break
-        image = image_of(direction)
-        step = product / np.maximum(_dots(direction, image), 1e-300)
-        solution += step * direction
-        residual -= step * image
-        np.multiply(residual, inverse_diagonal, out=conditioned)
-        product, before = _dots(residual, conditioned), product
-        direction *= product / np.maximum(before, 1e-300)
-        direction += conditioned
-    return np.asarray(solution)
-
-
-def _dots(one: Floats, other: Floats) -> Floats:
-    """Products of the columns of two tables (n, c), (c,)."""
-    return np.asarray(np.einsum("nc,nc->c", one, other))
+    start = gathered(own) / (gathering @ np.ones(m * k))[:, None]
+    return conjugate_gradients(image_of, right, diagonal, start, tolerance)
 
 
 def smooth_normals(connectivity: Connectivity, nodes: Floats) -> Floats:

@@ -27,11 +27,13 @@ PARTS = 4
 MOST_STEPS = 30
 # zeros nearer to each other than this part of the surface's size are one of higher order; the least that serves
 REACHES = (2e-3, 6e-3, 2e-2, 6e-2)
+# of the size: umbilics whose distances from the rim differ by less are alike
+DEPTH = 0.01
 
 
 @dataclass(frozen=True)
 class Umbilics:
-    """Zeros of the Hopf differential.
+    """Zeros of the Hopf differential, the one farthest from the rim first.
 
     Attributes
     ----------
@@ -80,8 +82,20 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
         # the Hopf differential is holomorphic: a negative turn is noise next to a zero of higher order
         if (orders >= 0).all():
             break
-    kept = orders > 0
+    kept = np.flatnonzero(orders > 0)
+    kept = kept[_deepest_first(surface, position[kept], DEPTH * size)]
     return Umbilics(places[kept], position[kept], orders[kept])
+
+
+def _deepest_first(surface: ElementSurface, position: Floats, step: float) -> Integers:
+    """Order of places by their distance from the rim, the farthest first: the net begins there on whatever elements.
+
+    Of alike distances, in steps (m), the first by x, y and z is the first.
+    """
+    rim = surface.nodes[np.unique(surface.connectivity.rim_nodes)]
+    depth, _ = cKDTree(rim).query(position)
+    x, y, z = np.rint(position / step).T
+    return np.lexsort((z, y, x, -np.rint(depth / step)))
 
 
 def _gathered(

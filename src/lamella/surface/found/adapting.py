@@ -16,6 +16,8 @@ from lamella.surface.points import Floats
 # around a corner of the boundary the curvature of a film itself may be unbounded: parts of the size (or of
 # the loop) left out there
 CORNER_PART = 0.03
+# least |D| over the curvature scale that an error is weighed by
+LEAST_WEIGHED = 0.1
 # of the tolerance that a new mesh aims at, and the rings of neighbours that share their largest error
 AIM, RINGS = 0.6, 2
 # most an element's edge shrinks or grows at once, and how it goes on where that alone did not do
@@ -29,14 +31,18 @@ class Deviation:
     Attributes
     ----------
     of_element : (m,)
-        Largest |H - H0| in each element, over the scale; 0 where all its check points lie next to a corner.
+        Largest |H - H0| in each element, over the scale, times the weight of curvatures there; 0 where all its check
+        points lie next to a corner.
+    weighted : float
+        Its maximum.
     largest, typical : float
-        Maximum and root mean square.
+        Maximum and root mean square of |H - H0|, over the scale.
     scale : float
         Root mean square of sqrt((k1^2 + k2^2) / 2), at least 0.01 / size, 1/m.
     """
 
     of_element: Floats
+    weighted: float
     largest: float
     typical: float
     scale: float
@@ -62,8 +68,16 @@ def deviation_of(film: Film, mean_curvature: float) -> Deviation:
     off = np.where(counted, off, 0)
     total = max(weight.sum(), 1e-300)
     scale = max(float(np.sqrt((weight * bend).sum() / total)), 0.01 / film.size)
+    # an error d of the shape operator turns principal directions by d / (2 |D|) and changes isothermic coordinates,
+    # the integral of sqrt |D|, by d / (2 sqrt |D|): where |D| is small, next to umbilics, elements have to be better
+    least = np.abs(there.deviator).reshape(m, -1).min(1)
+    of_element = off.max(1) / scale / np.sqrt(np.clip(least / scale, LEAST_WEIGHED, 1))
     return Deviation(
-        off.max(1) / scale, float(off.max()) / scale, float(np.sqrt((weight * off**2).sum() / total)) / scale, scale
+        of_element,
+        float(of_element.max()),
+        float(off.max()) / scale,
+        float(np.sqrt((weight * off**2).sum() / total)) / scale,
+        scale,
     )
 
 

@@ -87,7 +87,7 @@ def find_film(
     *,
     volume: float | None = None,
     order: int = 4,
-    tolerance: float = 5e-3,
+    tolerance: float = 2e-3,
     branch: Literal["stable", "unstable"] = "stable",
     most_nodes: int = 100_000,
     progress: Progress = silent,

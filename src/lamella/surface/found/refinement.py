@@ -7,17 +7,21 @@ from collections.abc import Callable
 import numpy as np
 
 from lamella.errors import InputError
-from lamella.surface.found.adapting import deviation_of, refined_sizes
+from lamella.surface.found.adapting import Deviation, deviation_of, refined_sizes
 from lamella.surface.found.film import Film
 from lamella.surface.found.found_film import Found
 from lamella.surface.found.meshing import renewed, straightened, with_sizes
 from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError
+from lamella.surface.found.redistribution import redistributed
 from lamella.surface.found.stability import stability_of
 from lamella.surface.points import Floats
 
 MOST_ROUNDS = 12
 # at the limit of nodes another round is worth its time while it lowers the deviation by more than this
 SLOW = 0.7
+# nodes are moved within the surface again rather than elements made smaller while the deviation is at most this many
+# times the tolerance, and as long as it falls below this part
+NEAR, GAIN = 2.5, 0.8
 # of the curvature scale: a film that is off by more is none to speak of
 WRONG = 0.1
 
@@ -50,30 +54,26 @@ def adapted(
     InputError
         The surface is not there on finer elements.
     """
-    here = first
+    try:
+        here = settled(straightened(first.film))
+    except NoFilmError as error:
+        raise InputError(
+            f"the surface found on coarse elements breaks on finer ones: {error}",
+            "make the boundary less bent, or allow a larger tolerance",
+            "surface",
+        ) from None
     shortfall = f"it was not reached in {MOST_ROUNDS} rounds of refinement"
     best: tuple[float, Equilibrium] | None = None
     for round_ in range(MOST_ROUNDS):
-        try:
-            here = settled(straightened(here.film))
-        except NoFilmError as error:
-            shortfall = f"on finer elements Newton's method fails ({error})"
-            if best is None:
-                raise InputError(
-                    f"the surface found on coarse elements breaks on finer ones: {error}",
-                    "make the boundary less bent, or allow a larger tolerance",
-                    "surface",
-                ) from None
-            break
-        deviation = deviation_of(here.film, here.mean_curvature)
+        here, deviation = _at_rest(here, settled, tolerance)
         progress(
             f"  {here.film.connectivity.node_count:,} nodes: |H - H0| up to {deviation.largest:.1e} of the curvature "
             f"scale {deviation.scale:.3g} 1/m"
         )
-        gain = deviation.largest / best[0] if best else 0.0
-        if best is None or deviation.largest < best[0]:
-            best = (deviation.largest, here)
-        if deviation.largest <= tolerance:
+        gain = deviation.weighted / best[0] if best else 0.0
+        if best is None or deviation.weighted < best[0]:
+            best = (deviation.weighted, here)
+        if deviation.weighted <= tolerance:
             shortfall = ""
             break
         size, allowed = refined_sizes(here.film, deviation, tolerance, most_nodes, coarsen=round_ < 2)
@@ -92,7 +92,7 @@ def adapted(
     assert best is not None
     here = best[1]
     deviation = deviation_of(here.film, here.mean_curvature)
-    if shortfall:
+    if shortfall and deviation.largest > tolerance:
         raise InputError(
             f"H is off by up to {deviation.largest:.2g} of the curvature scale {deviation.scale:.3g} 1/m, more than "
             f"tolerance = {tolerance:g}, {_place(here.film, deviation.of_element)}: {shortfall}",
@@ -111,6 +111,23 @@ def adapted(
         steps,
         followed,
     )
+
+
+def _at_rest(
+    here: Equilibrium, settled: Callable[[Film], Equilibrium], tolerance: float
+) -> tuple[Equilibrium, Deviation]:
+    """A film with its nodes where its mean curvature comes out best, and its deviation."""
+    deviation = deviation_of(here.film, here.mean_curvature)
+    while True:
+        try:
+            moved = settled(redistributed(here.film, here.mean_curvature))
+        except NoFilmError:
+            return here, deviation
+        before, after = deviation.weighted, deviation_of(moved.film, moved.mean_curvature)
+        if after.weighted < before:
+            here, deviation = moved, after
+        if not tolerance < deviation.weighted < min(NEAR * tolerance, GAIN * before):
+            return here, deviation
 
 
 def _place(film: Film, off: Floats) -> str:
