@@ -7,14 +7,16 @@ is raised then tells how far each way went.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from lamella.errors import InputError
 from lamella.surface.found.along_family import FoldError, Reached, to_curvature, to_volume
 from lamella.surface.found.chart import make_chart
+from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.film import Film, Loop, harmonic_over_itself
+from lamella.surface.found.letting_go import held, let_go
 from lamella.surface.found.limits import refuse_apart
 from lamella.surface.found.loop_path import BreakError, along_flat, along_loops, are_apart, drawn_together, is_moved
 from lamella.surface.found.meshing import renewed, start_film
@@ -103,6 +105,7 @@ class FirstFilm:
 
     def _starts(self, mean_curvature: float) -> Iterator[Equilibrium]:
         """Films in the given loops, of the wanted mean curvature or without pressure, the shorter ways first."""
+        yield from self._from_held(lambda held: held.of_curvature(mean_curvature), None)
         minimal = not self._no_minimal()
         if mean_curvature and minimal:
             calm = self._direct(self.loops, 0.0)
@@ -126,6 +129,8 @@ class FirstFilm:
         calm = self._direct(self.loops, 0.0) if minimal else None
         if calm and (first := self._inflated(calm, volume)):
             return first
+        for start in self._from_held(lambda held: held.of_volume(volume + self._lids_apart()), volume):
+            return First(start, self.steps, True)
         for start in self._from_drawn(0.0, volume):
             return First(start, self.steps, True)
         if minimal and not calm:
@@ -246,6 +251,32 @@ class FirstFilm:
             return None
         self.steps += reached.steps
         return reached.equilibrium
+
+    def _from_held(self, search: Callable[[FirstFilm], First], volume: float | None) -> Iterator[Equilibrium]:
+        """The film with its sliding edges held where they are drawn, and then let go."""
+        if not any(loop.slides for loop in self.loops):
+            return
+        self.progress("    the sliding edges are held, and let go little by little")
+        there = FirstFilm(held(self.loops), self.order, self.progress)
+        try:
+            first = search(there)
+        except SearchError as error:
+            self.steps += error.steps
+            self._tell(f"with its sliding edges held: {error}")
+            return
+        self.steps += there.steps
+        try:
+            reached = let_go(first.equilibrium, self.loops, volume, self.progress)
+        except NoFilmError as error:
+            self._tell(f"from its sliding edges held: {error}")
+            return
+        self.steps += reached.steps
+        yield reached.equilibrium
+
+    def _lids_apart(self) -> float:
+        """By how much the volume of a film is larger (m^3) where its loops are held: their lids are others."""
+        film = start_film(make_chart(self.loops), self.loops, self.order)
+        return enclosed_volume(replace(film, loops=held(self.loops))) - enclosed_volume(film)
 
     def _from_drawn(self, mean_curvature: float, volume: float | None = None) -> Iterator[Equilibrium]:
         """Films in the given loops, followed from the same loops drawn together."""

@@ -64,7 +64,7 @@ def _again(search: FirstFilm) -> FirstFilm:
 
 def _no_volume(search: FirstFilm, went: str, volume: float) -> InputError:
     wanted = f"volume = {volume:.6g} m3"
-    if len(search.loops) > 1:
+    if len(search.loops) > 1 or any(loop.slides for loop in search.loops):
         try:
             _again(search).of_volume(-volume)
         except SearchError:
