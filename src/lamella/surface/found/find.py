@@ -12,10 +12,11 @@ from lamella.progress import Progress, patient, silent
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.film import Film, Loop
-from lamella.surface.found.first_film import FirstFilm, SearchError
+from lamella.surface.found.first_film import FirstFilm
 from lamella.surface.found.found_film import Found
 from lamella.surface.found.limits import refuse_afloat, refuse_impossible, refuse_single
 from lamella.surface.found.newton import Equilibrium, find_equilibrium
+from lamella.surface.found.no_film import SearchError
 from lamella.surface.found.not_found import not_found
 from lamella.surface.found.refinement import adapted
 from lamella.surface.found.self_crossing import self_crossing

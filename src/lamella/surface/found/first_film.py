@@ -7,7 +7,7 @@ is raised then tells how far each way went.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
@@ -16,11 +16,13 @@ from lamella.surface.found.along_family import FoldError, Reached, to_curvature,
 from lamella.surface.found.chart import make_chart
 from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.film import Film, Loop, harmonic_over_itself
-from lamella.surface.found.letting_go import held, let_go
+from lamella.surface.found.held_loop import held
+from lamella.surface.found.letting_go import let_go
 from lamella.surface.found.limits import refuse_apart
 from lamella.surface.found.loop_path import BreakError, along_flat, along_loops, are_apart, drawn_together, is_moved
 from lamella.surface.found.meshing import renewed, start_film
-from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError, find_equilibrium
+from lamella.surface.found.newton import Detail, Equilibrium, find_equilibrium
+from lamella.surface.found.no_film import NoFilmError, SearchError
 
 # Newton steps from the harmonic start before a path is taken
 DIRECT_STEPS = 12
@@ -30,24 +32,6 @@ AREA_ROUNDS = 4
 SHARES = (0.6, 0.4, 0.25, 0.15, 0.08)
 # of those, how many are followed to the given loops
 MOST_PATHS = 2
-
-
-class SearchError(ArithmeticError):
-    """No film was found.
-
-    Attributes
-    ----------
-    reasons : tuple of str
-        How far each way went.
-    fold : float or None
-        H at which the stable films from the minimal one turn back, 1/m.
-    steps : int
-        Newton steps.
-    """
-
-    def __init__(self, reasons: tuple[str, ...], fold: float | None, steps: int) -> None:
-        super().__init__("; ".join(reasons))
-        self.reasons, self.fold, self.steps = reasons, fold, steps
 
 
 @dataclass(frozen=True)
@@ -75,6 +59,8 @@ class FirstFilm:
         Where ways ended.
     fold : float or None
         See `SearchError`.
+    calm : bool
+        Whether a film without pressure was found on the way to one of a volume.
     """
 
     loops: tuple[Loop, ...]
@@ -83,6 +69,7 @@ class FirstFilm:
     steps: int = 0
     reasons: list[str] = field(default_factory=list)
     fold: float | None = None
+    calm: bool = False
 
     def of_curvature(self, mean_curvature: float, *, unstable: bool = False) -> First:
         """The film of a mean curvature (1/m), the stable or the unstable one.
@@ -105,7 +92,7 @@ class FirstFilm:
 
     def _starts(self, mean_curvature: float) -> Iterator[Equilibrium]:
         """Films in the given loops, of the wanted mean curvature or without pressure, the shorter ways first."""
-        yield from self._from_held(lambda held: held.of_curvature(mean_curvature), None)
+        yield from self._from_held(mean_curvature, None)
         minimal = not self._no_minimal()
         if mean_curvature and minimal:
             calm = self._direct(self.loops, 0.0)
@@ -129,7 +116,7 @@ class FirstFilm:
         calm = self._direct(self.loops, 0.0) if minimal else None
         if calm and (first := self._inflated(calm, volume)):
             return first
-        for start in self._from_held(lambda held: held.of_volume(volume + self._lids_apart()), volume):
+        for start in self._from_held(0.0, volume):
             return First(start, self.steps, True)
         for start in self._from_drawn(0.0, volume):
             return First(start, self.steps, True)
@@ -143,6 +130,7 @@ class FirstFilm:
         try:
             reached = to_volume(calm, volume, self.progress)
         except NoFilmError as error:
+            self.calm = True
             self._tell(f"followed from the film without pressure: {error}")
             return None
         return First(reached.equilibrium, self.steps + reached.steps, True)
@@ -252,31 +240,40 @@ class FirstFilm:
         self.steps += reached.steps
         return reached.equilibrium
 
-    def _from_held(self, search: Callable[[FirstFilm], First], volume: float | None) -> Iterator[Equilibrium]:
-        """The film with its sliding edges held where they are drawn, and then let go."""
+    def _from_held(self, mean_curvature: float, volume: float | None) -> Iterator[Equilibrium]:
+        """Films with the sliding edges held, near where they are drawn or straight, and then let go."""
         if not any(loop.slides for loop in self.loops):
             return
-        self.progress("    the sliding edges are held, and let go little by little")
-        there = FirstFilm(held(self.loops), self.order, self.progress)
-        try:
-            first = search(there)
-        except SearchError as error:
-            self.steps += error.steps
-            self._tell(f"with its sliding edges held: {error}")
-            return
-        self.steps += there.steps
-        try:
-            reached = let_go(first.equilibrium, self.loops, volume, self.progress)
-        except NoFilmError as error:
-            self._tell(f"from its sliding edges held: {error}")
-            return
-        self.steps += reached.steps
-        yield reached.equilibrium
+        near, straight = held(self.loops), held(self.loops, straight=True)
+        for loops in (near, straight) if is_moved(near, straight) else (near,):
+            self.progress("    the sliding edges are held, and let go little by little")
+            there = FirstFilm(loops, self.order, self.progress)
+            try:
+                if volume is None:
+                    start = there.of_curvature(mean_curvature).equilibrium
+                else:
+                    start = there.of_volume(volume + self._lids_apart(loops)).equilibrium
+            except SearchError as error:
+                self.steps += error.steps
+                self._tell(f"with its sliding edges held: {error}")
+                continue
+            self.steps += there.steps
+            # where the pressure that is held drives the edges away, the volume may hold them
+            own = enclosed_volume(replace(start.film, loops=self.loops))
+            for fixed in (None, own) if volume is None else (volume,):
+                try:
+                    reached = let_go(start, self.loops, fixed, self.progress)
+                except NoFilmError as error:
+                    kept = "mean curvature" if fixed is None else "volume"
+                    self._tell(f"from its sliding edges held, which are let go at the same {kept}: {error}")
+                else:
+                    self.steps += reached.steps
+                    yield reached.equilibrium
 
-    def _lids_apart(self) -> float:
-        """By how much the volume of a film is larger (m^3) where its loops are held: their lids are others."""
-        film = start_film(make_chart(self.loops), self.loops, self.order)
-        return enclosed_volume(replace(film, loops=held(self.loops))) - enclosed_volume(film)
+    def _lids_apart(self, loops: tuple[Loop, ...]) -> float:
+        """By how much the volume of a film is larger (m^3) in loops that are held: their lids are others."""
+        film = start_film(make_chart(loops), loops, self.order)
+        return enclosed_volume(film) - enclosed_volume(replace(film, loops=self.loops))
 
     def _from_drawn(self, mean_curvature: float, volume: float | None = None) -> Iterator[Equilibrium]:
         """Films in the given loops, followed from the same loops drawn together."""

@@ -1,6 +1,6 @@
 """Films with sliding edges, from the film of the same edges held: these are let go little by little.
 
-Let go at once, an edge that is drawn far from where its film has it runs away from the elements. So the edges are held
+Let go at once, an edge that is held far from where its film has it runs away from the elements. So the edges are held
 by springs where the film last had them, whose stiffness falls from film to film: with stiffness c per length an edge
 moves by sin(a) / c, where the film meets its support a away from 90 degrees. That is the proximal point method
 (Rockafellar, SIAM J. Control Optim. 14 (1976), 877-898, doi:10.1137/0314056): each film is the least of area, pressure
@@ -9,14 +9,13 @@ and springs, and the last ones need no springs.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from lamella.surface.found.along_family import Reached
 from lamella.surface.found.enclosed import enclosed_volume
-from lamella.surface.found.film import Film, Loop, Slide
+from lamella.surface.found.film import Film, Loop
 from lamella.surface.found.meshing import is_worn, renewed
 from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError, find_equilibrium
 from lamella.surface.points import Floats
@@ -25,45 +24,8 @@ from lamella.surface.points import Floats
 FIRST, FALL, RISE, MOST, LEAST = 10.0, 4.0, 8.0, 1e6, 1e-3
 # films on the way, and Newton steps of one
 MOST_FILMS, MANY = 60, 15
-# a rim that moves less than this, over the film's size, is tried without springs
-CALM = 0.02
-
-
-@dataclass(frozen=True)
-class HeldLoop:
-    """A loop whose sliding parts are held where they are drawn.
-
-    Attributes
-    ----------
-    loop : Loop
-    """
-
-    loop: Loop
-    slides: Sequence[Slide] = ()
-
-    @property
-    def name(self) -> str:
-        """Name in the project."""
-        return self.loop.name
-
-    @property
-    def length(self) -> float:
-        """m."""
-        return self.loop.length
-
-    @property
-    def corners(self) -> Floats:
-        """Parameters of the corners, sorted."""
-        return self.loop.corners
-
-    def at(self, t: Floats) -> Floats:
-        """Points (n, 3), m."""
-        return self.loop.at(t)
-
-
-def held(loops: tuple[Loop, ...]) -> tuple[Loop, ...]:
-    """The loops with nothing free to slide."""
-    return tuple(HeldLoop(loop) if loop.slides else loop for loop in loops)
+# once the springs' largest force is below this part of the film's tension, the film is tried without them
+CALM = 0.05
 
 
 def let_go(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, detail: Detail) -> Reached:
@@ -72,7 +34,7 @@ def let_go(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, de
     Parameters
     ----------
     start : Equilibrium
-        In the loops held, see `held`.
+        In the loops held, see `lamella.surface.found.held_loop.held`.
     loops : tuple of Loop
     volume : float or None
         m^3; None: H stays.
@@ -114,8 +76,8 @@ def let_go(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, de
         steps += there.steps
         moved = np.linalg.norm(there.film.nodes - film.nodes, axis=1)[film.connectivity.rim_nodes].max()
         detail(f"    edges held with {stiffness * size:.3g} over the film's size move by {moved:.3g} m")
-        film, curvature, stiffness = there.film, there.mean_curvature, stiffness / FALL
-        calm = bool(moved < CALM * size)
+        film, curvature, calm = there.film, there.mean_curvature, bool(moved * stiffness < CALM)
+        stiffness /= FALL
         if is_worn(film):
             film = renewed(film)
     raise NoFilmError(f"the sliding edges find no place in {MOST_FILMS} films", film)

@@ -9,8 +9,8 @@ With the second variation K of A + 2 H V, its gradient g and that of the volume 
 The last one is not symmetric. With the symmetric border w it takes two right-hand sides: the multiplier of w has to
 vanish. It is regular at folds of H and of the volume alike.
 
-Springs may hold the nodes back: with stiffness c_i of node i, c_i is added to the diagonal of K and c_i (x_i - x_i0) . d_i
-to g, x_i0 being where the search begins (`lamella.surface.found.letting_go`).
+Springs may hold the nodes back: with stiffness c_i of node i, c_i is added to the diagonal of K and c_i s_i to g, s_i
+being its shift since the search began, summed along its directions (`lamella.surface.found.letting_go`).
 
 Near a fold Newton's steps only halve the error. Where H is given and a step leaves much of the residual, the same
 factorisation is used once more at its end (Potra and Ptak, Nondiscrete Induction and Iterative Processes (1984),
@@ -128,6 +128,7 @@ def find_equilibrium(
     moves: list[float] = []
     swept = 0.0
     begin = film.nodes
+    shifted = np.zeros(len(free))
     directions = film.directions()
     variation = Variation(film.connectivity, directions)
     first = variation.first(film.nodes)
@@ -135,7 +136,7 @@ def find_equilibrium(
     def pull(nodes: Floats, there: FirstVariation, curvature: float) -> Floats:
         total = there.area_gradient + 2 * curvature * there.volume_gradient
         if springs is not None:
-            total = total + springs * ((nodes - begin) * directions).sum(1)
+            total = total + springs * (shifted + ((nodes - film.nodes) * directions).sum(1))
         return np.asarray(total)
 
     for step in range(most_steps):
@@ -170,6 +171,7 @@ def find_equilibrium(
         free_to_rise = volume is not None or way is not None
         there = partial(pull, curvature=mean_curvature + change)
         film, first, share = _search(film, variation, first, shift, slope, there, not free_to_rise)
+        shifted += share * shift
         mean_curvature += share * change
         if volume is not None:
             swept += _swept(film, variation, shift, share)
@@ -183,6 +185,7 @@ def find_equilibrium(
                 with suppress(NoFilmError):
                     film, first, part = _search(film, variation, first, more, slope, there, True)
                     shift += part * more
+                    shifted += part * more
         move = float(np.abs(shift).max()) * share
         moves.append(move)
         detail(

@@ -52,6 +52,11 @@ class SlidRim:
         return self.loop.corners
 
     @property
+    def smooth(self) -> NDArray[np.bool_]:
+        """Which corners are none to the eye, see `lamella.surface.boundary.curve.Loop`."""
+        return self.loop.smooth
+
+    @property
     def slides(self) -> Sequence[Slide]:
         """Parts that are free to slide."""
         return self.loop.slides
