@@ -15,7 +15,7 @@ from lamella.surface.boundary import make_loop
 from lamella.surface.boundary.arcs import circle
 from lamella.surface.found.along_family import to_curvature
 from lamella.surface.found.enclosed import enclosed_volume
-from lamella.surface.found.find import find_film
+from lamella.surface.found.find import find_film, notes_on
 from lamella.surface.found.newton import find_equilibrium
 from surface.found.exact_patches import ring
 from surface.found.films import random_places, start
@@ -82,6 +82,28 @@ class TestCylinderAtPi:
         r, z = profile(found, length)
         assert np.abs(r - Piece(2 - bulge, bulge, 1.0, about_bulge=True).radius_at(z)).max() < 1e-3
         assert r.max() > 1.01
+
+
+@pytest.mark.parametrize("part", [0.98, 0.995, 1.005, 1.02])
+def test_the_other_film_is_told_with_its_distance(part) -> None:
+    """Cylinder and unduloid of one H: the estimate is exact to first order in the distance from pi radii."""
+    length = part * np.pi
+    found = find_film(between(1.0, length), 0.5)
+    about_bulge = part > 1
+    bulge = brentq(lambda b: Piece(2 - b, b, 1.0, about_bulge=about_bulge).length - length, 1.001, 1.2)
+    assert found.stability.beside == pytest.approx(bulge - 1, rel=4 * abs(part - 1))
+    (note,) = notes_on(found)
+    assert "another surface of the same mean curvature is beside this one" in note
+    assert 'branch = "unstable" finds the other' in note
+
+
+def test_no_other_film_is_told_where_none_is_near() -> None:
+    found = find_film(between(1.0, 2.0), 0.5)
+    assert found.stability.beside > 0.1
+    assert not notes_on(found)
+    # of a volume there is one
+    held = find_film(between(1.0, 1.005 * np.pi), volume=-1.005 * np.pi**2)
+    assert not any("beside" in note for note in notes_on(held, given_curvature=False))
 
 
 @pytest.mark.parametrize(
