@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from lamella.errors import InputError
 from lamella.surface.boundary import Sliding, make_loop
 from lamella.surface.boundary.arcs import bulge_arc
 from lamella.surface.boundary.pieces import lines, stack
@@ -74,6 +75,17 @@ def test_behind_pi_radii_the_stable_film_bulges() -> None:
     bulge = brentq(lambda b: Piece(2 * R - b, b, R, about_bulge=True).length - length, 1.001 * R, 1.2 * R)
     r, x = profile(found, length)
     assert np.abs(r - Piece(2 * R - bulge, bulge, R, about_bulge=True).radius_at(x)).max() < 1e-3 * R
+
+
+def test_where_no_stable_film_is_the_unstable_one_is_told() -> None:
+    """At 4 radii bulging vaults of H = 1 / (2 R) are gone too: a sphere of radius 2 R is 3.46 R long there."""
+    length = 16.0
+    with pytest.raises(InputError, match="there is an unstable surface") as error:
+        find_film(vault(length), 1 / (2 * R))
+    assert 'branch = "unstable"' in error.value.remedy
+    assert error.value.where == "surface.branch"
+    own = float(error.value.remedy.split("its own is ")[1].split()[0])
+    assert own == pytest.approx(-np.pi * R**2 * length / 2, rel=1e-3)
 
 
 @pytest.mark.parametrize("drawn", [2.5, 5.0, 6.0])

@@ -26,6 +26,8 @@ from lamella.surface.found.no_film import NoFilmError, SearchError
 
 # Newton steps from the harmonic start before a path is taken
 DIRECT_STEPS = 12
+# H times the film's size, of a film followed at fixed volume: it is the wanted one but for rounding
+NEARLY = 1e-3
 # times that elements are made anew on the way to a film
 AREA_ROUNDS = 4
 # shares of the way from loops drawn together to the given ones at which a film is looked for
@@ -61,6 +63,8 @@ class FirstFilm:
         See `SearchError`.
     calm : bool
         Whether a film without pressure was found on the way to one of a volume.
+    unstable : Equilibrium or None
+        An unstable film of the wanted mean curvature that was found on the way to a stable one.
     """
 
     loops: tuple[Loop, ...]
@@ -70,6 +74,7 @@ class FirstFilm:
     reasons: list[str] = field(default_factory=list)
     fold: float | None = None
     calm: bool = False
+    unstable: Equilibrium | None = None
 
     def of_curvature(self, mean_curvature: float, *, unstable: bool = False) -> First:
         """The film of a mean curvature (1/m), the stable or the unstable one.
@@ -86,6 +91,8 @@ class FirstFilm:
             at_target = abs(start.mean_curvature - mean_curvature) * start.film.size < 1e-9
             if at_target and (start.negative > 0) == unstable:
                 return First(start, self.steps, True)
+            if at_target and not unstable:
+                self.unstable = start
             with suppress(NoFilmError, FoldError):
                 return self._followed(start, mean_curvature, unstable)
         raise SearchError(tuple(self.reasons), self.fold, self.steps)
@@ -138,6 +145,9 @@ class FirstFilm:
     def exists(self, mean_curvature: float) -> bool:
         """Whether a short search finds a film of a mean curvature (1/m)."""
         if self._direct(self.loops, mean_curvature):
+            return True
+        let = next(self._from_held(mean_curvature, None), None)
+        if let and let.mean_curvature == mean_curvature:
             return True
         # where there is a film without pressure, it is from there that one is missing, not for the sign
         return self._no_minimal() and next(self._from_drawn(mean_curvature), None) is not None
@@ -213,6 +223,9 @@ class FirstFilm:
 
     def _minimal(self) -> Equilibrium | None:
         """A minimal film: with elements made anew on the way, by lowering the area first, or from flat loops."""
+        if any(loop.slides for loop in self.loops):
+            # on these ways the edges run away: they were held, and let go
+            return None
         chart = make_chart(self.loops)
         for rounds in (0, 20):
             try:
@@ -268,7 +281,20 @@ class FirstFilm:
                     self._tell(f"from its sliding edges held, which are let go at the same {kept}: {error}")
                 else:
                     self.steps += reached.steps
-                    yield reached.equilibrium
+                    yield (
+                        reached.equilibrium
+                        if volume is not None
+                        else self._exactly(reached.equilibrium, mean_curvature)
+                    )
+
+    def _exactly(self, here: Equilibrium, mean_curvature: float) -> Equilibrium:
+        """A film of very nearly a mean curvature (1/m), stable or not, with that one."""
+        if abs(here.mean_curvature - mean_curvature) * here.film.size > NEARLY:
+            return here
+        try:
+            return find_equilibrium(here.film, mean_curvature, stable=False, most_steps=DIRECT_STEPS)
+        except NoFilmError:
+            return here
 
     def _lids_apart(self, loops: tuple[Loop, ...]) -> float:
         """By how much the volume of a film is larger (m^3) in loops that are held: their lids are others."""

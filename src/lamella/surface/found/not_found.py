@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from lamella.errors import InputError
+from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.first_film import FirstFilm
 from lamella.surface.found.no_film import SearchError
 
@@ -27,6 +28,14 @@ def not_found(
         return InputError(
             f"{wanted}: the search did not arrive at an unstable surface; {MAY_EXIST}. {went}",
             'leave branch out, or write branch = "stable"',
+            "surface.branch",
+        )
+    if search.unstable:
+        inside = enclosed_volume(search.unstable.film)
+        return InputError(
+            f"{wanted}: there is an unstable surface ({search.unstable.negative} negative eigenvalues of its second "
+            f"variation: a soap film would leave it), but the search did not arrive at a stable one. {went}",
+            f'write branch = "unstable" to take it, or give a volume instead (its own is {inside:.6g} m3)',
             "surface.branch",
         )
     if not mean_curvature:
