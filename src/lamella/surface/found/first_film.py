@@ -9,15 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from lamella.errors import InputError
 from lamella.surface.found.along_family import FoldError, Reached, to_curvature, to_volume
 from lamella.surface.found.chart import make_chart
-from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.film import Film, Loop, harmonic_over_itself
-from lamella.surface.found.held_loop import held
-from lamella.surface.found.letting_go import let_go
+from lamella.surface.found.from_held import from_held
 from lamella.surface.found.limits import refuse_apart
 from lamella.surface.found.loop_path import BreakError, along_flat, along_loops, are_apart, drawn_together, is_moved
 from lamella.surface.found.meshing import renewed, start_film
@@ -26,8 +24,6 @@ from lamella.surface.found.no_film import NoFilmError, SearchError
 
 # Newton steps from the harmonic start before a path is taken
 DIRECT_STEPS = 12
-# H times the film's size, of a film followed at fixed volume: it is the wanted one but for rounding
-NEARLY = 1e-3
 # times that elements are made anew on the way to a film
 AREA_ROUNDS = 4
 # shares of the way from loops drawn together to the given ones at which a film is looked for
@@ -138,7 +134,7 @@ class FirstFilm:
             reached = to_volume(calm, volume, self.progress)
         except NoFilmError as error:
             self.calm = True
-            self._tell(f"followed from the film without pressure: {error}")
+            self.tell(f"followed from the film without pressure: {error}")
             return None
         return First(reached.equilibrium, self.steps + reached.steps, True)
 
@@ -159,15 +155,16 @@ class FirstFilm:
         except FoldError as fold:
             self.steps += fold.steps
             self.fold = fold.mean_curvature
-            self._tell(f"followed from H = {start.mean_curvature:.5g} 1/m {fold} (an estimate)")
+            self.tell(f"followed from H = {start.mean_curvature:.5g} 1/m {fold} (an estimate)")
             raise
         except NoFilmError as error:
-            self._tell(f"followed from H = {start.mean_curvature:.5g} 1/m: {error}")
+            self.tell(f"followed from H = {start.mean_curvature:.5g} 1/m: {error}")
             raise
         self.steps += reached.steps
         return First(reached.equilibrium, self.steps, True)
 
-    def _tell(self, reason: str) -> None:
+    def tell(self, reason: str) -> None:
+        """Note where a way ended, once."""
         self.progress(f"    {reason}")
         if reason not in self.reasons:
             self.reasons.append(reason)
@@ -245,7 +242,7 @@ class FirstFilm:
             reached = along_flat(chart, self.loops, self.order, self.progress)
         except BreakError as error:
             self.steps += error.steps
-            self._tell(
+            self.tell(
                 f"followed from flat loops to the given ones the films without pressure break at {error.share:.3g} of "
                 f"the way ({error})"
             )
@@ -254,52 +251,9 @@ class FirstFilm:
         return reached.equilibrium
 
     def _from_held(self, mean_curvature: float, volume: float | None) -> Iterator[Equilibrium]:
-        """Films with the sliding edges held, near where they are drawn or straight, and then let go."""
-        if not any(loop.slides for loop in self.loops):
-            return
-        near, straight = held(self.loops), held(self.loops, straight=True)
-        for loops in (near, straight) if is_moved(near, straight) else (near,):
-            self.progress("    the sliding edges are held, and let go little by little")
-            there = FirstFilm(loops, self.order, self.progress)
-            try:
-                if volume is None:
-                    start = there.of_curvature(mean_curvature).equilibrium
-                else:
-                    start = there.of_volume(volume + self._lids_apart(loops)).equilibrium
-            except SearchError as error:
-                self.steps += error.steps
-                self._tell(f"with its sliding edges held: {error}")
-                continue
-            self.steps += there.steps
-            # where the pressure that is held drives the edges away, the volume may hold them
-            own = enclosed_volume(replace(start.film, loops=self.loops))
-            for fixed in (None, own) if volume is None else (volume,):
-                try:
-                    reached = let_go(start, self.loops, fixed, self.progress)
-                except NoFilmError as error:
-                    kept = "mean curvature" if fixed is None else "volume"
-                    self._tell(f"from its sliding edges held, which are let go at the same {kept}: {error}")
-                else:
-                    self.steps += reached.steps
-                    yield (
-                        reached.equilibrium
-                        if volume is not None
-                        else self._exactly(reached.equilibrium, mean_curvature)
-                    )
-
-    def _exactly(self, here: Equilibrium, mean_curvature: float) -> Equilibrium:
-        """A film of very nearly a mean curvature (1/m), stable or not, with that one."""
-        if abs(here.mean_curvature - mean_curvature) * here.film.size > NEARLY:
-            return here
-        try:
-            return find_equilibrium(here.film, mean_curvature, stable=False, most_steps=DIRECT_STEPS)
-        except NoFilmError:
-            return here
-
-    def _lids_apart(self, loops: tuple[Loop, ...]) -> float:
-        """By how much the volume of a film is larger (m^3) in loops that are held: their lids are others."""
-        film = start_film(make_chart(loops), loops, self.order)
-        return enclosed_volume(film) - enclosed_volume(replace(film, loops=self.loops))
+        """Films with the sliding edges held, and then let go."""
+        if any(loop.slides for loop in self.loops):
+            yield from from_held(self, mean_curvature, volume)
 
     def _from_drawn(self, mean_curvature: float, volume: float | None = None) -> Iterator[Equilibrium]:
         """Films in the given loops, followed from the same loops drawn together."""
@@ -324,7 +278,7 @@ class FirstFilm:
                 )
             except BreakError as error:
                 self.steps += error.steps
-                self._tell(
+                self.tell(
                     f"followed from loops drawn together to {share:g} of their distance the films break at "
                     f"{error.share:.3g} of it ({error})"
                 )
