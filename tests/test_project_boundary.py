@@ -228,8 +228,9 @@ def test_loops_from_tables() -> None:
     square = "[[surface.boundary]]\npoints = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0], [0, 0, 0]]\n"
     (loop,) = loops_of(HEAD + square + "interpolation = 'polyline'\nname = 'box'\n")
     assert (loop.name, loop.length, len(loop.corners)) == ("box", pytest.approx(16), 4)
+    # a cubic spline: its points are corners to the elements alone
     (loop,) = loops_of(HEAD + square)
-    assert len(loop.corners) == 0
+    assert loop.smooth.all()
     (loop,) = loops_of(HEAD + RING.replace("radius = 3", "radius = 3, normal = [1, 0, 0]"))
     np.testing.assert_allclose(loop.at([0.1, 0.7])[:, 0], 0, atol=1e-15)
     # counter-clockwise about +x

@@ -218,7 +218,8 @@ class FormFoundTable(Table):
     )
     volume: float | None = number(
         "Enclosed volume, with lids over the loops, instead of mean_curvature; above 0 on the side the normal points "
-        "to: a dome over a counter-clockwise loop.",
+        "to: a dome over a counter-clockwise loop. Where parts of a loop slide, each part has a lid of its own: a "
+        "vault's volume is between it, the ground and the planes of its arches.",
         "m3",
         ge=-1e12,
         le=1e12,

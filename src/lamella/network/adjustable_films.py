@@ -68,7 +68,8 @@ class Films:
             branch=table.branch,
             most_nodes=table.most_nodes,
         )
-        surface = found.surface("form-found", notes_on(found), tolerance=table.tolerance)
+        notes = notes_on(found, given_curvature=table.volume is None)
+        surface = found.surface("form-found", notes, tolerance=table.tolerance)
         return FilmNet.of(shares, found.equilibrium, surface, self.pattern)
 
     def first(self, tolerance: float) -> FilmNet:

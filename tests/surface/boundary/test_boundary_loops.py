@@ -143,7 +143,7 @@ def test_closed_splines_pass_through_their_points(n: int) -> None:
     loop = make_loop("s", closed_spline(points))
     joints = loop.course.joints / loop.length
     np.testing.assert_allclose(loop.at(joints), points, rtol=0, atol=1e-12)
-    assert len(loop.corners) == 0
+    assert loop.smooth.all()
     assert loop.course.pieces.degree == (5 if n >= 7 else 3)
 
 
@@ -330,3 +330,31 @@ def test_curves_that_are_none() -> None:
         assert words in refused.value.message
         assert refused.value.where == "here"
         assert refused.value.remedy
+
+
+@pytest.mark.parametrize("n", [4, 5, 6])
+def test_few_points_of_a_spline_are_corners_that_are_smooth(n: int) -> None:
+    """A cubic's third derivative jumps at its points: elements end there, curvatures are measured up to them."""
+    points = saddle(n)
+    loop = make_loop("s", closed_spline(points))
+    assert loop.at(loop.corners) == pytest.approx(points, abs=1e-9)
+    assert loop.smooth.all()
+    assert loop.turns == pytest.approx(np.zeros(n), abs=1e-6)
+    assert loop.reversed().smooth.all()
+
+
+def test_curves_smoother_than_that_have_no_corners() -> None:
+    """Quintics, circles, and cubics of many points, whose knots are closer than elements are."""
+    n = 200
+    t = np.append(np.linspace(0, 1, n, endpoint=False), 1.0)
+    ring = np.vstack([saddle(n), saddle(n)[:1]])
+    many = make_interp_spline(t, ring, k=3, bc_type="periodic")
+    cubics = bezier(many.t, 3, many.c)
+    for pieces in (closed_spline(saddle(7)), circle(np.zeros(3), 2.0, Z), cubics):
+        assert not len(make_loop("s", pieces).corners)
+
+
+def test_polygons_corners_are_none_but_corners() -> None:
+    loop = make_loop("p", lines(saddle(5), closed=True))
+    assert len(loop.smooth) == 5
+    assert not loop.smooth.any()

@@ -33,6 +33,7 @@ class ArcLength:
         d /= d[-1]
         at = np.searchsorted(s, stops)
         self.corners = d[at[:-1]] if len(corners) else np.array([])
+        self.smooth = np.zeros(len(self.corners), bool)
         self._stops = d[at]
         self._inverse = [CubicSpline(d[a : b + 1], s[a : b + 1]) for a, b in pairwise(at)]
 

@@ -28,6 +28,13 @@ def waving(height: float):
     return make_loop("rim", closed_spline(np.column_stack([np.cos(t), np.sin(t), height * np.cos(3 * t)])))
 
 
+def waisted():
+    """A rim whose plan is not convex: that no theorem gives one film alone."""
+    t = TAU * np.arange(48) / 48
+    r = 1 + 0.4 * np.cos(2 * t)
+    return make_loop("rim", closed_spline(np.column_stack([r * np.cos(t), r * np.sin(t), 0.2 * np.cos(3 * t)])))
+
+
 def test_details_become_lines_after_two_seconds(monkeypatch) -> None:
     now = [0.0]
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
@@ -77,7 +84,7 @@ def test_unstable_film_that_the_search_does_not_find() -> None:
     with pytest.raises(
         InputError, match="the search did not arrive at an unstable surface; no bound is broken"
     ) as error:
-        find_film((waving(0.2),), branch="unstable")
+        find_film((waisted(),), branch="unstable")
     assert error.value.where == "surface.branch"
 
 

@@ -8,18 +8,18 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq, fsolve
+from scipy.optimize import brentq
 
 from lamella.errors import InputError
 from lamella.surface.boundary import make_loop
 from lamella.surface.boundary.arcs import circle
-from lamella.surface.delaunay import Delaunay
 from lamella.surface.found.along_family import to_curvature
 from lamella.surface.found.enclosed import enclosed_volume
-from lamella.surface.found.find import find_film
+from lamella.surface.found.find import find_film, notes_on
 from lamella.surface.found.newton import find_equilibrium
 from surface.found.exact_patches import ring
 from surface.found.films import random_places, start
+from surface.found.unduloid_pieces import Piece, unduloid_of_volume
 
 
 def between(radius: float, length: float):
@@ -31,43 +31,6 @@ def profile(found, length: float):
     """Radius and height over the middle at random places."""
     x = found.surface("x").at(random_places(found.equilibrium.film, 20_000)).position
     return np.hypot(x[:, 0], x[:, 1]), x[:, 2] - length / 2
-
-
-class Piece:
-    """Of an unduloid, symmetric about its neck or its bulge, between rings of a radius."""
-
-    def __init__(self, neck: float, bulge: float, radius: float, *, about_bulge: bool) -> None:
-        self.surface = Delaunay(neck, bulge, 1)
-        self.middle = self.surface.period / 2 if about_bulge else 0.0
-        lift = self._at(self.middle)[1]
-        self._lift = lift
-        self.end = brentq(lambda u: self._at(self.middle + u)[0] - radius, 1e-9, self.surface.period / 2)
-        u = np.polynomial.legendre.leggauss(60)
-        s = self.end * (u[0] + 1) / 2
-        p = self.surface.profile(self.middle + s)
-        # half of it: integral of pi r^2 dz, with z_U as given by the profile
-        self.volume = float(2 * np.pi * (p.r**2 * p.z_u * u[1]).sum() * self.end / 2)
-        self.length = 2 * (self._at(self.middle + self.end)[1] - lift)
-
-    def _at(self, u: float):
-        p = self.surface.profile(np.array([u]))
-        return float(p.r[0]), float(p.z[0])
-
-    def radius_at(self, height):
-        """By interpolation of the exact meridian."""
-        s = np.linspace(0, self.end, 4001)
-        p = self.surface.profile(self.middle + s)
-        return np.interp(np.abs(height), p.z - self._lift, p.r)
-
-
-def unduloid_of_volume(radius: float, length: float, volume: float, *, about_bulge: bool) -> Piece:
-    def off(x):
-        piece = Piece(float(x[0]), float(x[1]), radius, about_bulge=about_bulge)
-        return [piece.length / length - 1, piece.volume / volume - 1]
-
-    part = volume / (np.pi * radius**2 * length)
-    guess = (radius * 0.999, radius * part**0.7) if about_bulge else (radius * part**0.7, radius * (2 - part**0.7))
-    return Piece(*fsolve(off, guess, xtol=1e-12), radius, about_bulge=about_bulge)
 
 
 @pytest.mark.parametrize(("radius", "length"), [(3.0, 8.0), (1.0, 3.0)])
@@ -119,6 +82,28 @@ class TestCylinderAtPi:
         r, z = profile(found, length)
         assert np.abs(r - Piece(2 - bulge, bulge, 1.0, about_bulge=True).radius_at(z)).max() < 1e-3
         assert r.max() > 1.01
+
+
+@pytest.mark.parametrize("part", [0.98, 0.995, 1.005, 1.02])
+def test_the_other_film_is_told_with_its_distance(part) -> None:
+    """Cylinder and unduloid of one H: the estimate is exact to first order in the distance from pi radii."""
+    length = part * np.pi
+    found = find_film(between(1.0, length), 0.5)
+    about_bulge = part > 1
+    bulge = brentq(lambda b: Piece(2 - b, b, 1.0, about_bulge=about_bulge).length - length, 1.001, 1.2)
+    assert found.stability.beside == pytest.approx(bulge - 1, rel=4 * abs(part - 1))
+    (note,) = notes_on(found)
+    assert "another surface of the same mean curvature is beside this one" in note
+    assert 'branch = "unstable" finds the other' in note
+
+
+def test_no_other_film_is_told_where_none_is_near() -> None:
+    found = find_film(between(1.0, 2.0), 0.5)
+    assert found.stability.beside > 0.1
+    assert not notes_on(found)
+    # of a volume there is one
+    held = find_film(between(1.0, 1.005 * np.pi), volume=-1.005 * np.pi**2)
+    assert not any("beside" in note for note in notes_on(held, given_curvature=False))
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lamella.errors import InputError
 from lamella.surface.boundary.course import Course
@@ -23,6 +23,12 @@ also what drawings that are rounded to micrometres leave at tangent joints.
 CURVATURE_JUMP = 1e-2
 """Over the loop's length. A larger jump of the curvature is a corner, tangent or not: where a line goes over into an
 arc the curvature of a film has a logarithm, which no polynomial follows, and no element may run across.
+"""
+
+THIRD_JUMP, KNOT_GAP = 1.0, 1 / 30
+"""Over the loop's length squared; of its length. A cubic spline's third derivative jumps at its points, by 250 / n over
+n of them on a circle, and the curvature of a film with it in all directions: no element should run across either. Knots
+that lie closer than the gap jump less, and would ask for more elements than they save.
 """
 
 _STANDSTILL = 1e-9
@@ -60,10 +66,13 @@ class Loop:
     course : Course
         The exact curve.
     corners : (c,)
-        t where the tangent jumps by more than `CORNER_ANGLE`, the curvature by more than `CURVATURE_JUMP`, or a sliding
-        part begins or ends; sorted.
+        t where the tangent jumps by more than `CORNER_ANGLE`, the curvature by more than `CURVATURE_JUMP`, its
+        derivative by more than `THIRD_JUMP`, or a sliding part begins or ends; sorted.
     turns : (c,)
         Jump of the tangent at each corner, radians in 0..pi.
+    smooth : (c,) bool
+        Which corners are none to the eye: only the curvature's derivative jumps there, and a film's curvature is
+        bounded.
     slides : tuple of Slide
     """
 
@@ -71,6 +80,7 @@ class Loop:
     course: Course = field(repr=False)
     corners: Floats
     turns: Floats
+    smooth: NDArray[np.bool_]
     slides: tuple[Slide, ...] = ()
 
     @property
@@ -126,7 +136,7 @@ class Loop:
             start = (1.0 - slide.end) % 1.0
             slides.append(replace(slide, start=start, end=start + slide.end - slide.start))
         pieces = self.course.pieces.reversed().transformed(1.0, self.course.origin)
-        return Loop(self.name, Course(pieces), corners[order], self.turns[order], tuple(slides))
+        return Loop(self.name, Course(pieces), corners[order], self.turns[order], self.smooth[order], tuple(slides))
 
     def scaled(self, factor: float, shift: ArrayLike = (0.0, 0.0, 0.0)) -> Loop:
         """The loop of the points factor x + shift, factor > 0, shift (3,) in m."""
@@ -194,10 +204,15 @@ def make_loop(name: str, pieces: Pieces, sliding: Sequence[Sliding] = (), *, whe
     turn = angle_between(_unit(before), _unit(behind))
     jump = np.linalg.norm(_curvature(behind, bent_behind) - _curvature(before, bent_before), axis=1)
     corner = (turn > CORNER_ANGLE) | (jump * course.length > CURVATURE_JUMP)
+    joints = np.append(course.joints, course.length) / course.length
+    gap = np.diff(joints)
+    bend = np.linalg.norm(_curvature_slopes(course, 0.0) - np.roll(_curvature_slopes(course, 1.0), 1, 0), axis=1)
+    knot = ~corner & (bend * course.length**2 > THIRD_JUMP) & (np.minimum(gap, np.roll(gap, 1)) > KNOT_GAP)
     marks = [(part.first, part.first + part.count) for part in sliding if part.count < m]
     for first, last in marks:
         corner[[first, last % m]] = True
-    joints = np.append(course.joints, course.length) / course.length
+    knot &= ~corner
+    kept = corner | knot
     slides = tuple(
         Slide(
             float(joints[part.first]),
@@ -208,7 +223,7 @@ def make_loop(name: str, pieces: Pieces, sliding: Sequence[Sliding] = (), *, whe
         )
         for part in sliding
     )
-    return Loop(name, course, joints[:-1][corner], turn[corner], slides)
+    return Loop(name, course, joints[:-1][kept], turn[kept], knot[kept], slides)
 
 
 def _check_moving(called: str, course: Course, where: str) -> None:
@@ -243,6 +258,18 @@ def _curvature(first: Floats, second: Floats) -> Floats:
     """Curvature vectors (n, 3), 1/m, from derivatives by any parameter."""
     square = (first**2).sum(1)[:, None]
     return np.asarray((second - (second * first).sum(1)[:, None] / square * first) / square)
+
+
+def _curvature_slopes(course: Course, end: float) -> Floats:
+    """Derivatives by the arc length of the curvature vectors at the beginning (0) or end (1) of each piece, 1/m^2."""
+    m = course.pieces.count
+    # three values inside the piece: exact for a parabola
+    step = 1e-4 if end == 0 else -1e-4
+    speed = np.linalg.norm(course.pieces.evaluate(np.arange(m), np.full(m, end))[1], axis=1)[:, None]
+    at = [course.pieces.evaluate(np.arange(m), np.full(m, end + k * step))[1:] for k in range(3)]
+    a, b, c = (_curvature(first, second) for first, second in at)
+    slope = (-1.5 * a + 2 * b - 0.5 * c) / step
+    return np.asarray(slope / speed)
 
 
 def _unit(vectors: Floats) -> Floats:

@@ -20,8 +20,8 @@ CORNER_PART = 0.03
 LEAST_WEIGHED = 0.1
 # of the tolerance that a new mesh aims at, and the rings of neighbours that share their largest error
 AIM, RINGS = 0.6, 2
-# most an element's edge shrinks or grows at once, and how it goes on where that alone did not do
-SHRINK, GROW, SETTLE = 0.3, 1.6, 0.9
+# most an element's edge shrinks or grows at once; once the sizes have settled none grows
+SHRINK, GROW = 0.3, 1.6
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def away_from_corners(film: Film, points: Floats) -> NDArray[np.bool_]:
     """Which points (n, 3) are not next to a corner of the boundary."""
     result = np.ones(len(points), bool)
     for loop in film.loops:
-        corners = np.sort(np.asarray(loop.corners))
+        corners = np.sort(np.asarray(loop.corners)[~np.asarray(loop.smooth, bool)])
         if not len(corners):
             continue
         # no more than a part of the way to the next corner: a loop of many corners is checked between them
@@ -101,21 +101,23 @@ def refined_sizes(
 ) -> tuple[SizeField, bool]:
     """Sizes with which the tolerance should be kept, and whether a limit of nodes allows them.
 
-    The curvature of elements of order p is off by h^(p - 1).
+    The curvature of elements of order p is off by h^(p - 1); next to a knot, where the derivative of the boundary's
+    curvature jumps and the surface goes like r^3 log r, by h.
     """
     order = film.connectivity.basis.order
     corners = film.nodes[film.connectivity.faces]
     edges = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).mean(1)
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
     # an element counts with its neighbours: among alike ones the largest error sits in any of them
-    worst = deviation.of_element
+    knots = _near_knots(film, corners.mean(1), edges)
+    worst = np.where(knots, 0, deviation.of_element)
     for _ in range(RINGS):
         of_node = np.zeros(len(film.mesh.points))
         np.maximum.at(of_node, film.connectivity.faces, worst[:, None])
         worst = of_node[film.connectivity.faces].max(1)
-    factor = np.clip(
-        (AIM * tolerance / np.maximum(worst, 1e-300)) ** (1 / (order - 1)), SHRINK, GROW if coarsen else SETTLE
-    )
+    factor = (AIM * tolerance / np.maximum(worst, 1e-300)) ** (1 / (order - 1))
+    factor[knots] = np.minimum(factor, AIM * tolerance / np.maximum(deviation.of_element, 1e-300))[knots]
+    factor = np.clip(factor, SHRINK, GROW if coarsen else 1.0)
     wanted = np.maximum(edges * factor, CORNER_PART / 4 * film.size * _near_corner(film, corners.mean(1)))
     wanted = np.minimum(wanted, film.size / 6)
     field = SizeField(corners.mean(1), wanted)
@@ -124,6 +126,15 @@ def refined_sizes(
     if nodes <= most_nodes:
         return field, True
     return field.scaled(float(np.sqrt(nodes / most_nodes) * 1.02)), False
+
+
+def _near_knots(film: Film, points: Floats, sizes: Floats) -> NDArray[np.bool_]:
+    """Which elements, by their middles (n, 3) and sizes (n,), are next to a smooth corner of a loop."""
+    result = np.zeros(len(points), bool)
+    for loop in film.loops:
+        for knot in loop.at(np.asarray(loop.corners)[np.asarray(loop.smooth, bool)]):
+            result |= np.linalg.norm(points - knot, axis=1) < sizes
+    return result
 
 
 def _near_corner(film: Film, points: Floats) -> Floats:

@@ -10,6 +10,11 @@ from lamella.surface.found.family import MANY, Stretch, member_of, stretches
 from lamella.surface.found.film import Film
 from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError, Way, find_equilibrium
 
+# of its first size, of the radius 1 / H or of the volume's edge: a film larger than this many times has left for good
+FAR = 5.0
+# and of its first size, on the way to a film without pressure, which lies in the convex hull of its loops
+FAR_CALM = 2.0
+
 
 class FoldError(ArithmeticError):
     """The family of stable films turns back before the wanted mean curvature.
@@ -63,12 +68,13 @@ def to_curvature(start: Equilibrium, target: float, detail: Detail, *, unstable:
     """
     first = member_of(start.film, start.mean_curvature)
     away = target - start.mean_curvature
-    reach = 1 / abs(target) if target else 0.0
+    size = start.film.size
+    largest = FAR * max(size, 1 / abs(target)) if target else FAR_CALM * size
     if abs(away) * start.film.size < 1e-9:
         sides = [first, first.backwards()]
     else:
         sides = [first if (away < 0) == (first.rise < 0) else first.backwards()]
-    ways = [stretches(side, detail, reach) for side in sides]
+    ways = [stretches(side, detail, largest) for side in sides]
     steps = [0] * len(ways)
     ends: list[NoFilmError | FoldError] = []
     # both sides in turn: the nearer film comes first
@@ -120,7 +126,7 @@ def to_volume(start: Equilibrium, volume: float, detail: Detail) -> Reached:
     if (missing < 0) != (first.growth < 0):
         first = first.backwards()
     turned = 0
-    for stretch in stretches(first, detail, abs(volume) ** (1 / 3)):
+    for stretch in stretches(first, detail, FAR * max(start.film.size, abs(volume) ** (1 / 3))):
         for root in stretch.roots("volume", volume):
             with suppress(NoFilmError):
                 near = _part(stretch, float(root))

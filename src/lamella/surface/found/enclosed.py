@@ -1,8 +1,11 @@
 """The volume a film encloses, with lids over its loops, also where parts of these slide.
 
-With origin o the body has the volume 1/3 of the integral of (x - o) . N over its skin: the film, the lid of each loop
-as it was drawn (the cone from its centroid), and where a part has slid from L to R the strip between the two, in the
-plane or wall it slides on. A strip needs line integrals along both curves alone,
+With origin o the body has the volume 1/3 of the integral of (x - o) . N over its skin: the film, lids over its loops as
+they were drawn, and where a part has slid from L to R the strip between the two, in the plane or wall it slides on. A
+lid is the cone over a closed curve from its centroid. A loop that is held or slides as a whole has one; a loop of which
+parts slide has one over each of its stretches, held or sliding, closed by the chord between its ends, and one over the
+polygon of these chords. So a vault between arches, whose sides slide on the ground, encloses what is between it, the
+ground and the arches' own planes. A strip needs line integrals along both curves alone,
 
     plane through p with normal n   1/3 (p - o) . n  n . 1/2 (int_L x dx - int_R x dx)     (vector products)
     wall along e                    1/3 (int_R - int_L) (x . e) (x - o) . (dx x e)
@@ -47,21 +50,42 @@ def enclosed_volume(film: Film) -> float:
         mine = of_loop == index
         curve, step = _along(film.nodes[rim_nodes[mine]] - origin)
         if not loop.slides:
-            total += _lid(curve, step)
+            total += _lid((curve, step))
             continue
-        start, pieces = _pieces(loop.loop if isinstance(loop, SlidRim) else loop)
+        held = loop.loop if isinstance(loop, SlidRim) else loop
+        start, pieces = _pieces(held)
         drawn, drawn_step = _along(pieces - origin)
-        drawn_step *= np.sign(span[mine][0])
-        held = np.ones(len(curve), bool)
-        rim = []
-        for slide in loop.slides:
-            now, before = within(middle[mine], slide), within(start, slide)
-            total += _strip(slide, curve[now], step[now]) - _strip(slide, drawn[before], drawn_step[before])
-            held &= ~now
-            rim.append((drawn[before], drawn_step[before]))
-        rim.append((curve[held], step[held]))
-        total += _lid(*(np.concatenate([part[k].reshape(-1, 3) for part in rim]) for k in (0, 1)))
+        sense = np.sign(span[mine][0])
+        drawn_step *= sense
+        chords = []
+        for first, last, slide in stretches_of(loop):
+            now, before = within(middle[mine], first, last), within(start, first, last)
+            if slide is None:
+                part = (curve[now], step[now])
+            else:
+                part = (drawn[before], drawn_step[before])
+                total += _strip(slide, curve[now], step[now]) - _strip(slide, *part)
+            if last - first < 1:
+                ends = held.at(np.array([first, last]))[:: int(sense)] - origin
+                chords.append(_along(ends[None]))
+                total += _lid(part, _along(ends[None, ::-1]))
+            else:
+                total += _lid(part)
+        if chords:
+            total += _lid(*chords)
     return total
+
+
+def stretches_of(loop: Loop) -> list[tuple[float, float, Slide | None]]:
+    """Stretches of a loop from end to end: where each begins and ends, and on what it slides (None: held)."""
+    slides = sorted(loop.slides, key=lambda slide: slide.start)
+    result: list[tuple[float, float, Slide | None]] = []
+    for slide, after in zip(slides, slides[1:] + slides[:1], strict=True):
+        result.append((slide.start, slide.end, slide))
+        gap = (after.start - slide.end) % 1
+        if slide.end - slide.start < 1 and 1e-9 < gap < 1 - 1e-9:
+            result.append((slide.end % 1, slide.end % 1 + gap, None))
+    return result
 
 
 def _along(edges: Floats) -> tuple[Floats, Floats]:
@@ -85,10 +109,11 @@ def _pieces(loop: Loop) -> tuple[Floats, Floats]:
     return (marks[:-1] + marks[1:]) / 2, loop.at(t.ravel()).reshape(*t.shape, 3)
 
 
-def _lid(curve: Floats, step: Floats) -> float:
-    """Volume of the cones from the origin over a lid, whose rim runs against the surface's."""
-    length = np.linalg.norm(step, axis=-1)[..., None]
-    centroid = (curve * length).sum(axis=tuple(range(curve.ndim - 1))) / length.sum()
+def _lid(*parts: tuple[Floats, Floats]) -> float:
+    """Volume of the cones from the origin over a lid, whose rim runs against the surface's; (points, steps) of it."""
+    curve, step = (np.concatenate([part[k].reshape(-1, 3) for part in parts]) for k in (0, 1))
+    length = np.linalg.norm(step, axis=1)[:, None]
+    centroid = (curve * length).sum(0) / length.sum()
     return -float((np.cross(curve, step) @ centroid).sum()) / 6
 
 

@@ -28,8 +28,6 @@ FIRST_STEP, LARGEST_STEP, LEAST_STEP = 0.05, 0.2, 1e-4
 MOST_FILMS, MOST_NEWTON = 80, 500
 # Newton steps at which the next step along the family may be longer, and that a film may take
 FEW, MANY = 5, 10
-# of its first size, of the radius 1 / H or of the volume's edge: a film larger than this many times has left for good
-FAR = 5.0
 
 
 @dataclass(frozen=True)
@@ -132,8 +130,8 @@ class Stretch:
         return np.polynomial.Polynomial([a, da, 3 * (b - a) - 2 * da - db, 2 * (a - b) + da + db])
 
 
-def stretches(start: Member, detail: Detail, reach: float) -> Iterator[Stretch]:
-    """Follow a family from a film in its direction, as far as it goes: to `FAR` times its size or a reach (m).
+def stretches(start: Member, detail: Detail, largest: float) -> Iterator[Stretch]:
+    """Follow a family from a film in its direction, as far as it goes, or until a film is larger than a size (m).
 
     Raises
     ------
@@ -164,7 +162,7 @@ def stretches(start: Member, detail: Detail, reach: float) -> Iterator[Stretch]:
             f"steps, {there.negative} negative eigenvalues)"
         )
         yield Stretch(here, there, step, steps)
-        if there.film.size > FAR * max(begin, reach):
+        if there.film.size > largest:
             raise NoFilmError(f"the films followed grow beyond {there.film.size:.3g} m", there.film)
         if is_worn(there.film):
             # what cannot be made anew may still go on as it is

@@ -58,6 +58,10 @@ class Loop(Protocol):
         """Parameters of the corners, sorted."""
 
     @property
+    def smooth(self) -> NDArray[np.bool_]:
+        """Which corners are none to the eye, see `lamella.surface.boundary.curve.Loop`."""
+
+    @property
     def slides(self) -> Sequence[Slide]:
         """Parts that are free to slide."""
 

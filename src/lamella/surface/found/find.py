@@ -12,16 +12,20 @@ from lamella.progress import Progress, patient, silent
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.film import Film, Loop
-from lamella.surface.found.first_film import FirstFilm, SearchError
+from lamella.surface.found.first_film import FirstFilm
 from lamella.surface.found.found_film import Found
 from lamella.surface.found.limits import refuse_afloat, refuse_impossible, refuse_single
 from lamella.surface.found.newton import Equilibrium, find_equilibrium
+from lamella.surface.found.no_film import SearchError
 from lamella.surface.found.not_found import not_found
 from lamella.surface.found.refinement import adapted
 from lamella.surface.found.self_crossing import self_crossing
 
 if TYPE_CHECKING:
     from lamella.project import FormFoundTable
+
+# of the film's size: a film of the same mean curvature this near is told
+BESIDE = 0.02
 
 __all__ = ["Found", "adapted", "find_film", "notes_on", "surface_of_table"]
 
@@ -53,10 +57,11 @@ def surface_of_table(table: FormFoundTable, folder: Path, progress: Progress = s
         most_nodes=table.most_nodes,
         progress=progress,
     )
-    return found.surface("form-found", notes_on(found), tolerance=table.tolerance)
+    notes = notes_on(found, given_curvature=table.volume is None)
+    return found.surface("form-found", notes, tolerance=table.tolerance)
 
 
-def notes_on(found: Found) -> tuple[str, ...]:
+def notes_on(found: Found, *, given_curvature: bool = True) -> tuple[str, ...]:
     """What a user should know about a film before building it."""
     notes = []
     verdict = found.stability
@@ -70,6 +75,13 @@ def notes_on(found: Found) -> tuple[str, ...]:
         notes.append(
             f"the surface is at the fold of its family (lowest Jacobi eigenvalue {verdict.lowest:.2g} 1/m2): a "
             "slightly different boundary may have no surface at all"
+        )
+    if given_curvature and verdict.verdict != "fold" and verdict.beside < BESIDE * found.equilibrium.film.size:
+        stable = verdict.verdict == "stable"
+        notes.append(
+            f"another surface of the same mean curvature is beside this one, up to about {verdict.beside:.2g} m away: "
+            f'this is the {verdict.verdict} one, branch = "{"unstable" if stable else "stable"}" finds the other. '
+            "Which of the two is the one meant may depend on small changes of the boundary"
         )
     crossing = self_crossing(found.equilibrium.film)
     if crossing is not None:

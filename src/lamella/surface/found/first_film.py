@@ -15,10 +15,12 @@ from lamella.errors import InputError
 from lamella.surface.found.along_family import FoldError, Reached, to_curvature, to_volume
 from lamella.surface.found.chart import make_chart
 from lamella.surface.found.film import Film, Loop, harmonic_over_itself
+from lamella.surface.found.from_held import from_held
 from lamella.surface.found.limits import refuse_apart
 from lamella.surface.found.loop_path import BreakError, along_flat, along_loops, are_apart, drawn_together, is_moved
 from lamella.surface.found.meshing import renewed, start_film
-from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError, find_equilibrium
+from lamella.surface.found.newton import Detail, Equilibrium, find_equilibrium
+from lamella.surface.found.no_film import NoFilmError, SearchError
 
 # Newton steps from the harmonic start before a path is taken
 DIRECT_STEPS = 12
@@ -28,24 +30,6 @@ AREA_ROUNDS = 4
 SHARES = (0.6, 0.4, 0.25, 0.15, 0.08)
 # of those, how many are followed to the given loops
 MOST_PATHS = 2
-
-
-class SearchError(ArithmeticError):
-    """No film was found.
-
-    Attributes
-    ----------
-    reasons : tuple of str
-        How far each way went.
-    fold : float or None
-        H at which the stable films from the minimal one turn back, 1/m.
-    steps : int
-        Newton steps.
-    """
-
-    def __init__(self, reasons: tuple[str, ...], fold: float | None, steps: int) -> None:
-        super().__init__("; ".join(reasons))
-        self.reasons, self.fold, self.steps = reasons, fold, steps
 
 
 @dataclass(frozen=True)
@@ -73,6 +57,10 @@ class FirstFilm:
         Where ways ended.
     fold : float or None
         See `SearchError`.
+    calm : bool
+        Whether a film without pressure was found on the way to one of a volume.
+    unstable : Equilibrium or None
+        An unstable film of the wanted mean curvature that was found on the way to a stable one.
     """
 
     loops: tuple[Loop, ...]
@@ -81,6 +69,8 @@ class FirstFilm:
     steps: int = 0
     reasons: list[str] = field(default_factory=list)
     fold: float | None = None
+    calm: bool = False
+    unstable: Equilibrium | None = None
 
     def of_curvature(self, mean_curvature: float, *, unstable: bool = False) -> First:
         """The film of a mean curvature (1/m), the stable or the unstable one.
@@ -97,12 +87,15 @@ class FirstFilm:
             at_target = abs(start.mean_curvature - mean_curvature) * start.film.size < 1e-9
             if at_target and (start.negative > 0) == unstable:
                 return First(start, self.steps, True)
+            if at_target and not unstable:
+                self.unstable = start
             with suppress(NoFilmError, FoldError):
                 return self._followed(start, mean_curvature, unstable)
         raise SearchError(tuple(self.reasons), self.fold, self.steps)
 
     def _starts(self, mean_curvature: float) -> Iterator[Equilibrium]:
         """Films in the given loops, of the wanted mean curvature or without pressure, the shorter ways first."""
+        yield from self._from_held(mean_curvature, None)
         minimal = not self._no_minimal()
         if mean_curvature and minimal:
             calm = self._direct(self.loops, 0.0)
@@ -126,6 +119,8 @@ class FirstFilm:
         calm = self._direct(self.loops, 0.0) if minimal else None
         if calm and (first := self._inflated(calm, volume)):
             return first
+        for start in self._from_held(0.0, volume):
+            return First(start, self.steps, True)
         for start in self._from_drawn(0.0, volume):
             return First(start, self.steps, True)
         if minimal and not calm:
@@ -138,13 +133,17 @@ class FirstFilm:
         try:
             reached = to_volume(calm, volume, self.progress)
         except NoFilmError as error:
-            self._tell(f"followed from the film without pressure: {error}")
+            self.calm = True
+            self.tell(f"followed from the film without pressure: {error}")
             return None
         return First(reached.equilibrium, self.steps + reached.steps, True)
 
     def exists(self, mean_curvature: float) -> bool:
         """Whether a short search finds a film of a mean curvature (1/m)."""
         if self._direct(self.loops, mean_curvature):
+            return True
+        let = next(self._from_held(mean_curvature, None), None)
+        if let and let.mean_curvature == mean_curvature:
             return True
         # where there is a film without pressure, it is from there that one is missing, not for the sign
         return self._no_minimal() and next(self._from_drawn(mean_curvature), None) is not None
@@ -156,15 +155,16 @@ class FirstFilm:
         except FoldError as fold:
             self.steps += fold.steps
             self.fold = fold.mean_curvature
-            self._tell(f"followed from H = {start.mean_curvature:.5g} 1/m {fold} (an estimate)")
+            self.tell(f"followed from H = {start.mean_curvature:.5g} 1/m {fold} (an estimate)")
             raise
         except NoFilmError as error:
-            self._tell(f"followed from H = {start.mean_curvature:.5g} 1/m: {error}")
+            self.tell(f"followed from H = {start.mean_curvature:.5g} 1/m: {error}")
             raise
         self.steps += reached.steps
         return First(reached.equilibrium, self.steps, True)
 
-    def _tell(self, reason: str) -> None:
+    def tell(self, reason: str) -> None:
+        """Note where a way ended, once."""
         self.progress(f"    {reason}")
         if reason not in self.reasons:
             self.reasons.append(reason)
@@ -220,6 +220,9 @@ class FirstFilm:
 
     def _minimal(self) -> Equilibrium | None:
         """A minimal film: with elements made anew on the way, by lowering the area first, or from flat loops."""
+        if any(loop.slides for loop in self.loops):
+            # on these ways the edges run away: they were held, and let go
+            return None
         chart = make_chart(self.loops)
         for rounds in (0, 20):
             try:
@@ -239,13 +242,18 @@ class FirstFilm:
             reached = along_flat(chart, self.loops, self.order, self.progress)
         except BreakError as error:
             self.steps += error.steps
-            self._tell(
+            self.tell(
                 f"followed from flat loops to the given ones the films without pressure break at {error.share:.3g} of "
                 f"the way ({error})"
             )
             return None
         self.steps += reached.steps
         return reached.equilibrium
+
+    def _from_held(self, mean_curvature: float, volume: float | None) -> Iterator[Equilibrium]:
+        """Films with the sliding edges held, and then let go."""
+        if any(loop.slides for loop in self.loops):
+            yield from from_held(self, mean_curvature, volume)
 
     def _from_drawn(self, mean_curvature: float, volume: float | None = None) -> Iterator[Equilibrium]:
         """Films in the given loops, followed from the same loops drawn together."""
@@ -270,7 +278,7 @@ class FirstFilm:
                 )
             except BreakError as error:
                 self.steps += error.steps
-                self._tell(
+                self.tell(
                     f"followed from loops drawn together to {share:g} of their distance the films break at "
                     f"{error.share:.3g} of it ({error})"
                 )

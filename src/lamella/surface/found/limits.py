@@ -8,8 +8,9 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from lamella.errors import InputError
-from lamella.surface.found.chart import Curve, vector_area
+from lamella.surface.found.chart import Curve, samples_of, vector_area
 from lamella.surface.found.film import Loop
+from lamella.surface.points import Floats
 
 # two equal coaxial rings: largest distance over their radius, the maximum of 2 acosh(x) / x
 RINGS = 1.3254868387
@@ -18,6 +19,8 @@ CONE = 1.5088795615
 SAMPLES = 2000
 # height of a flat loop over its length
 FLAT = 1e-6
+# turn (rad) the wrong way that is rounding
+STRAIGHT = 1e-7
 
 
 def refuse_impossible(loops: Sequence[Curve], mean_curvature: float) -> None:
@@ -47,17 +50,50 @@ def refuse_afloat(loops: Sequence[Loop]) -> None:
 
 
 def refuse_single(loops: Sequence[Curve], mean_curvature: float) -> None:
-    """A flat loop without pressure has one film, itself: no film leaves the convex hull of its loop."""
+    """Raise an `InputError` where an unstable film without pressure is asked of a loop that has the stable one alone.
+
+    A flat loop's only film is its plane: no film leaves the convex hull of its loop. A loop that is a convex curve seen
+    along some direction has one film, a graph over that curve's inside (Rado, Acta Litt. Sci. Szeged 6 (1932), 1-20),
+    and graphs are stable. As directions the vector area and the principal axes are tried.
+    """
     if len(loops) > 1 or mean_curvature:
         return
-    points = loops[0].at(np.arange(SAMPLES) / SAMPLES)
-    length, _, height = np.linalg.svd(points - points.mean(0), compute_uv=False)
-    if height <= FLAT * length:
+    points = loops[0].at(samples_of(loops[0], SAMPLES))
+    _, length, axes = np.linalg.svd(points - points.mean(0), full_matrices=False)
+    remedy = "leave branch out, or give a mean_curvature other than 0"
+    if length[2] <= FLAT * length[0]:
         raise InputError(
             "there is no unstable surface: the boundary is flat, and without pressure its only surface is the plane",
-            "leave branch out, or give a mean_curvature other than 0",
+            remedy,
             "surface.branch",
         )
+    for axis in (vector_area(points), *axes):
+        if is_convex_along(points, axis):
+            x, y, z = np.round(axis / np.linalg.norm(axis), 3) + 0.0
+            raise InputError(
+                f"there is no unstable surface: seen along ({x:g}, {y:g}, {z:g}) the boundary is a convex curve, and "
+                "without pressure the only surface in such a boundary is the stable one (Rado 1932)",
+                remedy,
+                "surface.branch",
+            )
+
+
+def is_convex_along(points: Floats, axis: Floats) -> bool:
+    """Whether a closed polygon (n, 3), seen along a direction, is a convex curve that runs around once."""
+    length = float(np.linalg.norm(axis))
+    step = np.roll(points, -1, 0) - points
+    if length <= 1e-9 * float((step**2).sum()):
+        return False
+    axis = axis / length
+    across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    across /= np.linalg.norm(across)
+    seen = step @ across + 1j * (step @ np.cross(axis, across))
+    # seen end on, a part of the curve would be one point
+    if (np.abs(seen) < 1e-3 * np.linalg.norm(step, axis=1)).any():
+        return False
+    turns = np.angle(np.roll(seen, -1) / seen)
+    turns = turns if turns.sum() > 0 else -turns
+    return bool(turns.min() > -STRAIGHT and abs(turns.sum() - 2 * np.pi) < 1e-6)
 
 
 def refuse_flux(loops: Sequence[Curve], mean_curvature: float) -> None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
@@ -85,6 +86,11 @@ class Moving:
     def corners(self) -> Floats:
         """Parameters of the corners, sorted."""
         return self.loop.corners
+
+    @property
+    def smooth(self) -> NDArray[np.bool_]:
+        """Which corners are none to the eye, see `lamella.surface.boundary.curve.Loop`."""
+        return self.loop.smooth
 
     def at(self, t: Floats) -> Floats:
         """Points (n, 3), m."""

@@ -9,6 +9,9 @@ With the second variation K of A + 2 H V, its gradient g and that of the volume 
 The last one is not symmetric. With the symmetric border w it takes two right-hand sides: the multiplier of w has to
 vanish. It is regular at folds of H and of the volume alike.
 
+Springs may hold the nodes back: with stiffness c_i of node i, c_i is added to the diagonal of K and c_i s_i to g, s_i
+being its shift since the search began, summed along its directions (`lamella.surface.found.letting_go`).
+
 Near a fold Newton's steps only halve the error. Where H is given and a step leaves much of the residual, the same
 factorisation is used once more at its end (Potra and Ptak, Nondiscrete Induction and Iterative Processes (1984),
 chapter 4: third order, three eighths at a fold).
@@ -19,11 +22,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from lamella.progress import silent
-from lamella.sparse import Factor, SingularError
+from lamella.sparse import Factor, SingularError, SymmetricPattern
 from lamella.surface.found.film import Film
 from lamella.surface.found.no_film import NoFilmError
 from lamella.surface.found.variation import FirstVariation, Variation
@@ -86,6 +90,7 @@ def find_equilibrium(
     *,
     volume: float | None = None,
     way: Way | None = None,
+    springs: Floats | None = None,
     stable: bool = True,
     most_steps: int = 30,
     detail: Detail = silent,
@@ -102,6 +107,9 @@ def find_equilibrium(
         Volume to sweep from the start along its normals, m^3; H follows.
     way : Way, optional
         How far to go along a family; H follows.
+    springs : (n,), optional
+        Stiffness (no unit: force over the tension 1 of the film, times length over length) with which each node is held
+        where it starts.
     stable : bool
         Look for a minimum of area + 2 H volume (shift the second variation while it has negative eigenvalues).
     most_steps : int
@@ -115,33 +123,42 @@ def find_equilibrium(
     """
     unknowns = film.unknowns
     free = unknowns >= 0
+    held = None if springs is None else springs[free]
     size = film.size
     moves: list[float] = []
     swept = 0.0
     begin = film.nodes
+    shifted = np.zeros(len(free))
     directions = film.directions()
     variation = Variation(film.connectivity, directions)
     first = variation.first(film.nodes)
+
+    def pull(nodes: Floats, there: FirstVariation, curvature: float) -> Floats:
+        total = there.area_gradient + 2 * curvature * there.volume_gradient
+        if springs is not None:
+            total = total + springs * (shifted + ((nodes - film.nodes) * directions).sum(1))
+        return np.asarray(total)
+
     for step in range(most_steps):
         # the normals at the integration points against the directions of their element
         if step and _turned(film, directions, first) < TURNED:
             directions = film.directions()
             variation = Variation(film.connectivity, directions)
             first = variation.first(film.nodes)
-        gradient = (first.area_gradient + 2 * mean_curvature * first.volume_gradient)[free]
+        gradient = pull(film.nodes, first, mean_curvature)[free]
         blocks = variation.second(film.nodes, first, mean_curvature)
         if way is not None:
             left = way.amount - float((way.weights * (film.nodes - begin)).sum())
             row = (way.weights * directions).sum(1)[free]
             shift_of, change, negative = _step_along(film, blocks, gradient, first.volume_gradient[free], row, left)
         elif volume is None:
-            again, negative = _factored(film, variation, first, blocks, stable)
+            again, negative = _factored(film, variation, first, _entries(film.pattern, blocks, held), stable)
             shift_of, change = -again.solve(gradient), 0.0
         else:
             border = np.append(first.volume_gradient[free], 0.0)
             pattern = film.bordered_pattern
             try:
-                factor = pattern.factor(pattern.assemble(blocks, border[None]))
+                factor = pattern.factor(_entries(pattern, blocks, held, border))
             except SingularError as error:
                 raise NoFilmError(str(error), film) from None
             solution = factor.solve(-np.append(gradient, swept - volume))
@@ -152,20 +169,23 @@ def find_equilibrium(
         shift[free] = shift_of
         slope = float(gradient @ shift_of)
         free_to_rise = volume is not None or way is not None
-        film, first, share = _search(film, variation, first, shift, slope, mean_curvature + change, not free_to_rise)
+        there = partial(pull, curvature=mean_curvature + change)
+        film, first, share = _search(film, variation, first, shift, slope, there, not free_to_rise)
+        shifted += share * shift
         mean_curvature += share * change
         if volume is not None:
             swept += _swept(film, variation, shift, share)
         if volume is None and way is None and share == 1:
-            left_over = (first.area_gradient + 2 * mean_curvature * first.volume_gradient)[free]
+            left_over = there(film.nodes, first)[free]
             if np.abs(left_over).max() > MUCH_LEFT * np.abs(gradient).max():
                 more = np.zeros(len(free))
                 more[free] = -again.solve(left_over)
                 slope = float(left_over @ more[free])
                 # without the correction the step is still a step
                 with suppress(NoFilmError):
-                    film, first, part = _search(film, variation, first, more, slope, mean_curvature, True)
+                    film, first, part = _search(film, variation, first, more, slope, there, True)
                     shift += part * more
+                    shifted += part * more
         move = float(np.abs(shift).max()) * share
         moves.append(move)
         detail(
@@ -178,12 +198,20 @@ def find_equilibrium(
     raise NoFilmError(f"no convergence in {most_steps} steps (last shift {moves[-1]:.2g} m)", film)
 
 
+def _entries(pattern: SymmetricPattern, blocks: Floats, springs: Floats | None, border: Floats | None = None) -> Floats:
+    """Entries of the second variation with springs (unknowns,) on its diagonal, and of a border."""
+    values = pattern.assemble(blocks, None if border is None else border[None])
+    if springs is not None:
+        # the lower triangle's columns begin with the diagonal
+        values[pattern.columns[: len(springs)]] += springs
+    return values
+
+
 def _factored(
-    film: Film, variation: Variation, first: FirstVariation, blocks: Floats, stable: bool
+    film: Film, variation: Variation, first: FirstVariation, values: Floats, stable: bool
 ) -> tuple[Factor, int]:
     """The second variation, for a stable film with the least shift that makes it positive; its negative eigenvalues."""
     pattern = film.pattern
-    values = pattern.assemble(blocks)
     factor: Factor | None
     try:
         factor = pattern.factor(values)
@@ -235,7 +263,7 @@ def _search(
     first: FirstVariation,
     shift: Floats,
     slope: float,
-    mean_curvature: float,
+    pull: Callable[[Floats, FirstVariation], Floats],
     downhill: bool,
 ) -> tuple[Film, FirstVariation, float]:
     """The longest of the halved steps in which no element folds and the slope along the step does not grow."""
@@ -244,7 +272,7 @@ def _search(
         nodes = film.nodes + share * shift[:, None] * variation.directions
         there = variation.first(nodes)
         folded = ((there.normals * first.normals).sum(0) < 0.3).any() or (there.elements < 0.1 * first.elements).any()
-        new_slope = float((there.area_gradient + 2 * mean_curvature * there.volume_gradient) @ shift)
+        new_slope = float(pull(nodes, there) @ shift)
         calm = not downhill or new_slope <= max(0.9 * abs(slope), 1e-10 * there.area)
         if not folded and calm:
             return film.at(nodes), there, share

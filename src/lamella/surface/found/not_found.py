@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from lamella.errors import InputError
-from lamella.surface.found.first_film import FirstFilm, SearchError
+from lamella.surface.found.enclosed import enclosed_volume
+from lamella.surface.found.first_film import FirstFilm
+from lamella.surface.found.no_film import SearchError
 
 # no bound says that there is no such surface: the search alone ended
 MAY_EXIST = "no bound is broken, so that there may be one"
@@ -28,10 +30,18 @@ def not_found(
             'leave branch out, or write branch = "stable"',
             "surface.branch",
         )
+    if search.unstable:
+        inside = enclosed_volume(search.unstable.film)
+        return InputError(
+            f"{wanted}: there is an unstable surface ({search.unstable.negative} negative eigenvalues of its second "
+            f"variation: a soap film would leave it), but the search did not arrive at a stable one. {went}",
+            f'write branch = "unstable" to take it, or give a volume instead (its own is {inside:.6g} m3)',
+            "surface.branch",
+        )
     if not mean_curvature:
         return InputError(
             f"the search did not arrive at a surface in this boundary; {MAY_EXIST}. {went}",
-            "hold the sliding parts, or begin with a shape nearer to the film"
+            "bring the held parts closer together, or give a mean_curvature or a volume"
             if any(loop.slides for loop in search.loops)
             else "bring the loops closer together, or make them less bent",
             "surface.boundary",
@@ -44,7 +54,7 @@ def not_found(
             f"write mean_curvature = {-mean_curvature:.6g}, or reverse the first loop",
             "surface.mean_curvature",
         )
-    if error.fold is not None:
+    if error.fold is not None and abs(error.fold) < abs(mean_curvature):
         return InputError(
             f"{wanted}: the search did not arrive at a stable surface that bends that much; {MAY_EXIST}. {went}",
             f"choose a mean_curvature below {abs(error.fold):.4g} 1/m in size, or give a volume instead",
@@ -52,7 +62,7 @@ def not_found(
         )
     return InputError(
         f"{wanted}: the search did not arrive at a surface; {MAY_EXIST}. {went}",
-        "choose a smaller mean_curvature, or give a volume instead",
+        "choose another mean_curvature, or give a volume instead: more films can be followed by their volume",
         "surface.mean_curvature",
     )
 
@@ -64,7 +74,7 @@ def _again(search: FirstFilm) -> FirstFilm:
 
 def _no_volume(search: FirstFilm, went: str, volume: float) -> InputError:
     wanted = f"volume = {volume:.6g} m3"
-    if len(search.loops) > 1:
+    if len(search.loops) > 1 or any(loop.slides for loop in search.loops):
         try:
             _again(search).of_volume(-volume)
         except SearchError:
@@ -79,7 +89,12 @@ def _no_volume(search: FirstFilm, went: str, volume: float) -> InputError:
             )
     return InputError(
         f"{wanted}: the search did not arrive at a surface; {MAY_EXIST}. {went}",
-        "try the other sign (volume is above 0 where the normal points out of it), or choose a volume nearer to that "
-        "of the film without pressure (a run with mean_curvature = 0 tells it)",
+        "choose a volume nearer to that of a film that is found"
+        + (
+            " (a run with mean_curvature = 0 tells one)"
+            if search.calm
+            else ", or bring the held curves closer together"
+        )
+        + "; it is above 0 where the normal points out of it",
         "surface.volume",
     )

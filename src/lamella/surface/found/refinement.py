@@ -76,7 +76,7 @@ def adapted(
         if deviation.weighted <= tolerance:
             shortfall = ""
             break
-        size, allowed = refined_sizes(here.film, deviation, tolerance, most_nodes, coarsen=round_ < 2)
+        size, allowed = refined_sizes(here.film, deviation, tolerance, most_nodes, coarsen=round_ < 3)
         if not allowed and here.film.connectivity.node_count > 0.7 * most_nodes and gain > SLOW:
             shortfall = f"elements as small as that asks for would need more than most_nodes = {most_nodes:,} nodes"
             break

@@ -52,6 +52,11 @@ class SlidRim:
         return self.loop.corners
 
     @property
+    def smooth(self) -> NDArray[np.bool_]:
+        """Which corners are none to the eye, see `lamella.surface.boundary.curve.Loop`."""
+        return self.loop.smooth
+
+    @property
     def slides(self) -> Sequence[Slide]:
         """Parts that are free to slide."""
         return self.loop.slides
@@ -62,7 +67,7 @@ class SlidRim:
         points = self.loop.at(t)
         sliding = np.zeros(len(t), bool)
         for slide in self.slides:
-            sliding |= within(t, slide)
+            sliding |= within(t, slide.start, slide.end)
         edge = np.searchsorted(self._starts, t[sliding], side="right") - 1
         arc = np.clip(((t[sliding] - self._starts[edge]) % 1) / self._spans[edge], 0, 1)
         share = (arc[:, None] ** np.arange(PIECES + 1) * self._shares[edge]).sum(1)
@@ -71,9 +76,9 @@ class SlidRim:
         return points
 
 
-def within(t: Floats, slide: Slide) -> NDArray[np.bool_]:
-    """Which parameters (n,) are inside a sliding part, its held ends left out."""
-    along, span = (t - slide.start) % 1, slide.end - slide.start
+def within(t: Floats, start: float, end: float) -> NDArray[np.bool_]:
+    """Which parameters (n,) are inside a part of a loop, its ends left out unless it is the whole loop."""
+    along, span = (t - start) % 1, end - start
     return np.asarray((along > 1e-9) & (along < span - 1e-9)) if span < 1 else np.ones(len(t), bool)
 
 
@@ -103,7 +108,7 @@ def _slid(film: Film, index: int, parameter: Floats) -> SlidRim:
     basis: Floats = np.asarray(np.linalg.inv(np.vander(np.linspace(0, 1, p + 1), increasing=True)), np.float64)
     length, shares = _arc_lengths(nodes, basis)
     for slide in loop.slides:
-        moves = np.flatnonzero(within((start + span / 2) % 1, slide))
+        moves = np.flatnonzero(within((start + span / 2) % 1, slide.start, slide.end))
         moves = moves[np.argsort((start[moves] - slide.start) % 1)]
         whole = slide.end - slide.start
         even = length[moves] / length[moves].sum() * whole

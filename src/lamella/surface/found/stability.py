@@ -2,6 +2,10 @@
 
 The second variation of area + 2 H volume along a normal shift phi is the integral of |grad phi|^2 - |A|^2 phi^2 with
 |A|^2 = k1^2 + k2^2 = 4 H^2 - 2 K: the Jacobi operator is -Laplace - |A|^2, with phi = 0 on held boundaries.
+
+Near a fold, or where two families cross, another film of the same H is beside. Along the lowest mode phi, of eigenvalue
+lambda, area + 2 H volume is E(a) = lambda m a^2 / 2 + c a^3 / 6 + ... with m the integral of phi^2 and c the third
+variation; its other stationary point is a = -2 lambda m / c (Lyapunov and Schmidt's reduction to first order).
 """
 
 from __future__ import annotations
@@ -18,6 +22,10 @@ from lamella.surface.points import Floats
 
 # of 1 / area: below it the lowest eigenvalue is nought for all purposes, the film is at the fold
 FOLD = 0.05
+# of 1 / area: above it no other film is near enough for its distance to be estimated
+NEAR_FOLD = 2.0
+# step of the third variation's difference quotient, over the film's size
+STEP = 1e-3
 # shifts tried below the spectrum, each four times the one before
 SHIFTS = 40
 
@@ -39,12 +47,15 @@ class Stability:
         Negative eigenvalues.
     mode : (n,)
         Normal shift of the nodes in the lowest mode, of largest value 1.
+    beside : float
+        Largest distance of another film of the same H in the same loops, an estimate, m; infinite where none is near.
     """
 
     verdict: str
     lowest: float
     negative: int
     mode: Floats
+    beside: float = np.inf
 
 
 def stability_of(film: Film, mean_curvature: float) -> Stability:
@@ -84,4 +95,23 @@ def stability_of(film: Film, mean_curvature: float) -> Stability:
     verdict = "stable" if lowest > 0 else "unstable"
     if abs(lowest) * first.area < FOLD:
         verdict = "fold"
-    return Stability(verdict, lowest, negative, mode / mode[np.abs(mode).argmax()])
+    mode /= mode[np.abs(mode).argmax()]
+    beside = np.inf
+    if abs(lowest) * first.area < NEAR_FOLD:
+        bend = _third_variation(film, variation, mean_curvature, mode)
+        heavy = mode[film.unknowns >= 0]
+        beside = float(abs(2 * lowest * (heavy @ (mass @ heavy))) / max(abs(bend), 1e-300))
+    return Stability(verdict, lowest, negative, mode, beside)
+
+
+def _third_variation(film: Film, variation: Variation, mean_curvature: float, mode: Floats) -> float:
+    """Third variation of area + 2 H volume along a mode."""
+    step = STEP * film.size
+    free = film.unknowns >= 0
+
+    def second(shift: float) -> float:
+        nodes = film.nodes + shift * mode[:, None] * variation.directions
+        blocks = variation.second(nodes, variation.first(nodes), mean_curvature)
+        return float(mode[free] @ (film.pattern.matrix(film.pattern.assemble(blocks)) @ mode[free]))
+
+    return (second(step) - second(-step)) / (2 * step)

@@ -99,7 +99,7 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = silent
         (
             *_doubts(fit, mean_curvature, nearest, given, exact),
             *_told_off(distance, found.equilibrium.film.size, fit),
-            *notes_on(found),
+            *notes_on(found, given_curvature=False),
         ),
         source=raw.source,
         treatment=[*mesh.notes, *notes],
