@@ -323,7 +323,8 @@ def _network(
     heading = (tangents * look.e_u).sum(1) + 1j * (tangents * look.e_v).sum(1)
     turned = look.deviator * heading**2
     sideways = np.cross(look.normal, tangents)
-    darboux = Darboux(look.mean + turned.real, turning(tangents, sideways, s, offsets), -turned.imag)
+    closed = np.zeros(flow.count, bool)
+    darboux = Darboux(look.mean + turned.real, turning(tangents, sideways, s, offsets, closed), -turned.imag)
     # lines follow the continuous shape operator; what the positions alone say of them is told
     mean, deviator = ground.measured(where)
     missed = np.abs(mean - look.mean + ((deviator - look.deviator) * heading**2).real)
@@ -346,7 +347,7 @@ def _network(
             node_kinds=kinds,
             ids=tuple(f"{f}{r}" for f, r in zip(families.tolist(), rank.tolist(), strict=True)),
             families=families,
-            closed=np.zeros(flow.count, bool),
+            closed=closed,
             sample_offsets=offsets,
             sample_points=look.position,
             sample_normals=look.normal,
