@@ -10,7 +10,7 @@ import numpy as np
 from lamella.network.cell_sizes import MOST_RATIO, large_cells
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas, layer_drift
-from lamella.surface.element.surface import ElementSurface
+from lamella.surface.element.surface import SMOOTHED_ORDER, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
 from lamella.wording import counted
@@ -63,8 +63,9 @@ def surface_file_cautions(surface: Surface[Any]) -> Iterator[str]:
     if count > MOST_PATCHES:
         yield (
             f"surface.3dm holds one mesh, within about {MESH_TOLERANCE:g} of the surface's size, and exact boundary "
-            f"curves: NURBS would be {count:,} patches (limit {MOST_PATCHES:,}); a larger surface.tolerance or a "
-            "higher surface.order takes fewer"
+            f"curves: NURBS would be {count:,} patches (limit {MOST_PATCHES:,}); a larger surface.tolerance"
+            + (" or a higher surface.order" if surface.connectivity.basis.order < max(SMOOTHED_ORDER) else "")
+            + " takes fewer"
         )
 
 
