@@ -12,7 +12,7 @@ import pytest
 from exact_elements import on_map
 from lamella import Enneper
 from lamella.network import gluing
-from lamella.network.carried_shifts import carried
+from lamella.network.carried_shifts import Carrier
 from lamella.network.cell_map import CellMap
 from lamella.network.cut import cut_edges
 from lamella.network.element_lattice import lattice_origin
@@ -95,10 +95,10 @@ def test_near_whole_shifts_do_not_depend_on_the_cut(
         different += ends[0] != ends[1]
         # the same one, named by the other cut's pieces, and back
         for one, size in zip(near, sizes, strict=True):
-            named = carried(first, one - shifts, other, here, there)
+            named = Carrier(first, other, there).whole_shifts(one - shifts, here)
             assert named is not None
             assert there.size(named - here) == pytest.approx(size, rel=1e-2, abs=1e-4)
-            back = carried(other, named - here, first, shifts, whole)
+            back = Carrier(other, first, whole).whole_shifts(named - here, shifts)
             assert back is not None
             assert np.abs(back - one).max() < 1e-9
     assert different

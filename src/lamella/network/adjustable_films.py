@@ -119,11 +119,14 @@ class Films:
         t = rim_parameters(film.connectivity, film.mesh.parameter)
         of_loop = film.mesh.loop[nodes[:, 0]]
         result = np.zeros((self.freedom.count, len(film.nodes), 3))
-        begin = self.loops(shares)
+        begin, tables = self.loops(shares), self.freedom.changed(shares).boundary
         for number in range(self.freedom.count):
             ahead = shares.copy()
             ahead[number] += SHARE
+            moved = self.freedom.changed(ahead).boundary
             for index, (old, new) in enumerate(zip(begin, self.loops(ahead), strict=True)):
+                if moved[index] == tables[index]:
+                    continue
                 mine = of_loop == index
                 result[number, nodes[mine]] = (new.at(t[mine]) - old.at(t[mine])) / SHARE
         return result
