@@ -223,7 +223,8 @@ class _Search:
         return 0
 
     def _found_rates(self, net: FilmNet, step: float) -> Complexes:
-        self.progress(f"    how the net follows {self.films.freedom.count} parameters")
+        if not self.films.knows(net):
+            self.progress(f"    how the net follows {self.films.freedom.count} parameters")
         return self.films.cell_rates(net, step)
 
     def descend(self, aim: _Aim, patience: int = MOST_STEPS) -> _Aim:

@@ -101,6 +101,10 @@ class Films:
             raise FollowError("umbilics come or go at the boundary")
         return there
 
+    def knows(self, net: FilmNet) -> bool:
+        """Whether the rates of a net were asked for before."""
+        return net in self._rates
+
     def cell_rates(self, net: FilmNet, step: float) -> Complexes:
         """Rates of the shifts in cells, (t, p + 1), the logarithm of the spacing last."""
         if net not in self._rates:
