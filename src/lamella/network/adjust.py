@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 
 from lamella.errors import InputError
 from lamella.network.adjustable_films import Films, FollowError
+from lamella.network.between_umbilics import between_umbilics, keeps_apart
 from lamella.network.carried_shifts import Carrier
 from lamella.network.element_lattice import Lattice, choose_lattice
 from lamella.network.film_net import FilmNet
@@ -210,6 +211,9 @@ class _Search:
         near = net.whole.nearest(shifts, MOST_TRIED)
         near += [whole for whole in easy if not any(np.array_equal(whole, one) for one in near)]
         near = [whole for whole in near if self._counted(net, whole, lattice) == counted] or near
+        # two umbilics cannot meet in one node
+        factors = between_umbilics(net.iso)
+        near = [whole for whole in near if keeps_apart(factors, shifts, whole)] or near
         cost = [self._solved(net, rates, whole - shifts)[1] for whole in near]
         return [near[k] for k in np.argsort(cost, kind="stable")[:MOST_TRIED].tolist()]
 
