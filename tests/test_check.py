@@ -72,6 +72,7 @@ def rings(distance: float) -> list[dict[str, Any]]:
         ),
         (annulus(cells=25, every=2), "is no multiple of 2", "network.cells"),
         (film(boundary=rings(1.001 * FOLD * 3.0)), "rings are", "surface.boundary"),
+        (film(boundary=rings(3.0), most_nodes=700), "more than tolerance = 0.005", "surface.tolerance"),
         (film(mean_curvature=2.0), "no surface in this boundary bends that much", "surface.mean_curvature"),
     ],
 )

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from lamella.cautions import order_caution
+from lamella.errors import InputError
 from lamella.network.lines import is_traced
 from lamella.pipeline import plan
 from lamella.progress import Progress, silent
@@ -76,7 +77,14 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
     """
     left: list[str] = []
     coarse = _coarse(project, left)
-    surface, density = plan(coarse, folder=folder, progress=progress)
+    try:
+        surface, density = plan(coarse, folder=folder, progress=progress)
+    except InputError as error:
+        if coarse is project or error.where != "surface.tolerance":
+            raise
+        # in the project's own numbers
+        left.clear()
+        surface, density = plan(project, folder=folder, progress=progress)
     if density:
         return Checked(surface, density.cells, density.estimated_nodes, "", ())
     if coarse is not project and umbilic_reason(surface.check_points(), COARSE):
