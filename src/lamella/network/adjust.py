@@ -312,7 +312,7 @@ class _Search:
             except FollowError as error:
                 raise _LostError(aim, str(error)) from None
             self._tell(there)
-            if _worst(there.misses) < 3 * CLOSED:
+            if _worst(there.misses) < CLOSED:
                 return there.net, there.step, _worst(there.misses)
             slow = move.any() and there.size > CARRIED * aim.size
             aim = there
