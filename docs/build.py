@@ -128,7 +128,7 @@ def project_file_page() -> str:
         "# Project file\n",
         "A project file is TOML in UTF-8. Lengths are metres, angles degrees, stresses Pa. An unknown key is an "
         "error that names the nearest known one. `lamella new KIND` writes a commented starter, `lamella check "
-        "FILE` looks for mistakes without computing, and every run writes the project back with all defaults "
+        "FILE` looks for mistakes in a few seconds, and every run writes the project back with all defaults "
         "filled in. For editors that check TOML against a JSON schema: "
         "[project.schema.json](schema/project.schema.json) (also printed by `lamella schema project`).\n",
         "Only `[surface]` is required.\n",

@@ -163,10 +163,13 @@ def test_nodes_of_order_two_grow_as_told() -> None:
         assert 1 / 3 < nodes / (2 / tolerance**2) < 3
 
 
-def test_a_surface_file_without_nurbs_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    surface = sphere_cap(3)
+@pytest.mark.parametrize("order", [3, 4])
+def test_a_surface_file_without_nurbs_is_told(monkeypatch: pytest.MonkeyPatch, order: int) -> None:
+    surface = sphere_cap(order)
     assert list(surface_file_cautions(surface)) == []
     count = 3 * len(surface.connectivity.elements)
     monkeypatch.setattr("lamella.files.surface_3dm.MOST_PATCHES", count - 1)
     (told,) = surface_file_cautions(surface)
     assert f"NURBS would be {count:,} patches (limit {count - 1:,})" in told
+    # no order is higher than 4
+    assert ("a higher surface.order" in told) == (order < 4)

@@ -373,6 +373,10 @@ MISSED = (
     r"\d of \d umbilics are no nodes of the net \(at [-\d., e;]+ m\): lamellas pass around them; "
     r"another number of cells \(even, where two lie on one principal line\) makes them nodes"
 )
+BENT = (
+    r"the normal curvature of the lamellas, measured on the surface, is off by up to \S+ 1/m, [23]\.\de-03 of the "
+    r"curvature scale \(at 95 % of the samples by [4-6]\.\de-04; limit 0\.002\): .*"
+)
 BEYOND = r"\d+ pairs? of strips meets? beyond the rim, where no slot is cut: .*"
 WARNINGS = {
     "01_unduloid": [SPLIT],
@@ -387,7 +391,8 @@ WARNINGS = {
     "14_three_columns": [SEAMS, MISSED, LEFT_OUT, BEYOND],
     "16_hall": [LEFT_OUT, SPLIT],
     "17_gridshell": [LEFT_OUT],
-    "18_saddle_roof": [LEFT_OUT, SPLIT],
+    # 1,617 vertices do not tell more
+    "18_saddle_roof": [BENT, LEFT_OUT, SPLIT],
 }
 # three umbilics of the cushion and six of the canopy lie anywhere: their nets have seams
 OPEN = {"12_cushion", "14_three_columns"}

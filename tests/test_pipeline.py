@@ -9,7 +9,7 @@ import sys
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
@@ -411,9 +411,13 @@ def test_found_surfaces_on_the_command_line(
     assert files == {"summary.json", "project.toml", "surface.obj", "surface.ply", "report.html"}
     assert main(["run", "films/film.toml", "-v", "--until", "surface"]) == 0
     assert "\n    Newton step 1\n" in capsys.readouterr().err
+    laid = SimpleNamespace(lattice=SimpleNamespace(cells=10, estimated_nodes=1234))
+    monkeypatch.setattr("lamella.weaving.lay", lambda *_: laid)
+    monkeypatch.setattr("lamella.weaving.weave", lambda *_: None)
     assert main(["check", "films/film.toml"]) == 0
     told = capsys.readouterr()
-    assert told.out == f"films/film.toml: a good project. {found[0].surface.kind}, H = 0 1/m\n"
+    kind = found[0].surface.kind
+    assert told.out == f"films/film.toml: a good project. {kind}, H = 0 1/m, 10 cells, about 1,234 nodes\n"
     assert "Newton" not in told.err
     assert main(["check", "films/film.toml", "--verbose"]) == 0
     assert "    Newton step 1\n" in capsys.readouterr().err

@@ -10,7 +10,7 @@ import numpy as np
 from lamella.network.cell_sizes import MOST_RATIO, large_cells
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas, layer_drift
-from lamella.surface.element.surface import ElementSurface
+from lamella.surface.element.surface import SMOOTHED_ORDER, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
 from lamella.wording import counted
@@ -63,13 +63,17 @@ def surface_file_cautions(surface: Surface[Any]) -> Iterator[str]:
     if count > MOST_PATCHES:
         yield (
             f"surface.3dm holds one mesh, within about {MESH_TOLERANCE:g} of the surface's size, and exact boundary "
-            f"curves: NURBS would be {count:,} patches (limit {MOST_PATCHES:,}); a larger surface.tolerance or a "
-            "higher surface.order takes fewer"
+            f"curves: NURBS would be {count:,} patches (limit {MOST_PATCHES:,}); a larger surface.tolerance"
+            + (" or a higher surface.order" if surface.connectivity.basis.order < max(SMOOTHED_ORDER) else "")
+            + " takes fewer"
         )
 
 
-def network_cautions(network: Network, height: float, closing: str = "open") -> Iterator[str]:
-    """Lamellas left out, cells much larger than others or too small for the strip, needless wishes."""
+def network_cautions(network: Network, height: float, closing: str = "open", *, traced: bool = False) -> Iterator[str]:
+    """Lamellas left out, cells much larger than others or too small for the strip, needless wishes.
+
+    `traced` is whether the lines come from seeds, one by one, and not from a lattice.
+    """
     if closing != "open":
         yield f"network.closing = {closing!r} has nothing to do: every net of a closed-form surface closes by itself"
     if network.left_out:
@@ -91,8 +95,7 @@ def network_cautions(network: Network, height: float, closing: str = "open") -> 
         places = "; ".join(f"{one.edge:.3g} m at ({', '.join(f'{x:.3g}' for x in one.point)}) m" for one in large)
         yield (
             f"{count} cell edge{'s are' if count > 1 else ' is'} over {MOST_RATIO:g} x the median, up to "
-            f"{large[0].ratio:.3g} x ({places}): the surface is nearly planar or spherical there; more cells, or a "
-            "boundary that bends it more"
+            f"{large[0].ratio:.3g} x ({places}): {_why_large(network, traced)}"
         )
     median = float(np.median(network.cell_edges))
     if median < height and network.pattern.kind == "lamellas":
@@ -100,6 +103,18 @@ def network_cautions(network: Network, height: float, closing: str = "open") -> 
             f"half of the cell edges are shorter than {median * 1000:.3g} mm, less than the strip's height of "
             f"{height * 1000:g} mm: choose fewer cells or a lower strip"
         )
+
+
+def _why_large(network: Network, traced: bool) -> str:
+    """What makes cells large, and what to do about it."""
+    if not traced:
+        return "the surface is nearly planar or spherical there; more cells, or a boundary that bends it more"
+    if network.pattern.kind == "principal":
+        return "principal lines draw apart there; more cells, or a smaller spacing"
+    return (
+        "lines of one normal curvature draw apart there, or cross at flat angles; a smaller spacing, or another "
+        "normal_curvature"
+    )
 
 
 def lamella_cautions(mesh: SurfaceMesh, network: Network, lamellas: Lamellas, slot_width: float) -> Iterator[str]:

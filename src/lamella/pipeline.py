@@ -13,7 +13,7 @@ from lamella.errors import InputError
 from lamella.fabrication import Nesting, Parts, make_parts, nest
 from lamella.fabrication.rules import LEAST_END, LEAST_HUB, Rules, clear_hub, edge_scale
 from lamella.network.density import Density, choose_density
-from lamella.network.lines import check_traced, ground_of, is_traced, told_mean_curvature
+from lamella.network.lines import check_traced, is_traced
 from lamella.network.network import Network
 from lamella.network.trace import trace_closed_form
 from lamella.progress import Progress, silent
@@ -24,7 +24,7 @@ from lamella.surface.closed_form import ClosedForm
 from lamella.surface.closed_forms import CLOSED_FORMS
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
-from lamella.surface.umbilic import refuse_umbilic, umbilic_reason
+from lamella.surface.umbilic import umbilic_reason
 
 if TYPE_CHECKING:
     from lamella.network.adjust import Adjusted
@@ -133,7 +133,7 @@ def plan(
     """The surface of a project and, where that is arithmetic, the density of its net.
 
     Whatever can be refused without a net is refused here. A closed form takes no time; other surfaces have to be found,
-    and how far apart their lamellas are is known once their isothermic coordinates are.
+    and how far apart their lamellas are is known once their isothermic coordinates are (`lamella.check`).
 
     Parameters
     ----------
@@ -283,11 +283,17 @@ def compute(
             network = trace_closed_form(surface, density, minimum_length=table.minimum_length)
             figures["network"] = f = summary.network_summary(network, density.requested)
         else:
+            # heavy, and closed forms do without
+            from lamella.weaving import lay, trace, weave
+
             traced = is_traced(surface, table.pattern)
             clock.start(
                 f"network: {'lines from even seeds' if traced else 'umbilics, isothermic coordinates, lamellas'}"
             )
-            woven = _trace(surface, project, progress) if traced else _weave(surface, project, adjusted, progress)
+            if traced:
+                woven: ElementNetwork | TracedNetwork = trace(surface, project, progress)
+            else:
+                woven = weave(lay(surface, project, adjusted.step if adjusted else None, progress), project)
             network = woven.network
             figures["network"] = f = summary.network_summary(network, woven.requested) | woven.describe()
             if adjusted:
@@ -298,7 +304,12 @@ def compute(
             f"{network.cells} cells: {f['lamellas']} lamellas, {f['nodes']:,} nodes, cell edge "
             f"{f['cell_edge_min']:.3g} to {f['cell_edge_max']:.3g} m (median {f['cell_edge_median']:.3g} m)",
         )
-        warnings += cautions.network_cautions(network, project.lamella.height, table.closing if density else "open")
+        warnings += cautions.network_cautions(
+            network,
+            project.lamella.height,
+            table.closing if density else "open",
+            traced=is_traced(surface, table.pattern),
+        )
     if network and depth >= STAGES.index("lamellas"):
         strip = project.lamella
         clock.start(f"lamellas: {strip.height * 1000:g} x {strip.thickness * 1000:g} mm, {strip.material}")
@@ -320,45 +331,6 @@ def compute(
     content |= {stage: figures.get(stage) for stage in STAGES}
     content |= {"warnings": warnings, "seconds": clock.seconds}
     return Results(project, surface, mesh, network, lamellas, parts, nesting, content, folder, adjusted)
-
-
-def _weave(surface: Surface[Any], project: Project, adjusted: Adjusted | None, progress: Progress) -> ElementNetwork:
-    """The network of a surface of elements."""
-    from lamella.network.element_network import element_network
-    from lamella.surface.element.surface import ElementSurface
-
-    assert isinstance(surface, ElementSurface)
-    table = project.network
-    boundary = getattr(project.surface, "boundary", ())
-    return element_network(
-        surface,
-        cells=table.cells,
-        spacing=table.spacing,
-        # what is left of an adjusted net's misses is far below what counts as closed
-        closing="round" if table.closing == "round" else "open",
-        step=adjusted.step if adjusted else None,
-        minimum_length=table.minimum_length,
-        pattern=table.pattern,
-        loop_names=tuple(loop.name for loop in boundary),
-        progress=progress,
-    )
-
-
-def _trace(surface: Surface[Any], project: Project, progress: Progress) -> TracedNetwork:
-    """The network of lines that follow from no lattice."""
-    from lamella.network.traced_network import traced_network
-
-    refuse_umbilic(surface)
-    table = project.network
-    return traced_network(
-        ground_of(surface),
-        table.pattern,
-        mean_curvature=told_mean_curvature(surface, table.pattern),
-        cells=table.cells,
-        spacing=table.spacing,
-        minimum_length=table.minimum_length,
-        progress=progress,
-    )
 
 
 def _last_of(project: Project, until: str | None) -> int:

@@ -208,6 +208,7 @@ def test_what_is_no_quad_mesh_is_refused(name: str, content: str, match: str, tm
     with pytest.raises(InputError, match=match) as caught:
         read_quad_mesh(path)
     assert caught.value.where == str(path)
+    assert str(caught.value).count(name) == 1
     assert caught.value.remedy
 
 

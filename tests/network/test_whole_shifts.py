@@ -12,7 +12,8 @@ import pytest
 from exact_elements import on_map
 from lamella import Enneper
 from lamella.network import gluing
-from lamella.network.carried_shifts import carried
+from lamella.network.between_umbilics import between_umbilics, keeps_apart
+from lamella.network.carried_shifts import Carrier
 from lamella.network.cell_map import CellMap
 from lamella.network.cut import cut_edges
 from lamella.network.element_lattice import lattice_origin
@@ -95,13 +96,43 @@ def test_near_whole_shifts_do_not_depend_on_the_cut(
         different += ends[0] != ends[1]
         # the same one, named by the other cut's pieces, and back
         for one, size in zip(near, sizes, strict=True):
-            named = carried(first, one - shifts, other, here, there)
+            named = Carrier(first, other, there).whole_shifts(one - shifts, here)
             assert named is not None
             assert there.size(named - here) == pytest.approx(size, rel=1e-2, abs=1e-4)
-            back = carried(other, named - here, first, shifts, whole)
+            back = Carrier(other, first, whole).whole_shifts(named - here, shifts)
             assert back is not None
             assert np.abs(back - one).max() < 1e-9
     assert different
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_distances_of_umbilics_do_not_depend_on_the_cut(
+    films: list[ElementSurface], monkeypatch: pytest.MonkeyPatch, number: int
+) -> None:
+    """They are integrals of dw from one to the other; and where w is -w + c an umbilic is at c / 2."""
+    known: np.ndarray | None = None
+    for seed in range(4):
+        iso = cut_anew(films[number], monkeypatch, seed)
+        shifts = np.array([piece.shift for piece in iso.transitions])
+        distances = np.abs(between_umbilics(iso) @ shifts)
+        assert len(distances) == len(iso.odd) * (len(iso.odd) - 1) // 2
+        order = np.argsort(iso.odd)
+        pairs = [(order[p], order[q]) for p in range(len(order)) for q in range(p)]
+        rank = [max(p, q) * (max(p, q) - 1) // 2 + min(p, q) for p, q in pairs]
+        known = distances[rank] if known is None else known
+        assert distances[rank] == pytest.approx(known, rel=2e-2, abs=2e-3)
+        for vertex in iso.odd.tolist():
+            element, corner = (int(part[0]) for part in np.nonzero(iso.mesh.connectivity.faces == vertex))
+            _, twice = around_vertex(iso.mesh, iso.transitions, iso.across, vertex)
+            assert abs(iso.value[element, corner] - twice @ shifts / 2) < 1e-6 * np.ptp(iso.value.real)
+
+
+def test_whole_shifts_that_keep_umbilics_apart() -> None:
+    """Two umbilics 0.4 cells apart, and two that are 3 cells apart: the first ones may not be asked to meet."""
+    factors, shifts = np.array([[0.5, 0.0], [0.0, 1.0]]), np.array([0.8, 3.0 + 0.1j])
+    assert not keeps_apart(factors, shifts, np.array([0.0, 3.0 + 0j]))
+    assert keeps_apart(factors, shifts, np.array([2.0, 3.0 + 0j]))
+    assert keeps_apart(factors, shifts, np.array([2.0, 0.0 + 0j]))
 
 
 @pytest.mark.parametrize("number", [0, 1])

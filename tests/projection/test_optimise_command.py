@@ -308,13 +308,15 @@ def test_targets_refused_before_anything_is_computed(tmp_path: Path, capsys: pyt
     content = path.read_bytes()
     for options, match in (
         (["--out", str(path)], "in use already"),
-        (["--out", str(tmp_path / "b.stl")], "'.stl' holds no quad mesh"),
+        (["--out", str(tmp_path / "b.stl")], "b.stl: the format '.stl' holds no quad mesh"),
         (["--out", str(tmp_path / "none" / "b.obj")], "no such folder"),
         (["--out", str(tmp_path)], "is a folder"),
         (["--out", str(tmp_path / "b.json"), "--json", str(tmp_path / "b.json")], "in use already"),
     ):
         assert main(["optimise", str(path), "--as", "asymptotic", *options]) == 2
-        assert match in capsys.readouterr().err
+        told = capsys.readouterr().err
+        assert match in told
+        assert "b.stl" not in match or told.count("b.stl") == 1
     assert path.read_bytes() == content
     assert [item.name for item in tmp_path.iterdir()] == ["a.obj"]
 

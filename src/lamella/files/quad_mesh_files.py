@@ -110,7 +110,7 @@ def require_format(path: Path) -> None:
     """Raise `InputError` for an ending that tells no format."""
     if path.suffix.lower() not in FORMATS:
         raise InputError(
-            f"{path.name}: the format {path.suffix!r} holds no quad mesh we know", f"take {', '.join(FORMATS)}"
+            f"the format {path.suffix!r} holds no quad mesh we know", f"take {', '.join(FORMATS)}", where=str(path)
         )
 
 

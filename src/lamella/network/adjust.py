@@ -7,7 +7,7 @@ of what each parameter is allowed, that makes the misses nought. The spacing of 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,12 +17,13 @@ from scipy.spatial import cKDTree
 
 from lamella.errors import InputError
 from lamella.network.adjustable_films import Films, FollowError
-from lamella.network.carried_shifts import carried
+from lamella.network.between_umbilics import between_umbilics, keeps_apart
+from lamella.network.carried_shifts import Carrier
 from lamella.network.element_lattice import Lattice, choose_lattice
 from lamella.network.film_net import FilmNet
 from lamella.network.holonomy import around_holes, holonomies
 from lamella.network.pattern import LAMELLAS, Pattern
-from lamella.progress import Progress
+from lamella.progress import Progress, patient
 from lamella.surface.boundary.curve import Loop
 from lamella.surface.boundary.freedom import Freedom
 from lamella.surface.boundary.tables import boundary_loops
@@ -37,7 +38,13 @@ if TYPE_CHECKING:
 CLOSED = 1e-4
 # tolerance of the film on which the boundary is looked for, before the one that was asked for
 COARSE = 2e-2
-MOST_STEPS, MOST_POLISHING, MOST_HALVINGS = 14, 5, 5
+MOST_STEPS, MOST_POLISHING, MOST_HALVINGS = 20, 6, 5
+# steps towards all the whole numbers that are tried
+MOST_IN_ALL = 50
+# whole steps refused one after the other, after which other whole numbers go first
+PATIENCE = 2
+# of the misses left by a step: with more, the next step's rates are found anew and not carried on
+CARRIED = 0.5
 # of the film's size: what the boundary moves in a step, at most
 LONGEST = 0.04
 # range of the logarithm of the lattice's spacing
@@ -135,11 +142,15 @@ def adjust_boundary(
 
 @dataclass(frozen=True)
 class _Aim:
-    """A net on its way to whole shifts (t,), in cells of a lattice with a spacing l0 (sqrt(m))."""
+    """A net on its way to whole shifts (t,), in cells of a lattice with a spacing l0 (sqrt(m)).
+
+    `rates` (t, p + 1) are those of `Films.cell_rates`, carried on from the step before; None: to be found.
+    """
 
     net: FilmNet
     whole: Complexes
     step: float
+    rates: Complexes | None = None
 
     @property
     def misses(self) -> Complexes:
@@ -156,7 +167,7 @@ class _Search:
     """Gauss-Newton's method on one project's boundary."""
 
     def __init__(self, films: Films, progress: Progress) -> None:
-        self.films, self.progress = films, progress
+        self.films, self.progress = films, patient(progress)
         self.steps = 0
 
     def closed(self, first: FilmNet, lattice: Lattice) -> tuple[FilmNet, float, float]:
@@ -165,17 +176,27 @@ class _Search:
         The whole numbers that promise the smallest change are tried first; the next ones where these are not reached.
         """
         lost: list[_LostError] = []
+        waiting: list[_Aim] = []
         for whole in self._targets(first, lattice):
             if lost:
                 self.progress(f"  {lost[-1]}: other whole numbers of cells")
             try:
-                return self.polish(self.descend(_Aim(first, whole, lattice.step)))
+                return self.polish(self.descend(_Aim(first, whole, lattice.step), PATIENCE))
+            except _StuckError as error:
+                lost.append(error)
+                waiting.append(error.aim)
+            except _LostError as error:
+                lost.append(error)
+        for aim in waiting:
+            self.progress(f"  {lost[-1]}: back to those that were left with {_worst(aim.misses):.2g} cells")
+            try:
+                return self.polish(self.descend(aim))
             except _LostError as error:
                 lost.append(error)
         nearest = min(lost, key=lambda one: one.missed)
         raise InputError(
             f"the net could not be closed within what the boundary may change: {nearest} "
-            f"({len(lost)} ways tried in {self.steps} steps)",
+            f"({len(lost) - len(waiting)} ways tried in {self.steps} steps)",
             'allow more change (adjust of the loops, adjust_mean_curvature), choose other cells, or closing = "open"',
             "network.closing",
         )
@@ -183,13 +204,16 @@ class _Search:
     def _targets(self, net: FilmNet, lattice: Lattice) -> list[Complexes]:
         """Whole shifts (t,) in the order of the change they ask for, to first order."""
         step = lattice.step
-        shifts, rates = net.cells(step), self.films.cell_rates(net, step)
+        shifts, rates = net.cells(step), self._found_rates(net, step)
         counted = self._counted(net, shifts, lattice)
         easy = net.whole.easiest(shifts, rates * np.append(np.ones(len(net.shares)), SPACING), MOST_LOOKED_AT)
         # where the boundary may hardly change, only another spacing is easy: other cells than were asked for
         near = net.whole.nearest(shifts, MOST_TRIED)
         near += [whole for whole in easy if not any(np.array_equal(whole, one) for one in near)]
         near = [whole for whole in near if self._counted(net, whole, lattice) == counted] or near
+        # two umbilics cannot meet in one node
+        factors = between_umbilics(net.iso)
+        near = [whole for whole in near if keeps_apart(factors, shifts, whole)] or near
         cost = [self._solved(net, rates, whole - shifts)[1] for whole in near]
         return [near[k] for k in np.argsort(cost, kind="stable")[:MOST_TRIED].tolist()]
 
@@ -202,62 +226,99 @@ class _Search:
                 return count
         return 0
 
-    def descend(self, aim: _Aim) -> _Aim:
-        """Steps on the coarse film, each with rates of its own."""
+    def _found_rates(self, net: FilmNet, step: float) -> Complexes:
+        if not self.films.knows(net):
+            self.progress(f"    how the net follows {self.films.freedom.count} parameters")
+        return self.films.cell_rates(net, step)
+
+    def descend(self, aim: _Aim, patience: int = MOST_STEPS) -> _Aim:
+        """Steps on the coarse film, until the misses are gone or so many whole steps running are refused."""
         self._tell(aim)
+        refused = 0
         for _ in range(MOST_STEPS):
             if _worst(aim.misses) < CLOSED:
                 return aim
-            aim = self._step(aim)
+            if self.steps >= MOST_IN_ALL:
+                raise _LostError(aim, f"not reached in {MOST_IN_ALL} steps")
+            self.steps += 1
+            aim, reason = self._step(aim)
             self._tell(aim)
+            refused = refused + 1 if reason else 0
+            if refused >= patience and _worst(aim.misses) >= CLOSED:
+                raise _StuckError(aim, reason)
         raise _LostError(aim, f"not reached in {MOST_STEPS} steps")
 
-    def _step(self, aim: _Aim) -> _Aim:
-        """A net nearer to its whole shifts."""
+    def _step(self, aim: _Aim) -> tuple[_Aim, str]:
+        """A net nearer to its whole shifts, and why the whole step there was refused, if it was."""
+        if aim.rates is not None:
+            try:
+                return self._moved(aim, aim.rates, 1)
+            except _LostError:
+                self.progress("    the rates carried on do not lead on")
+        return self._moved(aim, self._found_rates(aim.net, aim.step), MOST_HALVINGS)
+
+    def _moved(self, aim: _Aim, rates: Complexes, halvings: int) -> tuple[_Aim, str]:
+        """See `_step`, with given rates and so many tries."""
         net = aim.net
-        rates = self.films.cell_rates(net, aim.step)
         change = self._solved(net, rates, aim.misses)[0]
         if net.whole.size(aim.misses - rates @ change) > (1 - LEAST_GAIN) * aim.size:
             raise _LostError(aim, "the boundary may not change by more")
         change = self._shortened(net, change)
-        self.steps += 1
         part, reason = 1.0, ""
-        for _ in range(MOST_HALVINGS):
+        for _ in range(halvings):
             move = part * change
+            self.progress(f"    following the film over {part:g} of a step" + (f" ({reason})" if reason else ""))
             try:
-                moved = self.films.moved(net, net.shares + move[:-1])
-                there = self._carried(aim, moved, aim.misses - rates @ move, move[-1])
+                there = self._carried(aim, self.films.moved(net, net.shares + move[:-1]), rates, move)
             except FollowError as error:
                 reason, part = str(error), part / 2
                 continue
             if there.size < (1 - LEAST_GAIN * part) * aim.size or _worst(there.misses) < 10 * CLOSED:
-                return there
+                return (there if there.size < CARRIED * aim.size else replace(there, rates=None)), reason
             reason, part = "the misses grow", part / 2
         raise _LostError(aim, reason)
 
-    def _carried(self, aim: _Aim, net: FilmNet, left: Complexes, log_step: float) -> _Aim:
-        """The same whole shifts on another net, which is expected to miss them by `left`."""
-        step = float(aim.step * np.exp(log_step))
-        whole = carried(aim.net.iso, left, net.iso, net.cells(step), net.whole)
+    def _carried(self, aim: _Aim, net: FilmNet, rates: Complexes, move: Floats) -> _Aim:
+        """The same whole shifts on another net, with the rates carried on.
+
+        Broyden's update: of all rates that explain the misses found there, those least different from the old ones
+        (C. G. Broyden, Math. Comp. 19 (1965) 577).
+        """
+        left = aim.misses - rates @ move
+        step = float(aim.step * np.exp(move[-1]))
+        carrier = Carrier(aim.net.iso, net.iso, net.whole)
+        whole = carrier.whole_shifts(left, net.cells(step))
         if whole is None:
             raise FollowError("the net changes too much in a step")
-        return _Aim(net, whole, step)
+        there = _Aim(net, whole, step)
+        expected = carrier.coordinates(np.column_stack([rates[:, :-1], left]))
+        spacing = net.whole.coordinates(net.whole.offset - net.cells(step))
+        found = np.column_stack([expected[:, :-1], spacing])
+        scaled = move / np.append(np.ones(len(move) - 1), SPACING**2)
+        if move.any():
+            more = net.whole.coordinates(there.misses) - expected[:, -1]
+            found = found - np.outer(more, scaled) / (scaled @ move)
+        return replace(there, rates=net.whole.basis.T @ found)
 
     def polish(self, aim: _Aim) -> tuple[FilmNet, float, float]:
         """The film as fine as was asked for: its own misses are a little different ones."""
-        shares, log_step, left = aim.net.shares, 0.0, aim.misses
+        rates = aim.rates if aim.rates is not None else self._found_rates(aim.net, aim.step)
+        move = np.zeros(len(aim.net.shares) + 1)
         for _ in range(MOST_POLISHING):
+            self.progress("    the film as fine as asked for")
             try:
-                aim = self._carried(aim, self.films.found(shares, self.films.table.tolerance), left, log_step)
+                found = self.films.found(aim.net.shares + move[:-1], self.films.table.tolerance)
+                there = self._carried(aim, found, rates, move)
             except FollowError as error:
                 raise _LostError(aim, str(error)) from None
-            self._tell(aim)
-            if _worst(aim.misses) < 3 * CLOSED:
-                return aim.net, aim.step, _worst(aim.misses)
-            rates = self.films.cell_rates(aim.net, aim.step)
-            change = self._shortened(aim.net, self._solved(aim.net, rates, aim.misses)[0])
+            self._tell(there)
+            if _worst(there.misses) < CLOSED:
+                return there.net, there.step, _worst(there.misses)
+            slow = move.any() and there.size > CARRIED * aim.size
+            aim = there
+            rates = self._found_rates(aim.net, aim.step) if slow or aim.rates is None else aim.rates
+            move = self._shortened(aim.net, self._solved(aim.net, rates, aim.misses)[0])
             self.steps += 1
-            shares, log_step, left = aim.net.shares + change[:-1], change[-1], aim.misses - rates @ change
         raise _LostError(aim, "the finer surface does not follow")
 
     def _solved(self, net: FilmNet, cell_rates: Complexes, misses: Complexes) -> tuple[Floats, float]:
@@ -299,6 +360,14 @@ class _LostError(ArithmeticError):
     def __init__(self, aim: _Aim, reason: str) -> None:
         self.missed = _worst(aim.misses)
         super().__init__(f"misses of up to {self.missed:.2g} cells are left ({reason})")
+
+
+class _StuckError(_LostError):
+    """Whole shifts on the way to which steps get shorter; `aim` is how far it went."""
+
+    def __init__(self, aim: _Aim, reason: str) -> None:
+        super().__init__(aim, reason)
+        self.aim = aim
 
 
 def _worst(misses: Complexes) -> float:

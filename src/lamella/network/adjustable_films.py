@@ -102,6 +102,10 @@ class Films:
             raise FollowError("umbilics come or go at the boundary")
         return there
 
+    def knows(self, net: FilmNet) -> bool:
+        """Whether the rates of a net were asked for before."""
+        return net in self._rates
+
     def cell_rates(self, net: FilmNet, step: float) -> Complexes:
         """Rates of the shifts in cells, (t, p + 1), the logarithm of the spacing last."""
         if net not in self._rates:
@@ -120,11 +124,14 @@ class Films:
         t = rim_parameters(film.connectivity, film.mesh.parameter)
         of_loop = film.mesh.loop[nodes[:, 0]]
         result = np.zeros((self.freedom.count, len(film.nodes), 3))
-        begin = self.loops(shares)
+        begin, tables = self.loops(shares), self.freedom.changed(shares).boundary
         for number in range(self.freedom.count):
             ahead = shares.copy()
             ahead[number] += SHARE
+            moved = self.freedom.changed(ahead).boundary
             for index, (old, new) in enumerate(zip(begin, self.loops(ahead), strict=True)):
+                if moved[index] == tables[index]:
+                    continue
                 mine = of_loop == index
                 result[number, nodes[mine]] = (new.at(t[mine]) - old.at(t[mine])) / SHARE
         return result

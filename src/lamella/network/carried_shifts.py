@@ -19,42 +19,59 @@ _MIDDLE = np.array([[1 / 3, 1 / 3]])
 UNSURE = 0.4
 
 
-def carried(
-    old: Isothermic, change: Complexes, new: Isothermic, shifts: Complexes, whole: WholeShifts
-) -> Complexes | None:
-    """The whole shifts of a near surface that stand for those of another one.
+class Carrier:
+    """Carries changes of shifts from one surface to a near one.
 
     Parameters
     ----------
     old : Isothermic
         On the first surface.
-    change : (t,) complex
-        What its shifts lack to the whole ones, in cells.
     new : Isothermic
         On the near surface.
-    shifts : (s,) complex
-        Its shifts, in cells.
     whole : WholeShifts
         Of the near surface.
-
-    Returns
-    -------
-    (s,) complex, or None where they are not told apart.
     """
-    if not len(whole.basis):
-        return whole.offset
-    there, _, fields = _derivatives(old)
-    here, area, own = _derivatives(new)
-    _, nearest = cKDTree(there).query(here)
-    wanted = np.einsum("t,tek->ek", change, fields[:, nearest])
-    weight = np.sqrt(area)[:, None]
-    system = (np.einsum("dt,tek->dek", whole.basis, own) * weight).reshape(len(whole.basis), -1).T
-    found = np.linalg.lstsq(system.astype(complex), (wanted * weight).ravel(), rcond=None)[0]
-    place = whole.coordinates(shifts - whole.offset) + found
-    rounded = np.round(place)
-    if np.abs(np.concatenate([(place - rounded).real, (place - rounded).imag])).max() > UNSURE:
-        return None
-    return np.asarray(whole.offset + rounded @ whole.basis, np.complex128)
+
+    def __init__(self, old: Isothermic, new: Isothermic, whole: WholeShifts) -> None:
+        self.whole = whole
+        there, _, fields = _derivatives(old)
+        here, area, own = _derivatives(new)
+        _, nearest = cKDTree(there).query(here)
+        self._fields, self._weight = fields[:, nearest], np.sqrt(area)[:, None]
+        count = len(whole.basis)
+        self._system = (np.einsum("dt,tek->dek", whole.basis, own) * self._weight).reshape(count, -1).T
+
+    def coordinates(self, changes: Complexes) -> Complexes:
+        """Changes of the first surface's shifts (t, c) in the lattice of the near surface's, (d, c)."""
+        if not len(self.whole.basis):
+            return np.zeros((0, changes.shape[1]), complex)
+        wanted = np.tensordot(changes.T, self._fields, 1) * self._weight
+        wanted = wanted.reshape(len(wanted), -1).T
+        found = np.linalg.lstsq(self._system, np.hstack([wanted.real, wanted.imag]), rcond=None)[0]
+        one, other = np.split(found, 2, 1)
+        return np.asarray(one + 1j * other, np.complex128)
+
+    def whole_shifts(self, change: Complexes, shifts: Complexes) -> Complexes | None:
+        """The whole shifts of the near surface that stand for those of the first one.
+
+        Parameters
+        ----------
+        change : (t,) complex
+            What the first surface's shifts lack to the whole ones, in cells.
+        shifts : (s,) complex
+            Those of the near surface, in cells.
+
+        Returns
+        -------
+        (s,) complex, or None where they are not told apart.
+        """
+        if not len(self.whole.basis):
+            return self.whole.offset
+        place = self.whole.coordinates(shifts - self.whole.offset) + self.coordinates(change[:, None])[:, 0]
+        rounded = np.round(place)
+        if np.abs(np.concatenate([(place - rounded).real, (place - rounded).imag])).max() > UNSURE:
+            return None
+        return np.asarray(self.whole.offset + rounded @ self.whole.basis, np.complex128)
 
 
 def _derivatives(iso: Isothermic) -> tuple[Floats, Floats, Floats]:

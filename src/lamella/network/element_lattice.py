@@ -34,6 +34,7 @@ class Lattice:
     cells : int
     requested : str
     estimated_nodes : int
+        Crossings and ends on the rim.
     """
 
     origin: complex
@@ -87,19 +88,30 @@ def choose_lattice(
         step = whole / cells
     else:
         cells = round(whole / step)
-    estimate = float(mu_area.sum() / step**2) / (pattern.every[0] * pattern.every[1])
+    p, q = pattern.every
+    # a crossing a cell, and two ends a lamella
+    crossings, ends = float(mu_area.sum()) / (step**2 * p * q), _ends(iso, pattern, step)
+    estimate = crossings + ends
     if estimate > MOST_NODES:
         memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
-        most = int(cells * np.sqrt(MOST_NODES / estimate))
+        finer = (np.sqrt(ends**2 + 4 * crossings * MOST_NODES) - ends) / (2 * crossings)
         raise InputError(
             f"{requested} would make about {estimate:,.0f} nodes and take about {memory:,.0f} GB of memory (limit "
             f"{MOST_NODES:,} nodes)",
-            f"at most {most} cells fit this surface"
+            f"at most {int(cells * finer)} cells fit this surface"
             if spacing is None
-            else f"choose a spacing of at least {spacing * cells / most:.3g} m",
+            else f"choose a spacing of at least {spacing / finer:.3g} m",
             key,
         )
     return Lattice(lattice_origin(iso, step, pattern), step, cells, requested, round(estimate))
+
+
+def _ends(iso: Isothermic, pattern: Pattern, step: float) -> float:
+    """Ends of lamellas on the rim: whole numbers that both parts of chi pass along it."""
+    connectivity = iso.mesh.connectivity
+    nodes = connectivity.basis.edge_nodes[connectivity.rim_edges]
+    along = np.diff(pattern.cells(iso.value[connectivity.rim_elements[:, None], nodes], step), axis=1)
+    return float((np.abs(along.real) + np.abs(along.imag)).sum())
 
 
 def lattice_origin(iso: Isothermic, step: float, pattern: Pattern) -> complex:

@@ -13,7 +13,7 @@ from lamella.errors import InputError
 from lamella.network.cell_map import CellMap
 from lamella.network.element_lattice import Lattice, choose_lattice
 from lamella.network.gluing import FoldedError, integrate, with_shifts
-from lamella.network.holonomy import holonomies
+from lamella.network.holonomy import Holonomy, holonomies
 from lamella.network.isothermic import Isothermic, Transition
 from lamella.network.lines import is_traced
 from lamella.network.net_mesh import NetMesh, make_net_mesh
@@ -126,6 +126,104 @@ class ElementNetwork:
             )
 
 
+@dataclass(frozen=True)
+class LaidNet:
+    """Where the lattice of a net lies on a surface, before anything is traced.
+
+    Attributes
+    ----------
+    surface : ElementSurface
+    umbilics : Umbilics
+    mesh : NetMesh
+    iso : Isothermic
+    around : tuple of Holonomy
+        Of the holes.
+    lattice : Lattice
+    pattern : Pattern
+    names : tuple of str
+        Of the boundary loops.
+    """
+
+    surface: ElementSurface
+    umbilics: Umbilics
+    mesh: NetMesh
+    iso: Isothermic
+    around: tuple[Holonomy, ...]
+    lattice: Lattice
+    pattern: Pattern
+    names: tuple[str, ...]
+
+    def traced(self, *, closing: Closing, minimum_length: float) -> ElementNetwork:
+        """The network, see `element_network`."""
+        iso, mesh, lattice, pattern = self.iso, self.mesh, self.lattice, self.pattern
+        raw = CellMap.of(iso, lattice.origin, lattice.step, pattern)
+        if closing == "round":
+            iso, wanted = _rounded(iso, raw, lattice)
+            off = _largest_part(raw.shifts - wanted)
+        else:
+            near = np.round(raw.shifts)
+            off = _largest_part(raw.shifts - near)
+            wanted = np.where(off <= CLOSES, near, np.nan)
+            iso = with_shifts(iso, _shifts(raw, wanted, lattice)) if (off <= CLOSES).any() else iso
+        rim_loop = mesh.loop[mesh.connectivity.rim_nodes[:, 0]]
+        network = trace_elements(
+            CellMap.of(iso, lattice.origin, lattice.step, pattern),
+            iso.cut,
+            self.umbilics.orders,
+            mean_curvature=self.surface.mean_curvature,
+            rim_loop=rim_loop,
+            count=lattice.cells,
+            periods=tuple(
+                Period(self.names[one.loop], *pattern.crossed(one.shift, lattice.step))
+                for one in self.around
+                if one.sign == 1
+            ),
+            minimum_length=minimum_length,
+        )
+        joints = tuple(
+            Joint(_named(piece, mesh, self.names), float(miss), not np.isnan(whole))
+            for piece, miss, whole in zip(iso.transitions, off, wanted, strict=True)
+        )
+        return ElementNetwork(network, self.umbilics, mesh.umbilics < 0, lattice, iso.residual, joints)
+
+
+def lay_net(
+    surface: ElementSurface,
+    *,
+    cells: int | None = None,
+    spacing: float | None = None,
+    step: float | None = None,
+    pattern: Pattern = LAMELLAS,
+    loop_names: tuple[str, ...] = (),
+    progress: Progress = silent,
+) -> LaidNet:
+    """Umbilics, isothermic coordinates and lattice of a surface: how many cells its net has, and about how many nodes.
+
+    Parameters
+    ----------
+    surface, cells, spacing, step, pattern, loop_names, progress
+        See `element_network`.
+
+    Raises
+    ------
+    InputError
+    """
+    refuse_umbilic(surface)
+    assert not is_traced(surface, pattern)
+    umbilics = surface.umbilics
+    told = ", ".join(f"order {m}" for m in umbilics.orders.tolist())
+    progress(f"  {len(umbilics.orders)} umbilics" + (f" ({told})" if told else ""))
+    mesh = make_net_mesh(surface, umbilics)
+    iso = integrate(mesh, mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)])
+    progress(
+        f"  isothermic coordinates on {mesh.connectivity.node_count:,} nodes: off by {iso.residual:.1e} of their slope"
+    )
+    names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
+    around = holonomies(iso)
+    lattice = choose_lattice(iso, around, cells, spacing, step=step, pattern=pattern, names=names)
+    return LaidNet(surface, umbilics, mesh, iso, around, lattice, pattern, names)
+
+
 def element_network(
     surface: ElementSurface,
     *,
@@ -161,46 +259,10 @@ def element_network(
     ------
     InputError
     """
-    refuse_umbilic(surface)
-    assert not is_traced(surface, pattern)
-    umbilics = surface.umbilics
-    told = ", ".join(f"order {m}" for m in umbilics.orders.tolist())
-    progress(f"  {len(umbilics.orders)} umbilics" + (f" ({told})" if told else ""))
-    mesh = make_net_mesh(surface, umbilics)
-    iso = integrate(mesh, mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)])
-    progress(
-        f"  isothermic coordinates on {mesh.connectivity.node_count:,} nodes: off by {iso.residual:.1e} of their slope"
+    laid = lay_net(
+        surface, cells=cells, spacing=spacing, step=step, pattern=pattern, loop_names=loop_names, progress=progress
     )
-    names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
-    around = holonomies(iso)
-    lattice = choose_lattice(iso, around, cells, spacing, step=step, pattern=pattern, names=names)
-    raw = CellMap.of(iso, lattice.origin, lattice.step, pattern)
-    if closing == "round":
-        iso, wanted = _rounded(iso, raw, lattice)
-        off = _largest_part(raw.shifts - wanted)
-    else:
-        near = np.round(raw.shifts)
-        off = _largest_part(raw.shifts - near)
-        wanted = np.where(off <= CLOSES, near, np.nan)
-        iso = with_shifts(iso, _shifts(raw, wanted, lattice)) if (off <= CLOSES).any() else iso
-    rim_loop = mesh.loop[mesh.connectivity.rim_nodes[:, 0]]
-    network = trace_elements(
-        CellMap.of(iso, lattice.origin, lattice.step, pattern),
-        iso.cut,
-        umbilics.orders,
-        mean_curvature=surface.mean_curvature,
-        rim_loop=rim_loop,
-        count=lattice.cells,
-        periods=tuple(
-            Period(names[one.loop], *pattern.crossed(one.shift, lattice.step)) for one in around if one.sign == 1
-        ),
-        minimum_length=minimum_length,
-    )
-    joints = tuple(
-        Joint(_named(piece, mesh, names), float(miss), not np.isnan(whole))
-        for piece, miss, whole in zip(iso.transitions, off, wanted, strict=True)
-    )
-    return ElementNetwork(network, umbilics, mesh.umbilics < 0, lattice, iso.residual, joints)
+    return laid.traced(closing=closing, minimum_length=minimum_length)
 
 
 def _largest_part(shifts: Complexes) -> Floats:

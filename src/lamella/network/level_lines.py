@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components, depth_first_order
 
+from lamella.errors import InputError
 from lamella.network.cell_map import CellMap
 from lamella.network.isothermic import sectors
 from lamella.surface.element.connectivity import connect
@@ -189,6 +190,7 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     points = len(small.chi)
     base = int(level.min(initial=0)) - 1
     width = int(level.max(initial=0)) - base + 2
+    _refuse_unnameable(points, width, len(level))
     # a crossing's name: its edge, and which whole number
     crossing = np.concatenate([_edge_keys(long_edge, points), _edge_keys(short_edge, points)]) * width
     crossing += np.tile(level - base, 2)
@@ -267,6 +269,18 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
         kind = np.where(np.isin(name // width, cut), SEAM_END, RIM)
         kinds[there, side] = np.where(name >= beyond, SINGULAR_END, kind)
     return Chains(offsets, triangle, level, start, end, local_start, local_end, kinds[chain_rank])
+
+
+def _refuse_unnameable(points: int, width: int, links: int) -> None:
+    """Crossings are named by whole numbers, which end at 2^63."""
+    names = points**2 * width + links
+    if names > np.iinfo(np.int64).max:
+        raise InputError(
+            f"a net {width:,} cells wide on elements cut at {points:,} places has {float(names):.2g} names for the "
+            f"crossings of its lamellas (limit {float(np.iinfo(np.int64).max):.2g})",
+            "choose fewer cells (or a larger spacing), or a larger surface.tolerance",
+            "network.cells",
+        )
 
 
 def _edge_keys(ends: Integers, points: int) -> Integers:

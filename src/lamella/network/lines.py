@@ -59,6 +59,16 @@ def check_traced(surface: Surface[Any], pattern: Pattern, closing: Literal["open
             'of constant mean curvature: surface.mean_curvature = "fit"',
             "network.normal_curvature",
         )
+    refuse_lattice_wishes(pattern, closing)
+
+
+def refuse_lattice_wishes(pattern: Pattern, closing: Literal["open", "round", "adjust"]) -> None:
+    """Refuse what asks for a lattice, of lines that have none.
+
+    Raises
+    ------
+    InputError
+    """
     if pattern.every != (1, 1):
         p, q = pattern.every
         raise InputError(

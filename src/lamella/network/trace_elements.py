@@ -196,7 +196,8 @@ def trace_elements(
     stop_sample[first_stop] = segment_start
     stop_sample[first_stop[last] + 1] = (segment_start + number)[last]
     family = tracks.family[used]
-    darboux = Darboux(bend, turning(tangents, crosses(normals, tangents), arclengths, offsets), twist)
+    closed = tracks.ends[used, 0] == CLOSED
+    darboux = Darboux(bend, turning(tangents, crosses(normals, tangents), arclengths, offsets, closed), twist)
 
     nodes, at = np.unique(stop_node, return_inverse=True)
     at = at.ravel()
@@ -228,7 +229,7 @@ def trace_elements(
         node_kinds=kinds,
         ids=ids,
         families=np.where(family == A, "A", "B"),
-        closed=tracks.ends[used, 0] == CLOSED,
+        closed=closed,
         sample_offsets=offsets,
         sample_points=points,
         sample_normals=normals,

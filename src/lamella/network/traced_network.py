@@ -8,64 +8,47 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lamella.errors import InputError
-from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
 from lamella.network.flow import ENDLESS, Flow
 from lamella.network.ground import Ground
+from lamella.network.laid_lines import Reach, lay_lines
 from lamella.network.lattice import ragged_ranges
-from lamella.network.line_field import LEAST_ANGLE, LineField
+from lamella.network.line_field import LEAST_ANGLE
 from lamella.network.meetings import Crossings, find_crossings
 from lamella.network.network import Network
 from lamella.network.pattern import Pattern
-from lamella.network.seeds import Guide, Seeded, choose_guide, seeded_lines
+from lamella.network.seeds import Seeded, seeded_lines
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
 from lamella.network.traced_stops import (
+    SAME_NODE,
     faces_of,
     line_stops,
-    long_enough,
     median_edge,
     merged_stops,
     stop_nodes,
+    whole_edge,
+    without_short,
 )
 from lamella.network.turning import turning
 from lamella.progress import Progress, silent
 from lamella.surface.darboux import Darboux
-from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
 Booleans = NDArray[np.bool_]
 
 # how far the median cell edge may be from the spacing asked for, and how often seeds are spaced anew for it
 OFF_SPACING, MOST_TRIES = 0.1, 3
-# of the spacing: ends and crossings this near to each other are one node (docs/files.md)
-SAME_NODE = 1e-6
 # samples of a piece of lamella, however short
 FEWEST = 3
 # share of the area worth telling
 LEAST_SHARE = 1e-3
-
-
-class Reach(NamedTuple):
-    """Where a surface has lines: shares of its area, and the principal curvatures on it, 1/m.
-
-    Attributes
-    ----------
-    unreal : float
-        Share without any direction of the wanted normal curvature.
-    flat : float
-        Share where there are some, but the families cross at less than `LEAST_ANGLE`.
-    k1_max, k2_min : float
-    """
-
-    unreal: float
-    flat: float
-    k1_max: float
-    k2_min: float
+# of the curvature scale: the normal curvature of lamellas is promised to be off by no more (docs/getting-started.md)
+PROMISED = 2e-3
 
 
 @dataclass(frozen=True)
@@ -84,6 +67,8 @@ class TracedNetwork:
     missed : (float, float)
         Difference of the normal curvature from the one asked for, by the surface's second derivatives alone, at most
         and at 95 % of the samples, 1/m.
+    scale : float
+        Curvature scale of the surface, 1/m.
     """
 
     network: Network
@@ -92,6 +77,7 @@ class TracedNetwork:
     guides: int
     inner_ends: int
     missed: tuple[float, float]
+    scale: float
 
     def describe(self) -> dict[str, Any]:
         """Further figures of the network for summary.json."""
@@ -107,7 +93,7 @@ class TracedNetwork:
         }
 
     def warnings(self) -> Iterator[str]:
-        """Where there are no lamellas, and lamellas that do not end."""
+        """Where there are no lamellas, and lamellas of another normal curvature than was asked for."""
         wanted = self.network.pattern.normal_curvature
         unreal, flat = self.reach.unreal, self.reach.flat
         if wanted is not None and unreal + flat > LEAST_SHARE:
@@ -119,6 +105,14 @@ class TracedNetwork:
             yield (
                 f"{', '.join(parts)}: no lamellas there, {self.inner_ends} of their ends lie inside the surface "
                 "(another normal_curvature moves that edge)"
+            )
+        most, usual = self.missed
+        if wanted is not None and most > PROMISED * self.scale:
+            yield (
+                f"the normal curvature of the lamellas, measured on the surface, is off by up to {most:.2g} 1/m, "
+                f"{most / self.scale:.1e} of the curvature scale (at 95 % of the samples by {usual / self.scale:.1e}; "
+                f"limit {PROMISED:g}): a smaller surface.tolerance, or a finer and smoother mesh, tells directions "
+                "better"
             )
 
 
@@ -154,42 +148,27 @@ def traced_network(
     ------
     InputError
     """
-    where, area = ground.samples()
-    look = ground.look(where)
-    size = float(np.linalg.norm(np.ptp(look.position, axis=0)))
-    scale = float(np.sqrt(np.average(look.mean**2 + np.abs(look.deviator) ** 2, weights=area)))
-    field = LineField(pattern.normal_curvature, max(scale, 1e-9 / size))
-    real, usable = field.is_real(look.mean, look.deviator), field.margin(look.mean, look.deviator) > 0
-    half = np.abs(look.deviator)
-    total = area.sum()
-    reach = Reach(
-        float(area[~real].sum() / total),
-        float(area[real & ~usable].sum() / total),
-        float((look.mean + half).max()),
-        float((look.mean - half).min()),
-    )
-    _refuse_nowhere(reach, usable, look.mean, half, pattern)
-    guide = choose_guide(ground, field, size)
-    distance, requested, key = _wanted(guide, cells, spacing)
-    _refuse_many(area[usable].sum(), field.crossing_sine(look.mean, look.deviator)[usable], guide, distance, key)
+    laid = lay_lines(ground, pattern, cells=cells, spacing=spacing)
+    field, guide, distance, size, key = laid.field, laid.guide, laid.distance, laid.size, laid.key
     best, known, chosen = np.inf, [], None
     for _ in range(MOST_TRIES):
         tried = seeded_lines(ground, field, guide, distance, size)
         _refuse_endless(tried.flow, pattern)
         met = find_crossings(tried.flow, distance * guide.share)
-        median = median_edge(tried.flow, met)
-        progress(f"  {tried.flow.count} lines from even seeds, {len(met.a):,} crossings {median:.3g} m apart")
+        flow, met = without_short(tried.flow, met, minimum_length)
+        median = median_edge(flow, met)
+        progress(f"  {flow.count} lines from even seeds, {len(met.a):,} crossings, median cell edge {median:.3g} m")
         off = 0.0 if spacing is None else abs(np.log(median / spacing)) if np.isfinite(median) else np.inf
         if chosen is None or off < best:
-            best, chosen = off, (tried, met, distance)
+            best, chosen = off, (tried, flow, met, distance)
         if spacing is None or off <= OFF_SPACING or not np.isfinite(median):
             break
         known.append((np.log(distance), np.log(median / spacing)))
         distance = _next_distance(known)
     assert chosen is not None
-    seeded, crossings, step = chosen
-    network, inner, missed = _network(ground, seeded, crossings, pattern, mean_curvature, step, minimum_length, key)
-    return TracedNetwork(network, requested, reach, seeded.guides, inner, missed)
+    seeded, flow, crossings, step = chosen
+    network, inner, missed = _network(ground, seeded, flow, crossings, pattern, mean_curvature, step, key)
+    return TracedNetwork(network, laid.requested, laid.reach, seeded.guides, inner, missed, laid.field.scale)
 
 
 def _refuse_endless(flow: Flow, pattern: Pattern) -> None:
@@ -207,60 +186,6 @@ def _refuse_endless(flow: Flow, pattern: Pattern) -> None:
         )
 
 
-def _refuse_nowhere(reach: Reach, usable: Booleans, mean: Floats, half: Floats, pattern: Pattern) -> None:
-    if usable.any():
-        return
-    if pattern.normal_curvature is None:
-        raise InputError(
-            "the surface is umbilic everywhere: all directions bend alike", "bend it more one way", "surface"
-        )
-    # the range within which some place has lines that cross well enough
-    turn = np.cos(np.radians(LEAST_ANGLE))
-    low, high = float((mean - turn * half).min()), float((mean + turn * half).max())
-    none = reach.unreal >= 1 - 1e-12
-    raise InputError(
-        f"normal_curvature = {pattern.normal_curvature:g} 1/m: "
-        + ("no direction of the surface has it" if none else f"lines of it cross at less than {LEAST_ANGLE:g} deg")
-        + f", its normal curvatures run from k2 = {reach.k2_min:.4g} to k1 = {reach.k1_max:.4g} 1/m",
-        f"choose a value from {low:.4g} to {high:.4g} 1/m (the sign is that of the surface's normal)",
-        "network.normal_curvature",
-    )
-
-
-def _wanted(guide: Guide, cells: int | None, spacing: float | None) -> tuple[float, str, str]:
-    """Distance of seeds along the guide, m, what was asked for, and the key it stands under."""
-    if spacing is None:
-        requested = f"cells = {cells}" if cells is not None else "cells = 24 (default)"
-        cells = 24 if cells is None else cells
-        if cells < LEAST_CELLS:
-            raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", "network.cells")
-        return guide.length / cells, requested, "network.cells"
-    fit = guide.length * guide.share / spacing
-    if fit < LEAST_CELLS:
-        raise InputError(
-            f"spacing = {spacing:g} m leaves {fit:.2g} cells across the surface, at least {LEAST_CELLS} are needed",
-            f"choose a spacing of at most {guide.length * guide.share / LEAST_CELLS:.3g} m",
-            "network.spacing",
-        )
-    return spacing / guide.share, f"spacing = {spacing:g} m", "network.spacing"
-
-
-def _refuse_many(area: float, sines: Floats, guide: Guide, distance: float, key: str) -> None:
-    """Refuse more nodes than memory holds: a cell has the area spacing^2 sin(angle)."""
-    spacing = distance * guide.share
-    estimate = area / (spacing**2 * float(np.median(sines)))
-    if estimate > MOST_NODES:
-        memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
-        least = spacing * np.sqrt(estimate / MOST_NODES)
-        raise InputError(
-            f"about {estimate:,.0f} nodes would take about {memory:,.0f} GB of memory (limit {MOST_NODES:,} nodes)",
-            f"choose a spacing of at least {least:.3g} m"
-            if key == "network.spacing"
-            else f"at most {int(guide.length * guide.share / least)} cells fit this surface",
-            key,
-        )
-
-
 def _next_distance(known: list[tuple[float, float]]) -> float:
     """Distance of seeds, m, from logarithms of distances tried and of median over wanted cell edge."""
     over, under = [k for k in known if k[1] > 0], [k for k in known if k[1] <= 0]
@@ -275,30 +200,22 @@ def _next_distance(known: list[tuple[float, float]]) -> float:
 def _network(
     ground: Ground,
     seeded: Seeded,
+    flow: Flow,
     crossings: Crossings,
     pattern: Pattern,
     mean_curvature: float,
     distance: float,
-    minimum_length: float,
     key: str,
 ) -> tuple[Network, int, tuple[float, float]]:
-    """The network of lines and crossings, how many lamellas' ends lie inside, and `TracedNetwork.missed`."""
-    kept = long_enough(seeded.flow, crossings, minimum_length)
-    number = np.full(seeded.flow.count, -1)
-    number[kept] = np.arange(len(kept))
-    flow = seeded.flow.take(kept)
-    both = (number[crossings.a] >= 0) & (number[crossings.b] >= 0)
-    crossings = Crossings(
-        number[crossings.a[both]], number[crossings.b[both]], crossings.s_a[both], crossings.s_b[both]
-    )
+    """The network of the seeded lines that are kept, how many ends lie inside, and `TracedNetwork.missed`."""
     if not len(crossings.a):
         raise InputError(
             f"no two lamellas cross: {flow.count} are {flow.lengths.max(initial=0.0):.3g} m long at most",
             "raise network.cells, or lower network.spacing and network.minimum_length",
             key,
         )
-    median = median_edge(flow, crossings)
-    spacing = median if np.isfinite(median) else distance
+    whole = whole_edge(flow, crossings)
+    spacing = whole if np.isfinite(whole) else distance
     stops = merged_stops(flow, line_stops(flow, crossings), SAME_NODE * spacing)
     node, kinds, inner = stop_nodes(ground, flow, stops, SAME_NODE * spacing)
 
@@ -323,7 +240,8 @@ def _network(
     heading = (tangents * look.e_u).sum(1) + 1j * (tangents * look.e_v).sum(1)
     turned = look.deviator * heading**2
     sideways = np.cross(look.normal, tangents)
-    darboux = Darboux(look.mean + turned.real, turning(tangents, sideways, s, offsets), -turned.imag)
+    closed = np.zeros(flow.count, bool)
+    darboux = Darboux(look.mean + turned.real, turning(tangents, sideways, s, offsets, closed), -turned.imag)
     # lines follow the continuous shape operator; what the positions alone say of them is told
     mean, deviator = ground.measured(where)
     missed = np.abs(mean - look.mean + ((deviator - look.deviator) * heading**2).real)
@@ -346,7 +264,7 @@ def _network(
             node_kinds=kinds,
             ids=tuple(f"{f}{r}" for f, r in zip(families.tolist(), rank.tolist(), strict=True)),
             families=families,
-            closed=np.zeros(flow.count, bool),
+            closed=closed,
             sample_offsets=offsets,
             sample_points=look.position,
             sample_normals=look.normal,

@@ -18,6 +18,8 @@ from lamella.network.network import BOUNDARY, REGULAR
 from lamella.surface.element.places import Places
 from lamella.surface.points import Floats
 
+# of the edge of whole cells: ends and crossings this near to each other are one node (docs/files.md)
+SAME_NODE = 1e-6
 Integers = NDArray[np.int64]
 Booleans = NDArray[np.bool_]
 
@@ -40,17 +42,30 @@ def line_stops(flow: Flow, crossings: Crossings) -> Stops:
     return Stops(line[order], s[order], crossing[order], crossing[order] < 0)
 
 
-def median_edge(flow: Flow, crossings: Crossings) -> float:
-    """Median distance of neighbouring crossings, m; nan without any."""
+def whole_edge(flow: Flow, crossings: Crossings) -> float:
+    """Median distance of neighbouring crossings, m: of whole cells, without pieces at the rim; nan without any."""
     stops = line_stops(flow, crossings)
     inner = ~stops.is_end[1:] & ~stops.is_end[:-1] & (stops.line[1:] == stops.line[:-1])
     return float(np.median(np.diff(stops.s)[inner])) if inner.any() else np.nan
 
 
-def long_enough(flow: Flow, crossings: Crossings, minimum_length: float) -> Integers:
-    """Lines that are not shorter than so many median cell edges."""
-    least = minimum_length * median_edge(flow, crossings)
-    return np.flatnonzero(flow.lengths >= (least if np.isfinite(least) else 0.0))
+def median_edge(flow: Flow, crossings: Crossings) -> float:
+    """Median cell edge of the net of these lines, m: `Network.cell_edges`, pieces at the rim included."""
+    whole = whole_edge(flow, crossings)
+    stops = merged_stops(flow, line_stops(flow, crossings), SAME_NODE * whole if np.isfinite(whole) else 0.0)
+    edges = np.diff(stops.s)[stops.line[1:] == stops.line[:-1]]
+    return float(np.median(edges)) if len(edges) else np.nan
+
+
+def without_short(flow: Flow, crossings: Crossings, minimum_length: float) -> tuple[Flow, Crossings]:
+    """The lines that are not shorter than so many edges of whole cells, and their crossings."""
+    least = minimum_length * whole_edge(flow, crossings)
+    kept = np.flatnonzero(flow.lengths >= (least if np.isfinite(least) else 0.0))
+    number = np.full(flow.count, -1)
+    number[kept] = np.arange(len(kept))
+    a, b = number[crossings.a], number[crossings.b]
+    both = (a >= 0) & (b >= 0)
+    return flow.take(kept), Crossings(a[both], b[both], crossings.s_a[both], crossings.s_b[both])
 
 
 def merged_stops(flow: Flow, stops: Stops, same: float) -> Stops:

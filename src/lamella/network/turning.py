@@ -2,43 +2,96 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from lamella.surface.points import Floats
 from lamella.surface.vectors import dots
 
+Integers = NDArray[np.int64]
+
 # samples to either side over which a lamella turns by its geodesic curvature: the kinks at elements average out
 WIDE = 3
-# of the median distance over which turning is measured: shorter ones tell nothing
-STUB = 0.02
+# of the distance of the outer samples: how far the middle one may be off the middle of them
+EVEN = 0.1
 
 
-def turning(tangents: Floats, sideways: Floats, arclengths: Floats, offsets: NDArray[np.int64]) -> Floats:
-    """kg = t' . u at the samples of curves, 1/m, (k,).
+def turning(
+    tangents: Floats, sideways: Floats, arclengths: Floats, offsets: Integers, closed: NDArray[np.bool_]
+) -> Floats:
+    """kg = t' . u at the samples of curves, 1/m, (k,): of second order in their distance, at a curve's ends too.
+
+    t' is that of the parabola through t at three samples: at this one and those about `WIDE` to either side of it; next
+    to an end at the end itself and those once and twice as far away.
 
     Parameters
     ----------
     tangents, sideways : (k, 3)
         Unit t and u = n x t.
     arclengths : (k,)
-        m.
+        From each curve's start, m.
     offsets : (m + 1,) int
         Where each curve's samples begin.
+    closed : (m,) bool
+        Curves that go on from their last sample, which is the first one once more, to the second.
     """
-    index = np.arange(len(tangents))
+    if not len(arclengths):
+        return np.zeros(0)
     count = np.diff(offsets)
-    before = np.maximum(index - WIDE, np.repeat(offsets[:-1], count))
-    after = np.minimum(index + WIDE, np.repeat(offsets[1:] - 1, count))
-    span = arclengths[after] - arclengths[before]
-    turned = tangents.take(after, 0) - tangents.take(before, 0)
-    result = np.asarray(dots(turned, sideways) / span)
-    # in a stub between two stops next to each other the tangents differ by their errors: as at the sample next to it
-    long = np.flatnonzero(span > STUB * np.median(span))
-    right = np.searchsorted(long, index).clip(0, len(long) - 1)
-    left = (right - 1).clip(0)
-    curve = np.repeat(np.arange(len(count)), count)
-    near = np.where(index - long[left] < long[right] - index, long[left], long[right])
-    other = np.where(near == long[left], long[right], long[left])
-    near = np.where(curve[near] == curve, near, other)
-    return np.where((span > STUB * np.median(span)) | (curve[near] != curve), result, result[near])
+    begin, end = np.repeat(offsets[:-1], count), np.repeat(offsets[1:] - 1, count)
+    middle = np.arange(len(arclengths))
+    before, after = np.maximum(middle - WIDE, begin), np.minimum(middle + WIDE, end)
+    a, c = arclengths[before], arclengths[after]
+    even = (after - before == 2 * WIDE) & (np.abs(a + c - 2 * arclengths) < EVEN * (c - a))
+    uneven = np.flatnonzero(~even)
+    curve = np.repeat(np.arange(len(count)), count)[uneven]
+    three = _three(arclengths, offsets, uneven, curve, closed[curve])
+    before[uneven], middle[uneven], after[uneven] = three.samples
+    a, b, c = (arclengths[k] for k in (before, middle, after))
+    a[uneven], b[uneven], c[uneven] = three.places
+    t_a, t_b, t_c = (tangents.take(k, 0) for k in (before, middle, after))
+    first, second = dots(t_b - t_a, sideways) / (b - a), dots(t_c - t_b, sideways) / (c - b)
+    # Newton's form of the parabola through (a, t_a), (b, t_b), (c, t_c), derived
+    return np.asarray(first + (second - first) / (c - a) * (2 * arclengths - a - b))
+
+
+class _Three(NamedTuple):
+    """Three samples of each parabola, and their arc lengths, m, which go on beyond a closed curve's ends: (3, n)."""
+
+    samples: Integers
+    places: Floats
+
+
+def _three(arclengths: Floats, offsets: Integers, some: Integers, curve: Integers, around: NDArray[np.bool_]) -> _Three:
+    """Samples for the parabolas of some samples (n,) of curves (n,), by arc length."""
+    all_lengths = arclengths[offsets[1:] - 1]
+    stride = 2 * float(all_lengths.max())
+    keys = np.repeat(np.arange(len(all_lengths)), np.diff(offsets)) * stride + arclengths
+    length, s = all_lengths[curve], arclengths[some]
+    begin, end = offsets[curve], offsets[curve + 1] - 1
+    reach = WIDE * _steps(arclengths, some, begin, end)
+    half = np.minimum(reach, length / 2)
+    middle = np.where(around, s, s.clip(half, length - half))
+    samples, places = np.empty((3, len(some)), np.int64), np.empty((3, len(some)))
+    for row, way in enumerate((-1, 0, 1)):
+        wanted = middle + way * reach
+        place = np.where(around, wanted % length, wanted.clip(0, length))
+        after = np.searchsorted(keys, curve * stride + place).clip(begin + 1, end)
+        found = after - (place - arclengths[after - 1] <= arclengths[after] - place)
+        samples[row], places[row] = found, wanted - place + arclengths[found]
+    # beyond an open curve's end is the end itself
+    return _Three(samples, np.where(around, places, arclengths[samples]))
+
+
+def _steps(arclengths: Floats, some: Integers, begin: Integers, end: Integers) -> Floats:
+    """Largest distance of neighbouring samples within a few of some samples (n,) of curves from begin to end, m, (n,).
+
+    In a stub between two stops next to each other samples are so close that their tangents differ by their errors.
+    """
+    step = np.zeros(len(some))
+    for k in range(-WIDE - 1, WIDE + 1):
+        one = np.clip(some + k, begin, end - 1)
+        np.maximum(step, arclengths[one + 1] - arclengths[one], out=step)
+    return step

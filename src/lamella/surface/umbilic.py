@@ -14,13 +14,15 @@ from lamella.surface.surface import Surface
 LEAST_DEVIATION, LEAST_BEND = 1e-3, 1e-6
 
 
-def umbilic_reason(points: SurfacePoints) -> str | None:
+def umbilic_reason(points: SurfacePoints, least: float = LEAST_DEVIATION) -> str | None:
     """What a surface is where it is a sphere or a plane for all purposes, None elsewhere.
 
     Parameters
     ----------
     points : SurfacePoints
         Spread over the whole surface.
+    least : float
+        (k1 - k2) / 2 over the larger curvature below which a piece is a sphere.
 
     Returns
     -------
@@ -33,11 +35,11 @@ def umbilic_reason(points: SurfacePoints) -> str | None:
     size = float(np.linalg.norm(np.ptp(points.position, axis=0)))
     if largest < LEAST_BEND / size:
         return f"flat: (k1 - k2) / 2 is at most {half.max():.2g} 1/m on a piece of {size:.3g} m"
-    if half.max() < max(LEAST_DEVIATION * largest, LEAST_BEND / size):
+    if half.max() < max(least * largest, LEAST_BEND / size):
         radius = 1 / np.abs(points.mean_curvature).mean()
         return (
             f"a piece of a sphere of radius {radius:.4g} m: (k1 - k2) / 2 is at most {half.max() / largest:.1e} "
-            f"of the curvature (limit {LEAST_DEVIATION:g})"
+            f"of the curvature (limit {least:g})"
         )
     return None
 

@@ -1,0 +1,60 @@
+"""The net a project asks for, on a surface of elements or of lines from seeds."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lamella.network.element_network import Closing, ElementNetwork, LaidNet, lay_net
+from lamella.network.laid_lines import LaidLines, lay_lines
+from lamella.network.lines import ground_of, told_mean_curvature
+from lamella.network.traced_network import TracedNetwork, traced_network
+from lamella.progress import Progress
+from lamella.project import Project
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.surface import Surface
+from lamella.surface.umbilic import refuse_umbilic
+
+
+def lay(surface: Surface[Any], project: Project, step: float | None, progress: Progress) -> LaidNet:
+    """The lattice of a surface of elements; of a given spacing l0 (sqrt(m)) where it was adjusted."""
+    assert isinstance(surface, ElementSurface)
+    table = project.network
+    return lay_net(
+        surface,
+        cells=table.cells,
+        spacing=table.spacing,
+        step=step,
+        pattern=table.pattern,
+        loop_names=tuple(loop.name for loop in getattr(project.surface, "boundary", ())),
+        progress=progress,
+    )
+
+
+def weave(laid: LaidNet, project: Project) -> ElementNetwork:
+    """The network of that lattice."""
+    table = project.network
+    # what is left of an adjusted net's misses is far below what counts as closed
+    closing: Closing = "round" if table.closing == "round" else "open"
+    return laid.traced(closing=closing, minimum_length=table.minimum_length)
+
+
+def lay_traced(surface: Surface[Any], project: Project) -> LaidLines:
+    """How lines that follow from no lattice are laid."""
+    refuse_umbilic(surface)
+    table = project.network
+    return lay_lines(ground_of(surface), table.pattern, cells=table.cells, spacing=table.spacing)
+
+
+def trace(surface: Surface[Any], project: Project, progress: Progress) -> TracedNetwork:
+    """The network of such lines."""
+    refuse_umbilic(surface)
+    table = project.network
+    return traced_network(
+        ground_of(surface),
+        table.pattern,
+        mean_curvature=told_mean_curvature(surface, table.pattern),
+        cells=table.cells,
+        spacing=table.spacing,
+        minimum_length=table.minimum_length,
+        progress=progress,
+    )
