@@ -94,12 +94,15 @@ class _TangentPlane:
     def up(self, z: Complexes, surface: ElementSurface) -> tuple[Places, Floats]:
         """Places and points (n, 3) of the surface above z (n,)."""
         axes = np.stack([self.at.e_u[0], self.at.e_v[0]])
-        coordinates = np.matmul(axes, surface.polynomials)
-        # the first of the coefficients is the constant
-        coordinates[0] -= (axes @ self.at.position[0])[:, None]
         foot = self.at.position[0] + np.stack([z.real, z.imag], 1) @ axes
         start = Places(self.middles.query(foot)[1], np.full((len(z), 2), 1 / 3))
         target = np.stack([z.real, z.imag])
+
+        def coordinates(where: Places) -> Floats:
+            jet = surface.polynomials.jet(where)
+            jet[0] -= self.at.position[0][:, None]
+            return np.asarray(np.matmul(axes, jet))
+
         places, found = find_places(surface.connectivity, coordinates, start, target, lambda *_: None)
         lost = np.flatnonzero(~found)
         if len(lost):
@@ -185,8 +188,7 @@ def _positions(parts: Parts, surface: ElementSurface) -> Floats:
     """Nodes of order `ORDER` of every part, (m, k, 3)."""
     nodes = lagrange(ORDER).nodes
     where = parts.places(np.arange(len(parts.parent)), nodes)
-    position = surface.connectivity.basis.values(surface.polynomials, where.element, where.local)
-    return np.ascontiguousarray(position.T).reshape(len(parts.parent), len(nodes), 3)
+    return np.ascontiguousarray(surface.polynomials.values(where).T).reshape(len(parts.parent), len(nodes), 3)
 
 
 def _radii(surface: ElementSurface, umbilics: Umbilics, to_rim: Floats) -> Floats:

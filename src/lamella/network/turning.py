@@ -34,11 +34,14 @@ def turning(tangents: Floats, sideways: Floats, arclengths: Floats, offsets: NDA
     turned = tangents.take(after, 0) - tangents.take(before, 0)
     result = np.asarray(dots(turned, sideways) / span)
     # in a stub between two stops next to each other the tangents differ by their errors: as at the sample next to it
-    long = np.flatnonzero(span > STUB * np.median(span))
-    right = np.searchsorted(long, index).clip(0, len(long) - 1)
+    enough = span > STUB * np.median(span)
+    stub, long = np.flatnonzero(~enough), np.flatnonzero(enough)
+    right = np.searchsorted(long, stub).clip(0, len(long) - 1)
     left = (right - 1).clip(0)
-    curve = np.repeat(np.arange(len(count)), count)
-    near = np.where(index - long[left] < long[right] - index, long[left], long[right])
+    near = np.where(stub - long[left] < long[right] - stub, long[left], long[right])
     other = np.where(near == long[left], long[right], long[left])
-    near = np.where(curve[near] == curve, near, other)
-    return np.where((span > STUB * np.median(span)) | (curve[near] != curve), result, result[near])
+    curve = np.repeat(np.arange(len(count)), count)
+    near = np.where(curve[near] == curve[stub], near, other)
+    mine = curve[near] == curve[stub]
+    result[stub[mine]] = result[near[mine]]
+    return result
