@@ -90,6 +90,7 @@ class ElementSegments:
         self.owner, self._tau, self._reach, self._zeros = chain, tau, reach, zeros
         self._is_a = tracks.family[chain] == A
         self._power = np.where(zeros >= 0, 1 + np.r_[orders, 0][zeros] / 2, 1.0)
+        self._singular = (zeros >= 0).any(1)
         self._bent = (self._power != 1).any(1)
         self._stride = 2 * float(tracks.tau.max() + tracks.span.max() + 2)
         self._keys = tracks.owner * self._stride + tracks.tau
@@ -112,18 +113,21 @@ class ElementSegments:
     def _find(self, spots: Spots, near: Places | None = None) -> tuple[Places, Floats]:
         """Places of spots, and which way the chain's coordinate runs on their sheets, (k,)."""
         t, link, ahead = self._tracks, spots.link, spots.ahead
-        along = np.clip(ahead / np.maximum(t.span[link], 1e-300), 0, 1)
-        begin = t.local_start.take(link, 0)
-        local = begin + along[:, None] * (t.local_end.take(link, 0) - begin)
-        other = t.start[link] + ahead * t.way[link]
+        way = t.way[link]
+        other = t.start[link] + ahead * way
         level = t.level[link].astype(float)
         is_a = self._is_a[spots.segment]
         target = np.stack([np.where(is_a, other, level), np.where(is_a, level, other)])
         element = t.element[link]
-        if near is not None:
-            local = np.where((near.element == element)[:, None], near.local, local)
+        local = np.empty((len(spots), 2)) if near is None else near.local.copy()
+        # where nothing is known that is near: along the link
+        alone = slice(None) if near is None else np.flatnonzero(near.element != element)
+        link, ahead = link[alone], ahead[alone]
+        share = np.clip(ahead / np.maximum(t.span[link], 1e-300), 0, 1)
+        begin = t.local_start.take(link, 0)
+        local[alone] = begin + share[:, None] * (t.local_end.take(link, 0) - begin)
         places, turn, _ = self._cells.invert(Places(element, local), target)
-        return places, turn * t.way[link]
+        return places, turn * way
 
     def velocity(self, spots: Spots, near: Places | None = None) -> tuple[Places, Floats, Floats]:
         """Places, positions (k, 3) and their derivatives by sigma (k, 3), m, at spots.
@@ -140,9 +144,10 @@ class ElementSegments:
     def _velocity(self, spots: Spots, near: Places | None = None) -> tuple[Places, Floats, Floats]:
         segment, sigma = spots.segment, spots.sigma
         # at a singular node chi has no slope: the way out is that of a place just beside it
-        zeros = self._zeros[segment]
-        beside = np.where((zeros[:, 0] >= 0) & (sigma < BESIDE), BESIDE, sigma)
-        beside = np.where((zeros[:, 1] >= 0) & (sigma > 1 - BESIDE), 1 - BESIDE, beside)
+        at_zero = np.flatnonzero(self._singular[segment])
+        begins, ends = self._zeros[segment[at_zero]].T >= 0
+        beside = sigma.copy()
+        beside[at_zero] = np.clip(sigma[at_zero], np.where(begins, BESIDE, 0), np.where(ends, 1 - BESIDE, 1))
         moved = np.flatnonzero(beside != sigma)
         places, way = self._find(self.spots(segment, beside) if len(moved) else spots, near)
         (_, chi_x, chi_y), (position, first, second) = self._cells.jet_and_tangents(places)

@@ -26,7 +26,7 @@ from lamella.surface.element.placing import edge_blends
 from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
-from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.points import Complexes, Floats, SurfacePoints, shape_entries
 from lamella.surface.vectors import lengths
 
 Integers = NDArray[np.int64]
@@ -179,9 +179,9 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         places, there = plane.up(z, surface)
         positions[names], element[names], local[names] = there, places.element, places.local
     every = Places(element, local)
-    return NetMesh(
-        new, positions, every, surface.at(every).shape_entries, surface.smooth_normal(every), loop, at, radii
-    )
+    there, mean, deviator = surface.shape_at(every)
+    shape = shape_entries(there.e_u, there.e_v, mean, deviator)
+    return NetMesh(new, positions, every, shape, surface.smooth_normal(every), loop, at, radii)
 
 
 def _positions(parts: Parts, surface: ElementSurface) -> Floats:
