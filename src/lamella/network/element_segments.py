@@ -90,7 +90,9 @@ class ElementSegments:
         self.owner, self._tau, self._reach, self._zeros = chain, tau, reach, zeros
         self._is_a = tracks.family[chain] == A
         self._power = np.where(zeros >= 0, 1 + np.r_[orders, 0][zeros] / 2, 1.0)
-        self._singular = (zeros >= 0).any(1)
+        # whether each end is an umbilic
+        self._at_zero = np.asarray(zeros >= 0)
+        self._singular = np.asarray(self._at_zero.any(1))
         self._bent = (self._power != 1).any(1)
         self._stride = 2 * float(tracks.tau.max() + tracks.span.max() + 2)
         self._keys = tracks.owner * self._stride + tracks.tau
@@ -144,10 +146,10 @@ class ElementSegments:
     def _velocity(self, spots: Spots, near: Places | None = None) -> tuple[Places, Floats, Floats]:
         segment, sigma = spots.segment, spots.sigma
         # at a singular node chi has no slope: the way out is that of a place just beside it
-        at_zero = np.flatnonzero(self._singular[segment])
-        begins, ends = self._zeros[segment[at_zero]].T >= 0
+        some = np.flatnonzero(self._singular[segment])
+        first_is, last_is = self._at_zero[segment[some]].T
         beside = sigma.copy()
-        beside[at_zero] = np.clip(sigma[at_zero], np.where(begins, BESIDE, 0), np.where(ends, 1 - BESIDE, 1))
+        beside[some] = np.clip(sigma[some], BESIDE * first_is, 1 - BESIDE * last_is)
         moved = np.flatnonzero(beside != sigma)
         places, way = self._find(self.spots(segment, beside) if len(moved) else spots, near)
         (_, chi_x, chi_y), (position, first, second) = self._cells.jet_and_tangents(places)
@@ -185,8 +187,9 @@ class ElementSegments:
         the node by. As a function of sigma a ray is analytic.
         """
         points, tangents = points.copy(), tangents.copy()
+        some = np.flatnonzero(self._singular[spots.segment])
         for side in range(2):
-            mine = np.flatnonzero(self._zeros[spots.segment, side] >= 0)
+            mine = some[self._at_zero[spots.segment[some], side]]
             own, row = np.unique(spots.segment[mine], return_inverse=True)
             if not len(own):
                 continue

@@ -72,7 +72,7 @@ def find_places(
         moved = local + step
         third = 1 - moved[0] - moved[1]
         done = there | (size < SMALL)
-        local = np.clip(moved, -0.3, 1.3)
+        local = np.minimum(np.maximum(moved, -0.3), 1.3)
         # beyond an edge by more than rounding: go on in the neighbour
         beyond = np.flatnonzero((np.minimum(np.minimum(moved[0], moved[1]), third) < -1e-9) & ~there)
         if len(beyond):

@@ -27,7 +27,7 @@ from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.points import Complexes, Floats, SurfacePoints, shape_entries
-from lamella.surface.vectors import lengths
+from lamella.surface.vectors import diagonal, lengths
 
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -115,7 +115,7 @@ class _TangentPlane:
 def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     """Elements with rosettes around the umbilics of a surface."""
     connectivity = surface.connectivity
-    size = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
+    size = diagonal(surface.nodes)
     rims = element_rims(connectivity, surface.nodes, surface.rim_loop)
     along = np.concatenate([rim.at(np.arange(RIM_SAMPLES) / RIM_SAMPLES) for rim in rims])
     zeros = umbilics.position.reshape(-1, 3)
@@ -179,8 +179,8 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         places, there = plane.up(z, surface)
         positions[names], element[names], local[names] = there, places.element, places.local
     every = Places(element, local)
-    there, mean, deviator = surface.shape_at(every)
-    shape = shape_entries(there.e_u, there.e_v, mean, deviator)
+    frames, mean, deviator = surface.shape_at(every)
+    shape = shape_entries(frames.e_u, frames.e_v, mean, deviator)
     return NetMesh(new, positions, every, shape, surface.smooth_normal(every), loop, at, radii)
 
 

@@ -25,6 +25,7 @@ from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network, 
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
 from lamella.network.tracks import A, B, Tracks, make_tracks, rim_tips, singular_ends
 from lamella.network.turning import turning
+from lamella.sparse import counted
 from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
 from lamella.surface.element.polynomials import Polynomials
@@ -177,13 +178,13 @@ def trace_elements(
     fraction = ragged_ranges(given) / number[segment]
     parameter, near = arcs.parameter(segment, fraction)
     # element by element
-    order = np.argsort(near.element, kind="stable")
+    order = counted(near.element + 1, len(cells.value) + 1).astype(np.int64)
     spots = segments.spots(segment, parameter)[order]
     places, points, velocity = segments.velocity(spots, near[order])
     tangents = velocity / lengths(velocity)[:, None]
     points, tangents = segments.lead_out(spots, points, tangents)
     normals, tangents, bend, twist = _frames(cells, places, tangents)
-    back = np.empty_like(order)
+    back = np.empty(len(order), np.int64)
     back[order] = np.arange(len(order))
     places, bend, twist = places[back], bend[back], twist[back]
     points, normals, tangents = (t.take(back, 0) for t in (points, normals, tangents))
@@ -264,10 +265,13 @@ def _frames(cells: CellMap, places: Places, directions: Floats) -> tuple[Floats,
     bend, twist = np.empty((2, len(places)))
     for block in blocks(len(places)):
         both = fields.values(places[block]).T
-        normal = both[:, :3] / lengths(both[:, :3])[:, None]
-        tangent = directions[block] - dots(directions[block], normal)[:, None] * normal
+        normal, entries = both[:, :3], both[:, 3:]
+        normal /= lengths(normal)[:, None]
+        # components follow each other, as in the fields
+        tangent = np.array(directions[block], order="F")
+        tangent -= dots(tangent, normal)[:, None] * normal
         tangent /= lengths(tangent)[:, None]
-        image = images(both[:, 3:], tangent)
+        image = images(entries, tangent)
         bend[block], twist[block] = dots(image, tangent), dots(image, crosses(normal, tangent))
         normals[block], tangents[block] = normal, tangent
     return normals, tangents, bend, twist

@@ -75,7 +75,8 @@ def project_onto_nodes(
     residual = right - image_of(solution)
     direction = conditioned(residual)
     product = _dots(residual, direction)
-    goal = tolerance**2 * _dots(right, conditioned(right))
+    # squares of L2 norms: of the error, and of what is projected
+    goal = tolerance**2 * _dots(right, solution)
     for _ in range(MOST_STEPS):
         if (product <= goal).all():
             break
