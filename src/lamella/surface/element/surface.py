@@ -166,7 +166,7 @@ class ElementSurface:
         """The points at the same local coordinates (q, 2) of every element, element by element: sooner than by `at`."""
         shape, square = self._smoothed
         by_x, by_y = (square.everywhere(local, *d)[0] for d in ((1, 0), (0, 1)))
-        return self._points(self._frames_everywhere(local), shape.everywhere(local), by_x, by_y)
+        return self._points(self.frames_everywhere(local), shape.everywhere(local), by_x, by_y)
 
     def _points(self, there: ElementFrames, smooth: Floats, by_x: Floats, by_y: Floats) -> SurfacePoints:
         """Points with the smoothed shape operator (6, n) and the slopes (n,) of H^2 - K."""
@@ -187,7 +187,8 @@ class ElementSurface:
         """Position and frame at n places."""
         return frames(*np.ascontiguousarray(self.polynomials.jet(where).transpose(0, 2, 1)))
 
-    def _frames_everywhere(self, local: Floats) -> ElementFrames:
+    def frames_everywhere(self, local: Floats) -> ElementFrames:
+        """The same at local coordinates (q, 2) of every element, element by element."""
         jet = (self.polynomials.everywhere(local, *d) for d in ((0, 0), (1, 0), (0, 1)))
         return frames(*(np.ascontiguousarray(part.T) for part in jet))
 

@@ -61,7 +61,7 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
     """
     local, faces = subdivision(PARTS)
     m = len(surface.connectivity.elements)
-    axes = surface.frames(Places.everywhere(m, np.full((1, 2), 1 / 3))).e_u
+    axes = surface.frames_everywhere(np.full((1, 2), 1 / 3)).e_u
     value = _turned(surface.at_everywhere(local), np.repeat(axes, len(local), 0)).reshape(m, -1)
     corners = value[:, faces]
     turn = np.angle(np.roll(corners, -1, 2) / np.where(corners == 0, 1, corners)).sum(2) / (2 * np.pi)
