@@ -18,6 +18,7 @@ from lamella.network.isothermic import Isothermic
 from lamella.network.net_mesh import NetMesh
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.element.places import Places
+from lamella.surface.element.polynomials import Polynomials
 from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
@@ -67,30 +68,34 @@ class CellMap:
         )
 
     @cached_property
-    def _chi(self) -> Floats:
-        """Coefficients of both parts of chi, (k, 2, m)."""
-        return self.mesh.connectivity.basis.coefficients(np.stack([self.value.real, self.value.imag], 2))
+    def _both(self) -> Polynomials:
+        """Both parts of chi, and the position, m."""
+        connectivity = self.mesh.connectivity
+        chi = np.stack([self.value.real, self.value.imag], 2)
+        return Polynomials.through(connectivity.basis, np.concatenate([chi, self.mesh.nodes[connectivity.elements]], 2))
 
     @cached_property
-    def _both(self) -> Floats:
-        """Coefficients of both parts of chi and of the position, (k, 5, m)."""
-        basis = self.mesh.connectivity.basis
-        return np.concatenate([self._chi, basis.coefficients(self.mesh.nodes[self.mesh.connectivity.elements])], 1)
+    def _chi(self) -> Polynomials:
+        return self._both[:2]
+
+    @cached_property
+    def _position(self) -> Polynomials:
+        return self._both[2:]
 
     def jet(self, where: Places) -> tuple[Complexes, Complexes, Complexes]:
         """chi at places, each on its element's own sheet, and its derivatives by both local coordinates, (n,)."""
-        jet = self.mesh.connectivity.basis.jet(self._chi, where.element, where.local)
+        jet = self._chi.jet(where)
         value, first, second = jet[:, 0] + 1j * jet[:, 1]
         return value, first, second
 
     def jet_and_tangents(self, where: Places) -> tuple[Complexes, Floats]:
         """chi and its derivatives by both local coordinates, (3, n), and the position and its, m, (3, n, 3)."""
-        jet = self.mesh.connectivity.basis.jet(self._both, where.element, where.local)
+        jet = self._both.jet(where)
         return jet[:, 0] + 1j * jet[:, 1], jet[:, 2:].transpose(0, 2, 1)
 
     def positions(self, where: Places) -> Floats:
         """m, (n, 3)."""
-        return self.mesh.connectivity.basis.values(self._both[:, 2:], where.element, where.local).T
+        return self._position.values(where).T
 
     def tangents(self, where: Places) -> tuple[Floats, Floats, Floats]:
         """Position and its derivatives by both local coordinates, m, (n, 3) each."""
@@ -130,5 +135,5 @@ class CellMap:
             target[0, index], target[1, index] = after.real, after.imag
             turn[index] *= sign
 
-        places, found = find_places(self.mesh.connectivity, self._chi, start, target, cross)
+        places, found = find_places(self.mesh.connectivity, self._chi.jet, start, target, cross)
         return places, np.where(found, turn, 1.0), found

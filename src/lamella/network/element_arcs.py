@@ -84,15 +84,20 @@ class _Parts:
     def speed(self, part: Integers, share: Floats) -> Floats:
         """Arc length per share, m, at shares (p,) of parts (s,), shape (s, p)."""
         every = np.repeat(part, len(share))
-        places, _, velocity = self._segments.velocity(self.owner[every], self.sigma(every, np.tile(share, len(part))))
+        spots = self._segments.spots(self.owner[every], self.sigma(every, np.tile(share, len(part))))
+        order = np.argsort(self._segments.element(spots)[len(share) // 2 :: len(share)], kind="stable")
+        part = part[order]
+        spots = spots[(order[:, None] * len(share) + np.arange(len(share))).ravel()]
+        places, _, velocity = self._segments.velocity(spots)
         if len(share) == POINTS:
             element, local = places.element.reshape(-1, POINTS), places.local.reshape(-1, POINTS, 2)
             # -1: not all in one element
             self._element[part] = np.where((element == element[:, :1]).all(1), element[:, 0], -1)
             powers = np.linalg.inv(np.vander(share, increasing=True))
             self._powers[:, part] = np.tensordot(powers, local, (1, 1))
-        speed = lengths(velocity) * self._reach[every]
-        return np.asarray(speed.reshape(len(part), len(share)))
+        speed = np.empty((len(part), len(share)))
+        speed[order] = lengths(velocity).reshape(speed.shape) * self._reach[part, None]
+        return speed
 
     def near(self, part: Integers, share: Floats) -> tuple[Integers, Floats]:
         """Elements and local coordinates near to shares of parts, arrays of equal shape."""

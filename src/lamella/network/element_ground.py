@@ -120,8 +120,7 @@ class ElementGround:
         share = ((where.local - _CORNERS[edge]) * along).sum(1) / (along**2).sum(1)
         vertex = self._connectivity.faces[where.element, edge]
         loop, start, span, _ = self._rims
-        basis = self._connectivity.basis
-        _, first, second = basis.jet(self.surface.polynomials, where.element, where.local).transpose(0, 2, 1)
+        _, first, second = self.surface.polynomials.jet(where).transpose(0, 2, 1)
         tangent = along[:, :1] * first + along[:, 1:] * second
         tangent /= np.linalg.norm(tangent, axis=1)[:, None]
         return RimPlaces(loop[vertex], start[vertex] + share * span[vertex], tangent)

@@ -7,6 +7,8 @@ that power at each singular end, sigma itself where there is none.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import beta, betainc, betaincinv
@@ -24,6 +26,32 @@ Integers = NDArray[np.int64]
 BESIDE = 1e-3
 # of a ray's first cell: nearer to the node it is led out from it to points at these multiples, inside the rosette
 OUT, LEADING = 0.2, np.array([1.0, 1.5, 2.0, 2.5])
+
+
+@dataclass(frozen=True)
+class Spots:
+    """Parameters on segments.
+
+    Attributes
+    ----------
+    segment : (k,) int
+    sigma : (k,)
+    link : (k,) int
+        Of the tracks.
+    ahead : (k,)
+        How far along that, cells.
+    """
+
+    segment: Integers
+    sigma: Floats
+    link: Integers
+    ahead: Floats
+
+    def __len__(self) -> int:
+        return len(self.segment)
+
+    def __getitem__(self, index: Integers | slice) -> Spots:
+        return Spots(self.segment[index], self.sigma[index], self.link[index], self.ahead[index])
 
 
 class ElementSegments:
@@ -62,12 +90,15 @@ class ElementSegments:
         self.owner, self._tau, self._reach, self._zeros = chain, tau, reach, zeros
         self._is_a = tracks.family[chain] == A
         self._power = np.where(zeros >= 0, 1 + np.r_[orders, 0][zeros] / 2, 1.0)
+        # whether each end is an umbilic
+        self._at_zero = np.asarray(zeros >= 0)
+        self._singular = np.asarray(self._at_zero.any(1))
         self._bent = (self._power != 1).any(1)
         self._stride = 2 * float(tracks.tau.max() + tracks.span.max() + 2)
         self._keys = tracks.owner * self._stride + tracks.tau
 
-    def _find(self, segment: Integers, sigma: Floats, near: Places | None = None) -> tuple[Places, Floats]:
-        """Places of parameters (k,) of segments (k,), and which way the chain's coordinate runs on their sheets."""
+    def spots(self, segment: Integers, sigma: Floats) -> Spots:
+        """Parameters (k,) of segments (k,): sooner if they are in order."""
         t, chain = self._tracks, self.owner[segment]
         share = np.clip(sigma, 0, 1)
         bent = np.flatnonzero(self._bent[segment])
@@ -75,37 +106,52 @@ class ElementSegments:
         tau = self._tau[segment] + share * self._reach[segment]
         link = np.searchsorted(self._keys, chain * self._stride + np.clip(tau, 0, self._stride - 1), side="right") - 1
         link = np.clip(link, t.first[chain], t.last[chain])
-        ahead = tau - t.tau[link]
-        along = np.clip(ahead / np.maximum(t.span[link], 1e-300), 0, 1)
-        begin = t.local_start.take(link, 0)
-        local = begin + along[:, None] * (t.local_end.take(link, 0) - begin)
-        other = t.start[link] + ahead * t.way[link]
+        return Spots(segment, sigma, link, tau - t.tau[link])
+
+    def element(self, spots: Spots) -> Integers:
+        """Elements of spots, (k,); next to an element's edge it may be the neighbour."""
+        return self._tracks.element[spots.link]
+
+    def _find(self, spots: Spots, near: Places | None = None) -> tuple[Places, Floats]:
+        """Places of spots, and which way the chain's coordinate runs on their sheets, (k,)."""
+        t, link, ahead = self._tracks, spots.link, spots.ahead
+        way = t.way[link]
+        other = t.start[link] + ahead * way
         level = t.level[link].astype(float)
-        is_a = self._is_a[segment]
+        is_a = self._is_a[spots.segment]
         target = np.stack([np.where(is_a, other, level), np.where(is_a, level, other)])
         element = t.element[link]
-        if near is not None:
-            local = np.where((near.element == element)[:, None], near.local, local)
+        local = np.empty((len(spots), 2)) if near is None else near.local.copy()
+        # where nothing is known that is near: along the link
+        alone = slice(None) if near is None else np.flatnonzero(near.element != element)
+        link, ahead = link[alone], ahead[alone]
+        share = np.clip(ahead / np.maximum(t.span[link], 1e-300), 0, 1)
+        begin = t.local_start.take(link, 0)
+        local[alone] = begin + share[:, None] * (t.local_end.take(link, 0) - begin)
         places, turn, _ = self._cells.invert(Places(element, local), target)
-        return places, turn * t.way[link]
+        return places, turn * way
 
-    def velocity(self, segment: Integers, sigma: Floats, near: Places | None = None) -> tuple[Places, Floats, Floats]:
-        """Places, positions (k, 3) and their derivatives by sigma (k, 3), m; found sooner from places that are near."""
-        places = Places(np.empty(len(segment), np.int64), np.empty((len(segment), 2)))
-        position, velocity = np.empty((2, len(segment), 3))
-        for block in blocks(len(segment)):
-            at, position[block], velocity[block] = self._velocity(
-                segment[block], sigma[block], None if near is None else near[block]
-            )
+    def velocity(self, spots: Spots, near: Places | None = None) -> tuple[Places, Floats, Floats]:
+        """Places, positions (k, 3) and their derivatives by sigma (k, 3), m, at spots.
+
+        They are found sooner from places that are near, and element by element.
+        """
+        places = Places(np.empty(len(spots), np.int64), np.empty((len(spots), 2)))
+        position, velocity = np.empty((2, len(spots), 3))
+        for block in blocks(len(spots)):
+            at, position[block], velocity[block] = self._velocity(spots[block], None if near is None else near[block])
             places.element[block], places.local[block] = at.element, at.local
         return places, position, velocity
 
-    def _velocity(self, segment: Integers, sigma: Floats, near: Places | None = None) -> tuple[Places, Floats, Floats]:
+    def _velocity(self, spots: Spots, near: Places | None = None) -> tuple[Places, Floats, Floats]:
+        segment, sigma = spots.segment, spots.sigma
         # at a singular node chi has no slope: the way out is that of a place just beside it
-        zeros = self._zeros[segment]
-        beside = np.where((zeros[:, 0] >= 0) & (sigma < BESIDE), BESIDE, sigma)
-        beside = np.where((zeros[:, 1] >= 0) & (sigma > 1 - BESIDE), 1 - BESIDE, beside)
-        places, way = self._find(segment, beside, near)
+        some = np.flatnonzero(self._singular[segment])
+        first_is, last_is = self._at_zero[segment[some]].T
+        beside = sigma.copy()
+        beside[some] = np.clip(sigma[some], BESIDE * first_is, 1 - BESIDE * last_is)
+        moved = np.flatnonzero(beside != sigma)
+        places, way = self._find(self.spots(segment, beside) if len(moved) else spots, near)
         (_, chi_x, chi_y), (position, first, second) = self._cells.jet_and_tangents(places)
         # along the level line, where the other part of chi does not change
         is_a = self._is_a[segment]
@@ -115,10 +161,9 @@ class ElementSegments:
         p, q = self._power[segment[bent]].T
         rate[bent] *= beside[bent] ** (p - 1) * (1 - beside[bent]) ** (q - 1) / beta(p, q)
         velocity = (rate * held_y)[:, None] * first - (rate * held_x)[:, None] * second
-        moved = beside != sigma
-        if moved.any():
+        if len(moved):
             places = Places(places.element.copy(), places.local.copy())
-            exact, _ = self._find(segment[moved], sigma[moved])
+            exact, _ = self._find(spots[moved])
             places.element[moved], places.local[moved] = exact.element, exact.local
             position[moved] = self._cells.tangents(exact)[0]
         return places, position, velocity
@@ -135,25 +180,26 @@ class ElementSegments:
         sigma[bent] = betaincinv(*self._power[segment[bent]].T, sigma[bent])
         return segment, sigma
 
-    def lead_out(self, segment: Integers, sigma: Floats, points: Floats, tangents: Floats) -> tuple[Floats, Floats]:
+    def lead_out(self, spots: Spots, points: Floats, tangents: Floats) -> tuple[Floats, Floats]:
         """Points and directions (k, 3), those next to singular nodes from the node and points a little further out.
 
         chi has next to no slope there, and a zero of higher order is not quite one in numbers: a lamella would pass
         the node by. As a function of sigma a ray is analytic.
         """
         points, tangents = points.copy(), tangents.copy()
+        some = np.flatnonzero(self._singular[spots.segment])
         for side in range(2):
-            mine = np.flatnonzero(self._zeros[segment, side] >= 0)
-            own, row = np.unique(segment[mine], return_inverse=True)
+            mine = some[self._at_zero[spots.segment[some], side]]
+            own, row = np.unique(spots.segment[mine], return_inverse=True)
             if not len(own):
                 continue
             row = row.ravel()
             out = self._out(own, side)
             at = np.r_[0.0, LEADING]
             apart = (out[:, None] * at).ravel()
-            ahead = self._velocity(np.repeat(own, len(at)), np.abs(side - apart))[1].reshape(len(own), len(at), 3)
-            series = np.matmul(np.linalg.inv(np.vander(at, increasing=True)), ahead)
-            share = np.abs(side - sigma[mine]) / out[row]
+            ahead = self._velocity(self.spots(np.repeat(own, len(at)), np.abs(side - apart)))[1]
+            series = np.matmul(np.linalg.inv(np.vander(at, increasing=True)), ahead.reshape(len(own), len(at), 3))
+            share = np.abs(side - spots.sigma[mine]) / out[row]
             near = share < 1
             mine, share, series = mine[near], share[near, None], series[row[near]]
             power = np.arange(len(at))
@@ -165,6 +211,6 @@ class ElementSegments:
     def _out(self, segment: Integers, side: int) -> Floats:
         """How far segments (k,) are led out from the node at one end, as sigma: inside the node's rosette."""
         away = np.repeat([0.0, BESIDE], len(segment))
-        node, beside = np.split(self._velocity(np.tile(segment, 2), np.abs(side - away))[1], 2)
+        node, beside = np.split(self._velocity(self.spots(np.tile(segment, 2), np.abs(side - away)))[1], 2)
         speed = lengths(beside - node) / BESIDE
         return np.asarray(np.minimum(OUT, self._cells.mesh.radii[self._zeros[segment, side]] / (LEADING[-1] * speed)))

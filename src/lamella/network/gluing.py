@@ -138,6 +138,5 @@ def links(
                     # only a fixed point of w -> -w + c comes back to itself: an umbilic
                     held[first] = (offset[other] - there) / (turn * sign[one] - sign[other])
     used, number_of = np.unique(home, return_inverse=True)
-    place = {int(v): k for k, v in enumerate(used)}
-    fixed = {place[first]: row for first, row in held.items()}
+    fixed = {int(np.searchsorted(used, first)): row for first, row in held.items()}
     return number_of.ravel(), sign, offset, fixed or {0: np.zeros(len(pieces))}

@@ -12,6 +12,7 @@ from lamella.surface.element.places import Places
 from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
+Jet = Callable[[Places], Floats]
 # Is told which targets go over which edges of which elements, and may change these targets.
 Cross = Callable[[Integers, Integers, Integers], None]
 
@@ -25,15 +26,15 @@ NEAR = 1e-9
 
 
 def find_places(
-    connectivity: Connectivity, coefficients: Floats, start: Places, target: Floats, cross: Cross
+    connectivity: Connectivity, jet: Jet, start: Places, target: Floats, cross: Cross
 ) -> tuple[Places, NDArray[np.bool_]]:
     """Places near given ones where the polynomials have their targets.
 
     Parameters
     ----------
     connectivity : Connectivity
-    coefficients : (k, 2, m)
-        Of the polynomials of each element, see `Lagrange.coefficients`.
+    jet : callable
+        Values and derivatives by both local coordinates at places, (3, 2, n), as `Polynomials.jet`.
     start : Places
         Where to begin.
     target : (2, n)
@@ -60,7 +61,7 @@ def find_places(
         found[index], result.element[index], result.local[index] = True, at, place.T
 
     for _ in range(MOST_STEPS):
-        value, by_x, by_y = connectivity.basis.jet(coefficients, element, local.T)
+        value, by_x, by_y = jet(Places(element, local.T))
         miss = target.take(active, 1) - value
         there = np.maximum(np.abs(miss[0]), np.abs(miss[1])) < FINE
         determinant = by_x[0] * by_y[1] - by_x[1] * by_y[0]
@@ -71,7 +72,7 @@ def find_places(
         moved = local + step
         third = 1 - moved[0] - moved[1]
         done = there | (size < SMALL)
-        local = np.clip(moved, -0.3, 1.3)
+        local = np.minimum(np.maximum(moved, -0.3), 1.3)
         # beyond an edge by more than rounding: go on in the neighbour
         beyond = np.flatnonzero((np.minimum(np.minimum(moved[0], moved[1]), third) < -1e-9) & ~there)
         if len(beyond):
@@ -88,8 +89,7 @@ def find_places(
         active, element, local = active[left], element[left], local.take(left, 1)
         if not len(active):
             return result, found
-    value = connectivity.basis.values(coefficients, element, local.T)
-    near = (np.abs(target[:, active] - value) < NEAR).all(0)
+    near = (np.abs(target[:, active] - jet(Places(element, local.T))[0]) < NEAR).all(0)
     settle(active[near], element[near], local[:, near])
     return result, found
 

@@ -165,13 +165,14 @@ def whole_shifts(cells: CellMap) -> Complexes:
 def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     """All level lines of a family (0: A, Im chi whole; 1: B, Re chi whole)."""
     value, other = (small.chi.imag, small.chi.real) if family == 0 else (small.chi.real, small.chi.imag)
-    at_corners = value.take(small.corners)
-    a, b, c = at_corners.T
+    at_corners = np.ascontiguousarray(value.take(small.corners).T)
+    a, b, c = at_corners
     passed = np.ceil(np.minimum(np.minimum(a, b), c)) <= np.floor(np.maximum(np.maximum(a, b), c))
     triangle = np.flatnonzero(passed)
     # corners by value, as numbers of all triangles' corners one after the other
-    by_value = 3 * triangle[:, None] + _ranks(at_corners.take(triangle, 0))
-    low, middle, high = at_corners.ravel().take(by_value.T)
+    by_value = 3 * triangle + _ranks(at_corners.take(triangle, 1))
+    grid_points = small.corners.ravel()
+    low, middle, high = value.take(grid_points.take(by_value))
     first, last = np.ceil(low).astype(np.int64), np.floor(high).astype(np.int64)
     count = last - first + 1
     own = np.repeat(np.arange(len(count)), count)
@@ -182,11 +183,10 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     at_corner = level == middle[own]
     below = level < middle[own]
     triangle = triangle[own]
-    # ends of each link: the long edge, and the short one on the level's side
-    mine = by_value.take(own, 0)
-    at_long = mine[:, [0, 2]]
-    at_short = np.where(below[:, None], mine[:, :2], mine[:, 1:])
-    long_edge, short_edge = (small.corners.ravel().take(at) for at in (at_long, at_short))
+    # ends of each link: the long edge, and the short one on the level's side, as their corners (2, l)
+    mine = by_value.take(own, 1)
+    at_long, at_short = mine[::2], np.where(below, mine[:2], mine[1:])
+    long_edge, short_edge = (grid_points.take(at) for at in (at_long, at_short))
     points = len(small.chi)
     base = int(level.min(initial=0)) - 1
     width = int(level.max(initial=0)) - base + 2
@@ -198,7 +198,8 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     ended = np.flatnonzero(at_corner)
     beyond = points**2 * width
     crossing[len(level) + ended] = beyond + ended
-    names, crossing = np.unique(crossing, return_inverse=True)
+    # asked for the first of each as well, it sorts by runs, of which there are long ones: twice as fast
+    names, _, crossing = np.unique(crossing, return_index=True, return_inverse=True)
     one, two = crossing[: len(level)], crossing[len(level) :]
     jump_left, jump_right = _jumps(small, cells, family, names, width, base)
     total = len(names)
@@ -233,24 +234,26 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     early = np.minimum(position[tail], position[head])
     early[opened] = np.maximum(position[tail], position[head])[opened]
     forward = (position[tail] < position[head]) ^ opened
-    use = np.flatnonzero(real)
-    use = use[np.argsort(early[use], kind="stable")]
+    # no two links have the same place, and the walk takes one chain after the other
+    at_place = np.full(total, -1)
+    at_place[early[real]] = np.flatnonzero(real)
+    use = at_place[at_place >= 0]
     chain_rank = np.argsort(position[begin], kind="stable")
     new_number = np.empty(chains, np.int64)
     new_number[chain_rank] = np.arange(chains)
     owner = new_number[group[tail[use]]]
-    use = use[np.argsort(owner, kind="stable")]
-    owner = np.sort(owner)
     offsets = np.searchsorted(owner, np.arange(chains + 1))
     way = forward[use]
     triangle, level = triangle[use], level[use]
     corners = small.local.reshape(-1, 2)
     ends = []
     # a line into a singular corner, the middle one, has it as the short edge's first end
-    for at, edge in ((at_long[use], long_edge[use]), (at_short[use], short_edge[use])):
-        share = (level - value[edge[:, 0]]) / (value[edge[:, 1]] - value[edge[:, 0]])
-        t = other[edge[:, 0]] + share * (other[edge[:, 1]] - other[edge[:, 0]])
-        first, second = (corners.take(at[:, side] % len(corners), 0) for side in range(2))
+    for at, edge in ((at_long, long_edge), (at_short, short_edge)):
+        first, second = value.take(edge.take(use, 1))
+        share = (level - first) / (second - first)
+        first, second = other.take(edge.take(use, 1))
+        t = first + share * (second - first)
+        first, second = corners.take(at.take(use, 1) % len(corners), 0)
         ends.append((t, first + share[:, None] * (second - first)))
     (t_long, p_long), (t_short, p_short) = ends
     start, end = np.where(way, t_long, t_short), np.where(way, t_short, t_long)
@@ -261,7 +264,7 @@ def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
     tips[:, 0] = begin
     far = loose[begin[group[loose]] != loose]
     tips[group[far], 1] = far
-    cut = _edge_keys(np.concatenate([small.cut_left, small.cut_right]), points)
+    cut = _edge_keys(np.concatenate([small.cut_left, small.cut_right]).T, points)
     for side in range(2):
         at = tips[:, side]
         there = (at >= 0) & ~closed
@@ -284,20 +287,20 @@ def _refuse_unnameable(points: int, width: int, links: int) -> None:
 
 
 def _edge_keys(ends: Integers, points: int) -> Integers:
-    """A whole number below points^2 for each edge between two of so many points, rows of (n, 2)."""
-    one, other = ends.T
+    """A whole number below points^2 for each edge between two of so many points, columns of (2, n)."""
+    one, other = ends
     return np.asarray(np.minimum(one, other) * points + np.maximum(one, other))
 
 
 def _ranks(values: Floats) -> Integers:
-    """Columns of three values a row in ascending order, (n, 3)."""
-    a, b, c = values.T
-    # how many of the others go before each: equal ones in the order of the columns
+    """Rows of three values a column in ascending order, (3, n)."""
+    a, b, c = values
+    # how many of the others go before each: equal ones in the order of the rows
     place_a = (b < a).astype(np.int64) + (c < a)
     place_b = (a <= b).astype(np.int64) + (c < b)
     result = np.empty(values.shape, np.int64)
-    rows = np.arange(len(values))
-    result[rows, place_a], result[rows, place_b], result[rows, 3 - place_a - place_b] = 0, 1, 2
+    columns = np.arange(len(a))
+    result[place_a, columns], result[place_b, columns], result[3 - place_a - place_b, columns] = 0, 1, 2
     return result
 
 
@@ -325,7 +328,7 @@ def _jumps(
     there = cells.signs[piece[edge]] * level + np.rint(shift[edge]).astype(np.int64)
 
     def crossing(pair: Integers, at: Integers) -> tuple[Integers, NDArray[np.bool_]]:
-        name = _edge_keys(pair, len(small.chi)) * width + at - base
+        name = _edge_keys(pair.T, len(small.chi)) * width + at - base
         index = np.minimum(np.searchsorted(names, name), len(names) - 1)
         return index, (at - base >= 0) & (at - base < width) & (names[index] == name)
 

@@ -26,8 +26,8 @@ from lamella.surface.element.placing import edge_blends
 from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
-from lamella.surface.points import Complexes, Floats, SurfacePoints
-from lamella.surface.vectors import lengths
+from lamella.surface.points import Complexes, Floats, SurfacePoints, shape_entries
+from lamella.surface.vectors import diagonal, lengths
 
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -94,12 +94,15 @@ class _TangentPlane:
     def up(self, z: Complexes, surface: ElementSurface) -> tuple[Places, Floats]:
         """Places and points (n, 3) of the surface above z (n,)."""
         axes = np.stack([self.at.e_u[0], self.at.e_v[0]])
-        coordinates = np.matmul(axes, surface.polynomials)
-        # the first of the coefficients is the constant
-        coordinates[0] -= (axes @ self.at.position[0])[:, None]
         foot = self.at.position[0] + np.stack([z.real, z.imag], 1) @ axes
         start = Places(self.middles.query(foot)[1], np.full((len(z), 2), 1 / 3))
         target = np.stack([z.real, z.imag])
+
+        def coordinates(where: Places) -> Floats:
+            jet = surface.polynomials.jet(where)
+            jet[0] -= self.at.position[0][:, None]
+            return np.asarray(np.matmul(axes, jet))
+
         places, found = find_places(surface.connectivity, coordinates, start, target, lambda *_: None)
         lost = np.flatnonzero(~found)
         if len(lost):
@@ -112,7 +115,7 @@ class _TangentPlane:
 def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     """Elements with rosettes around the umbilics of a surface."""
     connectivity = surface.connectivity
-    size = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
+    size = diagonal(surface.nodes)
     rims = element_rims(connectivity, surface.nodes, surface.rim_loop)
     along = np.concatenate([rim.at(np.arange(RIM_SAMPLES) / RIM_SAMPLES) for rim in rims])
     zeros = umbilics.position.reshape(-1, 3)
@@ -176,17 +179,16 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         places, there = plane.up(z, surface)
         positions[names], element[names], local[names] = there, places.element, places.local
     every = Places(element, local)
-    return NetMesh(
-        new, positions, every, surface.at(every).shape_entries, surface.smooth_normal(every), loop, at, radii
-    )
+    frames, mean, deviator = surface.shape_at(every)
+    shape = shape_entries(frames.e_u, frames.e_v, mean, deviator)
+    return NetMesh(new, positions, every, shape, surface.smooth_normal(every), loop, at, radii)
 
 
 def _positions(parts: Parts, surface: ElementSurface) -> Floats:
     """Nodes of order `ORDER` of every part, (m, k, 3)."""
     nodes = lagrange(ORDER).nodes
     where = parts.places(np.arange(len(parts.parent)), nodes)
-    position = surface.connectivity.basis.values(surface.polynomials, where.element, where.local)
-    return np.ascontiguousarray(position.T).reshape(len(parts.parent), len(nodes), 3)
+    return np.ascontiguousarray(surface.polynomials.values(where).T).reshape(len(parts.parent), len(nodes), 3)
 
 
 def _radii(surface: ElementSurface, umbilics: Umbilics, to_rim: Floats) -> Floats:

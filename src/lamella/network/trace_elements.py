@@ -25,8 +25,10 @@ from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network, 
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
 from lamella.network.tracks import A, B, Tracks, make_tracks, rim_tips, singular_ends
 from lamella.network.turning import turning
+from lamella.sparse import counted
 from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
+from lamella.surface.element.polynomials import Polynomials
 from lamella.surface.element.rim import element_rims
 from lamella.surface.points import Floats
 from lamella.surface.vectors import crosses, dots, images, lengths
@@ -175,10 +177,17 @@ def trace_elements(
     segment = np.repeat(np.arange(len(number)), given)
     fraction = ragged_ranges(given) / number[segment]
     parameter, near = arcs.parameter(segment, fraction)
-    places, points, velocity = segments.velocity(segment, parameter, near)
+    # element by element
+    order = counted(near.element + 1, len(cells.value) + 1).astype(np.int64)
+    spots = segments.spots(segment, parameter)[order]
+    places, points, velocity = segments.velocity(spots, near[order])
     tangents = velocity / lengths(velocity)[:, None]
-    points, tangents = segments.lead_out(segment, parameter, points, tangents)
+    points, tangents = segments.lead_out(spots, points, tangents)
     normals, tangents, bend, twist = _frames(cells, places, tangents)
+    back = np.empty(len(order), np.int64)
+    back[order] = np.arange(len(order))
+    places, bend, twist = places[back], bend[back], twist[back]
+    points, normals, tangents = (t.take(back, 0) for t in (points, normals, tangents))
 
     used = np.flatnonzero(np.bincount(chain, minlength=chains) > 0)
     lamella_of = np.full(chains, -1)
@@ -251,17 +260,19 @@ def trace_elements(
 def _frames(cells: CellMap, places: Places, directions: Floats) -> tuple[Floats, Floats, Floats, Floats]:
     """Unit normals (n, 3), tangents nearest to directions (n, 3), and kn and tg from the surface's shape operator."""
     mesh = cells.mesh
-    basis = mesh.connectivity.basis
     nodal = np.column_stack([mesh.normals, mesh.shape])[mesh.connectivity.elements]
-    coefficients = basis.coefficients(nodal)
+    fields = Polynomials.through(mesh.connectivity.basis, nodal)
     normals, tangents = np.empty((2, len(places), 3))
     bend, twist = np.empty((2, len(places)))
     for block in blocks(len(places)):
-        both = basis.values(coefficients, places.element[block], places.local[block]).T
-        normal = both[:, :3] / lengths(both[:, :3])[:, None]
-        tangent = directions[block] - dots(directions[block], normal)[:, None] * normal
+        both = fields.values(places[block]).T
+        normal, entries = both[:, :3], both[:, 3:]
+        normal /= lengths(normal)[:, None]
+        # components follow each other, as in the fields
+        tangent = np.array(directions[block], order="F")
+        tangent -= dots(tangent, normal)[:, None] * normal
         tangent /= lengths(tangent)[:, None]
-        image = images(both[:, 3:], tangent)
+        image = images(entries, tangent)
         bend[block], twist[block] = dots(image, tangent), dots(image, crosses(normal, tangent))
         normals[block], tangents[block] = normal, tangent
     return normals, tangents, bend, twist

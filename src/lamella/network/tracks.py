@@ -110,6 +110,8 @@ def passages(cells: CellMap, tracks: Tracks) -> tuple[Integers, Floats]:
     closed = tracks.ends[:, 0] == CLOSED
     following[tracks.last] = np.where(closed, tracks.first, tracks.last)
     link = np.flatnonzero(tracks.element != tracks.element[following])
+    # element by element they are found sooner
+    link = link[np.argsort(tracks.element[link], kind="stable")]
     tau = _on_edges(cells, tracks, link, tracks.local_end[link])
     chain = tracks.owner[link]
     again = closed[chain]

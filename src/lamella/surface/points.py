@@ -50,8 +50,7 @@ class SurfacePoints:
     @property
     def shape_entries(self) -> Floats:
         """Shape operator S, S t = -dn(t), as a symmetric matrix in space, 1/m, (n, 6): xx, xy, xz, yy, yz, zz."""
-        h, d = self.mean_curvature, self.deviator
-        return symmetric(self.e_u, self.e_v, h + d.real, -d.imag, h - d.real)
+        return shape_entries(self.e_u, self.e_v, self.mean_curvature, self.deviator)
 
     @property
     def shape_operator(self) -> Floats:
@@ -74,3 +73,8 @@ class SurfacePoints:
     def mu(self) -> Floats:
         """mu = (H^2 - K)^(1/4), 1/sqrt(m), (n,): du = mu <d1, .>, dv = mu <d2, .> (docs/theory.md)."""
         return np.sqrt(np.abs(self.deviator))
+
+
+def shape_entries(e_u: Floats, e_v: Floats, mean: Floats, deviator: Complexes) -> Floats:
+    """Entries (n, 6) of shape operators, 1/m, in frames (n, 3): see `SurfacePoints.shape_entries`."""
+    return symmetric(e_u, e_v, mean + deviator.real, -deviator.imag, mean - deviator.real)

@@ -9,6 +9,7 @@ import numpy as np
 from lamella.errors import InputError
 from lamella.surface.points import SurfacePoints
 from lamella.surface.surface import Surface
+from lamella.surface.vectors import diagonal
 
 # (k1 - k2) / 2 over the larger curvature below which a piece is a sphere, and over 1 / size below which it is flat
 LEAST_DEVIATION, LEAST_BEND = 1e-3, 1e-6
@@ -32,7 +33,7 @@ def umbilic_reason(points: SurfacePoints, least: float = LEAST_DEVIATION) -> str
     k1, k2 = points.principal_curvatures
     half = np.abs(points.deviator)
     largest = np.maximum(np.abs(k1), np.abs(k2)).max()
-    size = float(np.linalg.norm(np.ptp(points.position, axis=0)))
+    size = diagonal(points.position)
     if largest < LEAST_BEND / size:
         return f"flat: (k1 - k2) / 2 is at most {half.max():.2g} 1/m on a piece of {size:.3g} m"
     if half.max() < max(least * largest, LEAST_BEND / size):

@@ -24,6 +24,11 @@ def lengths(vectors: Floats) -> Floats:
     return np.asarray(np.sqrt(dots(vectors, vectors)))
 
 
+def diagonal(points: Floats) -> float:
+    """Length of the diagonal of the box around points (n, 3)."""
+    return float(np.linalg.norm(np.ptp(np.ascontiguousarray(points.T), axis=1)))
+
+
 def crosses(one: Floats, other: Floats) -> Floats:
     """Vector products of the rows of (..., 3)."""
     result = np.empty(np.broadcast_shapes(one.shape, other.shape))
@@ -36,7 +41,7 @@ def crosses(one: Floats, other: Floats) -> Floats:
 
 def images(entries: Floats, vectors: Floats) -> Floats:
     """Products of symmetric matrices (..., 6) with rows (..., 3)."""
-    result = np.empty(vectors.shape)
+    result = np.empty_like(vectors)
     for c, (a, b, d) in enumerate(((0, 1, 2), (1, 3, 4), (2, 4, 5))):
         np.multiply(entries[..., a], vectors[..., 0], out=result[..., c])
         result[..., c] += entries[..., b] * vectors[..., 1]

@@ -94,17 +94,3 @@ def test_subdivision_covers_the_triangle_once(parts) -> None:
     _, count = np.unique(edges, axis=0, return_counts=True)
     assert count.max() <= 2
     assert (count == 1).sum() == 3 * parts
-
-
-@pytest.mark.parametrize("order", [1, 2, 3, 4])
-def test_polynomials_at_scattered_places_are_those_of_the_basis(order) -> None:
-    """Horner's scheme in portions against the tables of the basis and its derivatives."""
-    rng = np.random.default_rng(order)
-    basis = lagrange(order)
-    nodal = rng.normal(size=(7, len(basis.nodes), 5))
-    element, local = rng.integers(0, 7, 20_000), rng.dirichlet([1, 1, 1], 20_000)[:, 1:]
-    jet = basis.jet(basis.coefficients(nodal), element, local)
-    for part, derivative in zip(jet, ((0, 0), (1, 0), (0, 1)), strict=True):
-        exact = np.matmul(basis.basis(local, *derivative)[:, None], nodal[element])[:, 0]
-        assert np.abs(part.T - exact).max() < 1e-11
-    assert np.array_equal(basis.values(basis.coefficients(nodal), element, local), jet[0])

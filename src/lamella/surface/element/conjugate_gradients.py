@@ -1,4 +1,4 @@
-"""Conjugate gradients with the matrix's diagonal, for well conditioned problems that need no factorisation."""
+"""Conjugate gradients, for well conditioned problems that need no factorisation."""
 
 from __future__ import annotations
 
@@ -11,32 +11,27 @@ from lamella.surface.points import Floats
 
 def conjugate_gradients(
     image_of: Callable[[Floats], Floats],
+    conditioned: Callable[[Floats], Floats],
     right: Floats,
-    diagonal: Floats,
     start: Floats,
-    tolerance: float,
+    goal: Floats,
     most_steps: int = 500,
 ) -> Floats:
     """Solution (n, c) of a symmetric positive definite problem with c right sides (n, c).
 
     Parameters
     ----------
-    image_of : callable
-        The matrix times a table (n, c).
-    right : (n, c)
-    diagonal : (n,)
-        Of the matrix.
-    start : (n, c)
-    tolerance : float
-        Of the residual over the right side, both in the norm of the inverse diagonal.
+    image_of, conditioned : callable
+        The matrix, and what is next to its inverse, times a table (n, c).
+    right, start : (n, c)
+    goal : (c,)
+        Of the residual times the conditioned residual.
     most_steps : int
     """
-    solution, inverse_diagonal = start.copy(), 1 / diagonal[:, None]
+    solution = start.copy()
     residual = right - image_of(solution)
-    conditioned = inverse_diagonal * residual
-    direction = conditioned.copy()
-    product = _dots(residual, conditioned)
-    goal = tolerance**2 * _dots(right, right * inverse_diagonal)
+    direction = conditioned(residual)
+    product = _dots(residual, direction)
     for _ in range(most_steps):
         if (product <= goal).all():
             break
@@ -44,10 +39,10 @@ def conjugate_gradients(
         step = product / np.maximum(_dots(direction, image), 1e-300)
         solution += step * direction
         residual -= step * image
-        np.multiply(residual, inverse_diagonal, out=conditioned)
-        product, before = _dots(residual, conditioned), product
+        near = conditioned(residual)
+        product, before = _dots(residual, near), product
         direction *= product / np.maximum(before, 1e-300)
-        direction += conditioned
+        direction += near
     return np.asarray(solution)
 
 

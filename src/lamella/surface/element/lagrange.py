@@ -18,9 +18,6 @@ from lamella.surface.points import Floats
 EDGES = ((0, 1), (1, 2), (2, 0))
 """Corners of the local edges."""
 
-# numbers an array has that is worked on at a time
-CACHED = 20_000
-
 
 @dataclass(frozen=True)
 class Lagrange:
@@ -44,106 +41,57 @@ class Lagrange:
         return np.array([(i, j) for j in range(self.order + 1) for i in range(self.order + 1 - j)])
 
     @cached_property
-    def _coefficients(self) -> Floats:
+    def to_monomials(self) -> Floats:
+        """Coefficients (k, k) of the monomials in each polynomial of the basis, one in a column."""
         i, j = self._exponents.T
         return np.linalg.inv(self.nodes[:, 0, None] ** i * self.nodes[:, 1, None] ** j)
 
     def basis(self, local: Floats, x_order: int = 0, y_order: int = 0) -> Floats:
         """Derivative d^(i+j) / dx^i dy^j of the basis at local coordinates (n, 2), as (n, k)."""
-        return np.asarray(self._monomials(local) @ _derivative(self.order, x_order, y_order))
+        return np.asarray(self.monomials(local).T @ self._derived(x_order, y_order))
 
-    def _monomials(self, local: Floats) -> Floats:
-        """x^i y^j at local coordinates (n, 2), (n, k)."""
-        i, j = self._exponents.T
-        x, y = np.ones((2, self.order + 1, len(local)))
-        for power in range(1, self.order + 1):
-            x[power], y[power] = x[power - 1] * local[:, 0], y[power - 1] * local[:, 1]
-        return np.asarray((x[i] * y[j]).T)
+    def _derived(self, x_order: int, y_order: int) -> Floats:
+        """Coefficients (k, k) of the monomials in a derivative of each polynomial of the basis, one in a column."""
+        return np.asarray(self.derivative(x_order, y_order) @ self.to_monomials)
 
-    def coefficients(self, values: Floats) -> Floats:
-        """Coefficients (k, c, m) of the monomials x^i y^j, of c polynomials an element with nodal values (m, k, c)."""
-        return np.ascontiguousarray(np.tensordot(self._coefficients, values, (1, 1)).transpose(0, 2, 1))
-
-    def jet(self, coefficients: Floats, element: NDArray[np.int64], local: Floats) -> Floats:
-        """Values and derivatives by x and y of polynomials of elements at places, (3, c, n).
-
-        Parameters
-        ----------
-        coefficients : (k, c, m)
-            See `coefficients`.
-        element : (n,) int
-        local : (n, 2)
-        """
-        return self._in_portions(coefficients, element, local, 3)
-
-    def values(self, coefficients: Floats, element: NDArray[np.int64], local: Floats) -> Floats:
-        """Values of polynomials of elements at places, (c, n), see `jet`."""
-        return np.asarray(self._in_portions(coefficients, element, local, 1)[0])
-
-    def values_everywhere(self, coefficients: Floats, local: Floats, x_order: int = 0, y_order: int = 0) -> Floats:
-        """Values or derivatives at the same local coordinates (q, 2) of every element, element by element, (c, m q)."""
-        # of the monomials at these places
-        table = self.basis(local, x_order, y_order) @ self._monomials(self.nodes)
-        values = np.tensordot(coefficients, table, (0, 1))
-        return values.reshape(len(values), -1)
-
-    def _in_portions(self, coefficients: Floats, element: NDArray[np.int64], local: Floats, parts: int) -> Floats:
-        result = np.empty((parts, coefficients.shape[1], len(element)))
-        # as many places at a time as stay in the processor's cache
-        portion = max(CACHED // coefficients.shape[1], 1)
-        for begin in range(0, len(element), portion):
-            here = slice(begin, begin + portion)
-            x, y = np.ascontiguousarray(local[here].T)
-            self._horner(coefficients, element[here], x, y, result[:, :, here])
+    def monomials(self, local: Floats) -> Floats:
+        """x^i y^j at local coordinates (n, 2), (k, n): all powers of x, then all but the last times y, and so on."""
+        x, y = np.ascontiguousarray(local.T)
+        result = np.empty((len(self.nodes), len(local)))
+        result[0] = 1
+        row, width = 0, self.order + 1
+        for j in range(self.order + 1):
+            if j:
+                np.multiply(result[row], y, out=result[row + width])
+                row, width = row + width, width - 1
+            for i in range(1, width):
+                np.multiply(result[row + i - 1], x, out=result[row + i])
         return result
 
-    def _horner(self, coefficients: Floats, element: NDArray[np.int64], x: Floats, y: Floats, result: Floats) -> None:
-        """sum_j y^j (sum_i c_ij x^i), and its derivatives where `result` has room for them, by Horner's scheme."""
-        row, slope, term = np.empty((3, coefficients.shape[1], len(x)))
-        result[:] = 0
-        value, *derivatives = result
-        end = len(coefficients)
-        for j in range(self.order, -1, -1):
-            top, end = end - 1, end - (self.order + 1 - j)
-            coefficients[top].take(element, 1, out=row, mode="clip")
-            slope[:] = 0
-            for i in range(top - 1, end - 1, -1):
-                if derivatives:
-                    slope *= x
-                    slope += row
-                row *= x
-                row += coefficients[i].take(element, 1, out=term, mode="clip")
-            if derivatives:
-                by_x, by_y = derivatives
-                by_x *= y
-                by_x += slope
-                by_y *= y
-                by_y += value
-            value *= y
-            value += row
+    def derivative(self, x_order: int, y_order: int) -> Floats:
+        """Coefficients (k, k) of the monomials in a derivative of each monomial, one in a column."""
+        return _derivative(self.order, x_order, y_order)
 
     def second_jet(self, local: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         """Values and derivatives x, y, xx, xy, yy of the basis at local coordinates (n, 2), each (n, k)."""
-        monomials = self._monomials(local)
+        monomials = self.monomials(local).T
         value, x, y, xx, xy, yy = (
-            np.asarray(monomials @ _derivative(self.order, *d))
-            for d in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+            np.asarray(monomials @ self._derived(*d)) for d in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
         )
         return value, x, y, xx, xy, yy
 
 
 @lru_cache
 def _derivative(order: int, x_order: int, y_order: int) -> Floats:
-    """Coefficients of the monomials in a derivative of each polynomial of the basis, (k, k)."""
-    basis = lagrange(order)
-    exponents = basis._exponents
+    """See `Lagrange.derivative`."""
+    exponents = lagrange(order)._exponents
     number = {(i, j): index for index, (i, j) in enumerate(exponents.tolist())}
     result = np.zeros((len(exponents), len(exponents)))
     for source, (i, j) in enumerate(exponents.tolist()):
         if i >= x_order and j >= y_order:
             # x^i y^j becomes this multiple of x^(i - x_order) y^(j - y_order)
             result[number[i - x_order, j - y_order], source] = perm(i, x_order) * perm(j, y_order)
-    return result @ basis._coefficients
+    return result
 
 
 @lru_cache

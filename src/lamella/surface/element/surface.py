@@ -16,6 +16,7 @@ from lamella.surface.element.edge_basis import edge_rule, edge_slopes, edge_valu
 from lamella.surface.element.gauss_map import harmonic_normals
 from lamella.surface.element.geometry import normal_and_area, project_onto_nodes, tangents
 from lamella.surface.element.places import Places
+from lamella.surface.element.polynomials import Polynomials
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.sampling import sampled_places
 from lamella.surface.element.umbilics import Umbilics, find_umbilics
@@ -82,9 +83,9 @@ class ElementSurface:
         return harmonic_normals(self.connectivity, self.nodes)
 
     @cached_property
-    def polynomials(self) -> Floats:
-        """Coefficients of the position of each element, m, (k, 3, m), see `Lagrange.coefficients`."""
-        return self.connectivity.basis.coefficients(self._corners)
+    def polynomials(self) -> Polynomials:
+        """The position on each element, m."""
+        return Polynomials.through(self.connectivity.basis, self._corners)
 
     @cached_property
     def _smooth_space(self) -> Connectivity:
@@ -102,8 +103,8 @@ class ElementSurface:
         return self.connectivity
 
     @cached_property
-    def _smoothed(self) -> Floats:
-        """Coefficients (k, 7, m) of the continuous shape operator (xx, xy, xz, yy, yz, zz) and H^2 - K."""
+    def _smoothed(self) -> tuple[Polynomials, Polynomials]:
+        """The continuous shape operator (xx, xy, xz, yy, yz, zz), 1/m, and H^2 - K, 1/m^2."""
         points, weights = triangle_rule(2 * self.connectivity.basis.order)
         x_1, x_2 = tangents(*self._slopes(points), self._corners)
         m, q = x_1.shape[:2]
@@ -123,17 +124,18 @@ class ElementSurface:
         values = np.concatenate([shape, (half**2 + s_uv**2)[:, None]], 1).reshape(m, q, 7)
         space = self._shape_space
         nodal = project_onto_nodes(space, points, area * weights, values)
-        return space.basis.coefficients(nodal[space.elements])
+        both = Polynomials.through(space.basis, nodal[space.elements])
+        return both[:6], both[6:]
 
     @cached_property
-    def _smoothed_mean_curvature(self) -> Floats:
-        """Coefficients (k, 1, m) of the continuous H from positions alone, 1/m."""
+    def _smoothed_mean_curvature(self) -> Polynomials:
+        """The continuous H from positions alone, 1/m."""
         points, weights = triangle_rule(2 * self.connectivity.basis.order)
         measured = element_points(self.connectivity, self._corners, points, False).mean_curvature
         _, area = normal_and_area(*tangents(*self._slopes(points), self._corners))
         space = self._smooth_space
         nodal = project_onto_nodes(space, points, area * weights, measured.reshape(*area.shape, 1))
-        return space.basis.coefficients(nodal[space.elements])
+        return Polynomials.through(space.basis, nodal[space.elements])
 
     def _slopes(self, local: Floats) -> tuple[Floats, Floats]:
         basis = self.connectivity.basis
@@ -142,8 +144,7 @@ class ElementSurface:
     def shape_at(self, where: Places) -> tuple[ElementFrames, Floats, Complexes]:
         """Frames, mean curvature H (n,) and deviator (n,), 1/m, at n places, see `SurfacePoints`."""
         there = self.frames(where)
-        smooth = self._shape_space.basis.values(self._smoothed[:, :6], where.element, where.local)
-        return there, *self._shape(there, smooth)
+        return there, *self._shape(there, self._smoothed[0].values(where))
 
     def _shape(self, there: ElementFrames, smooth: Floats) -> tuple[Floats, Complexes]:
         """Mean curvature and deviator (n,) from the smoothed shape operator (6, n)."""
@@ -157,17 +158,15 @@ class ElementSurface:
 
     def at(self, where: Places) -> SurfacePoints:
         """Everything about n places, in one evaluation."""
-        basis = self._shape_space.basis
-        smooth = basis.values(self._smoothed[:, :6], where.element, where.local)
-        _, by_x, by_y = basis.jet(self._smoothed[:, 6:], where.element, where.local)[:, 0]
-        return self._points(self.frames(where), smooth, by_x, by_y)
+        shape, square = self._smoothed
+        _, by_x, by_y = square.jet(where)[:, 0]
+        return self._points(self.frames(where), shape.values(where), by_x, by_y)
 
     def at_everywhere(self, local: Floats) -> SurfacePoints:
         """The points at the same local coordinates (q, 2) of every element, element by element: sooner than by `at`."""
-        basis = self._shape_space.basis
-        smooth = basis.values_everywhere(self._smoothed[:, :6], local)
-        by_x, by_y = (basis.values_everywhere(self._smoothed[:, 6:], local, *d)[0] for d in ((1, 0), (0, 1)))
-        return self._points(self._frames_everywhere(local), smooth, by_x, by_y)
+        shape, square = self._smoothed
+        by_x, by_y = (square.everywhere(local, *d)[0] for d in ((1, 0), (0, 1)))
+        return self._points(self.frames_everywhere(local), shape.everywhere(local), by_x, by_y)
 
     def _points(self, there: ElementFrames, smooth: Floats, by_x: Floats, by_y: Floats) -> SurfacePoints:
         """Points with the smoothed shape operator (6, n) and the slopes (n,) of H^2 - K."""
@@ -186,19 +185,17 @@ class ElementSurface:
 
     def frames(self, where: Places) -> ElementFrames:
         """Position and frame at n places."""
-        jet = self.connectivity.basis.jet(self.polynomials, where.element, where.local)
-        return frames(*np.ascontiguousarray(jet.transpose(0, 2, 1)))
+        return frames(*np.ascontiguousarray(self.polynomials.jet(where).transpose(0, 2, 1)))
 
-    def _frames_everywhere(self, local: Floats) -> ElementFrames:
-        basis = self.connectivity.basis
-        orders = ((0, 0), (1, 0), (0, 1))
-        return frames(*(np.ascontiguousarray(basis.values_everywhere(self.polynomials, local, *d).T) for d in orders))
+    def frames_everywhere(self, local: Floats) -> ElementFrames:
+        """The same at local coordinates (q, 2) of every element, element by element."""
+        jet = (self.polynomials.everywhere(local, *d) for d in ((0, 0), (1, 0), (0, 1)))
+        return frames(*(np.ascontiguousarray(part.T) for part in jet))
 
     def smooth_normal(self, where: Places) -> Floats:
         """Unit normal of the harmonic Gauss map at n places, (n, 3): it does not jump between elements."""
-        basis = self.connectivity.basis
-        coefficients = basis.coefficients(self._gauss[self.connectivity.elements])
-        normal = basis.values(coefficients, where.element, where.local).T
+        nodal = self._gauss[self.connectivity.elements]
+        normal = Polynomials.through(self.connectivity.basis, nodal).values(where).T
         return np.asarray(normal / lengths(normal)[:, None])
 
     def measured(self, where: Places) -> ElementPoints:
@@ -211,8 +208,7 @@ class ElementSurface:
 
     def smoothed_mean_curvature(self, where: Places) -> Floats:
         """`measured_mean_curvature` by L2 projection on continuous polynomials, 1/m, (n,): H of files and pictures."""
-        values = self._smooth_space.basis.values(self._smoothed_mean_curvature, where.element, where.local)[0]
-        return np.asarray(values)
+        return np.asarray(self._smoothed_mean_curvature.values(where)[0])
 
     def check_places(self) -> Places:
         """Twelve places inside every element."""

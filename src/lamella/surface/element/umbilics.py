@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
 from lamella.surface.points import Complexes, Floats, SurfacePoints
-from lamella.surface.vectors import dots
+from lamella.surface.vectors import diagonal, dots
 
 if TYPE_CHECKING:
     from lamella.surface.element.surface import ElementSurface
@@ -63,7 +63,7 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
     """
     local, faces = subdivision(PARTS)
     m = len(surface.connectivity.elements)
-    axes = surface.frames(Places.everywhere(m, np.full((1, 2), 1 / 3))).e_u
+    axes = surface.frames_everywhere(np.full((1, 2), 1 / 3)).e_u
     value = _turned(surface.at_everywhere(local), np.repeat(axes, len(local), 0)).reshape(m, -1)
     corners = value[:, faces]
     turn = np.angle(np.roll(corners, -1, 2) / np.where(corners == 0, 1, corners)).sum(2) / (2 * np.pi)
@@ -73,7 +73,7 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
     element, small = np.nonzero(start)
     found, inside = _newton(surface, Places(element, local[faces[small]].mean(1)), axes[element])
     found = found[inside]
-    size = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
+    size = diagonal(surface.nodes)
     if not len(found):
         return Umbilics(found, np.zeros((0, 3)), np.zeros(0, np.int64))
     places, position = found, surface.frames(found).position

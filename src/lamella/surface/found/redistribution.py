@@ -72,8 +72,14 @@ def redistributed(film: Film, mean_curvature: float) -> Film:
         parts = np.matmul(matrix, shifts[unknowns])
         return np.asarray((gathering @ parts.ravel() + damping * shifts[:, 0])[:, None])
 
+    inverse_diagonal = 1 / (diagonal + damping)[:, None]
+
+    def conditioned(shifts: Floats) -> Floats:
+        return np.asarray(inverse_diagonal * shifts)
+
     right = -(gathering @ pull.ravel())[:, None]
-    solution = conjugate_gradients(image_of, right, diagonal + damping, np.zeros((2 * n, 1)), TOLERANCE, MOST_STEPS)
+    goal = TOLERANCE**2 * np.einsum("nc,nc->c", right, conditioned(right))
+    solution = conjugate_gradients(image_of, conditioned, right, np.zeros((2 * n, 1)), goal, MOST_STEPS)
     shift = np.matmul(frames, solution.reshape(n, 2, 1))[..., 0]
     return film.at(film.nodes + _part(film, lengths(shift))[:, None] * shift)
 
