@@ -61,7 +61,7 @@ def test_exact_tangents(name: str) -> None:
 
 def test_lamellas_of_elements() -> None:
     """The catenoid's, on elements: at the ends the error falls as inside, and is of the same size."""
-    _, surface = catenoid(48, 26)
+    _, surface = catenoid(72, 39)
     errors = []
     for cells in (10, 20):
         network = element_network(surface, cells=cells).network

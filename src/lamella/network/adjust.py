@@ -36,8 +36,9 @@ if TYPE_CHECKING:
 
 # cells: misses below it end the search; a tenth of what counts as closed
 CLOSED = 1e-4
-# tolerance of the film on which the boundary is looked for, before the one that was asked for
-COARSE = 2e-2
+# tolerance of the film on which the boundary is looked for, before a finer one that was asked for: the periods of a
+# coarser one are off by more than the misses that end the search
+COARSE = 5e-3
 MOST_STEPS, MOST_POLISHING, MOST_HALVINGS = 20, 6, 5
 # steps towards all the whole numbers that are tried
 MOST_IN_ALL = 50
@@ -114,7 +115,7 @@ def adjust_boundary(
         )
     films = Films(table, folder, freedom, pattern)
     progress(f"  adjusting {', '.join(freedom.names)}: {freedom.count} parameters")
-    first = films.first(max(table.tolerance, COARSE))
+    first = films.first(COARSE)
     names = tuple(loop.name for loop in table.boundary)
     lattice = choose_lattice(first.iso, holonomies(first.iso), cells, spacing, pattern=pattern, names=names)
     before = _worst(first.whole.nearest(first.cells(lattice.step))[0] - first.cells(lattice.step))
@@ -307,7 +308,7 @@ class _Search:
         for _ in range(MOST_POLISHING):
             self.progress("    the film as fine as asked for")
             try:
-                found = self.films.found(aim.net.shares + move[:-1], self.films.table.tolerance)
+                found = self.films.found(aim.net.shares + move[:-1], min(self.films.table.tolerance, COARSE))
                 there = self._carried(aim, found, rates, move)
             except FollowError as error:
                 raise _LostError(aim, str(error)) from None
