@@ -14,6 +14,8 @@ from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError, Way, 
 FAR = 5.0
 # and of its first size, on the way to a film without pressure, which lies in the convex hull of its loops
 FAR_CALM = 2.0
+# negative eigenvalues more than at the start, with which no stable film is looked for any further on
+MORE = 1
 
 
 class FoldError(ArithmeticError):
@@ -84,6 +86,8 @@ def to_curvature(start: Equilibrium, target: float, detail: Detail, *, unstable:
                 stretch = next(way)
                 steps[k] = stretch.steps
                 found = _on_stretch(stretch, target, detail, unstable)
+                if not found and not unstable and stretch.second.negative > first.negative + MORE:
+                    raise NoFilmError("along the path films get less and less stable", stretch.second.film)
             except (NoFilmError, FoldError) as error:
                 ends.append(error)
                 del ways[k]
