@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 # cells: misses below it end the search; a tenth of what counts as closed
 CLOSED = 1e-4
+# cells: with misses below it, half of what counts as closed, the search ends too where it leads no further
+NEARLY = 5e-4
 # tolerance of the film on which the boundary is looked for, before a finer one that was asked for: the periods of a
 # coarser one are off by more than the misses that end the search
 COARSE = 5e-3
@@ -242,9 +244,17 @@ class _Search:
             if self.steps >= MOST_IN_ALL:
                 raise _LostError(aim, f"not reached in {MOST_IN_ALL} steps")
             self.steps += 1
-            aim, reason = self._step(aim)
+            try:
+                aim, reason = self._step(aim)
+            except _LostError:
+                # the film's own errors may be all that is left
+                if _worst(aim.misses) < NEARLY:
+                    return aim
+                raise
             self._tell(aim)
             refused = refused + 1 if reason else 0
+            if refused and _worst(aim.misses) < NEARLY:
+                return aim
             if refused >= patience and _worst(aim.misses) >= CLOSED:
                 raise _StuckError(aim, reason)
         raise _LostError(aim, f"not reached in {MOST_STEPS} steps")
@@ -305,6 +315,7 @@ class _Search:
         """The film as fine as was asked for: its own misses are a little different ones."""
         rates = aim.rates if aim.rates is not None else self._found_rates(aim.net, aim.step)
         move = np.zeros(len(aim.net.shares) + 1)
+        best: _Aim | None = None
         for _ in range(MOST_POLISHING):
             self.progress("    the film as fine as asked for")
             try:
@@ -313,14 +324,19 @@ class _Search:
             except FollowError as error:
                 raise _LostError(aim, str(error)) from None
             self._tell(there)
+            if best is None or _worst(there.misses) < _worst(best.misses):
+                best = there
             if _worst(there.misses) < CLOSED:
-                return there.net, there.step, _worst(there.misses)
+                break
             slow = move.any() and there.size > CARRIED * aim.size
             aim = there
             rates = self._found_rates(aim.net, aim.step) if slow or aim.rates is None else aim.rates
             move = self._shortened(aim.net, self._solved(aim.net, rates, aim.misses)[0])
             self.steps += 1
-        raise _LostError(aim, "the finer surface does not follow")
+        assert best
+        if _worst(best.misses) > NEARLY:
+            raise _LostError(best, "the finer surface does not follow")
+        return best.net, best.step, _worst(best.misses)
 
     def _solved(self, net: FilmNet, cell_rates: Complexes, misses: Complexes) -> tuple[Floats, float]:
         """Change of the shares and of the logarithm of the spacing that undoes misses, to first order; what it costs.

@@ -12,6 +12,7 @@ from lamella.network.holonomy import Holonomy, fixed_point_factors
 from lamella.network.isothermic import Isothermic
 from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 from lamella.surface.element.quadrature import triangle_rule
+from lamella.surface.element.umbilics import ASKEW
 from lamella.surface.points import Floats
 from lamella.surface.vectors import crosses, lengths
 
@@ -130,8 +131,12 @@ def lattice_origin(iso: Isothermic, step: float, pattern: Pattern) -> complex:
     # by half of l0, and both ends of the longest principal line of a symmetric surface are midway between two
     one, two, three = iso.mesh.nodes[faces].transpose(1, 0, 2)
     area = lengths(crosses(two - one, three - one))
-    middle = complex(area @ corner.mean(1) / area.sum())
-    return middle + step / 4 * (1 if np.ptp(corner.real) > np.ptp(corner.imag) else 1j)
+    w, place = corner.mean(1), (one + two + three) / 3 @ ASKEW
+    middle = complex(area @ w / area.sum())
+    along = 1 if np.ptp(corner.real) > np.ptp(corner.imag) else 1j
+    # -w serves as well as w: which of the two it is must not hang on the elements either
+    rises = ((w - middle) / along).real @ (area * (place - area @ place / area.sum())) >= 0
+    return middle + step / 4 * along * (1 if rises else -1)
 
 
 def _cell_densities(iso: Isothermic, points: Floats, weights: Floats, pattern: Pattern) -> tuple[Floats, Floats]:

@@ -31,6 +31,8 @@ Closing = Literal["open", "round"]
 
 # of a cell: a shift nearer to whole numbers closes the net (docs/files.md)
 CLOSES = 1e-3
+# of the curvature scale: a larger error of the normal curvature is told
+ASTRAY = 0.02
 # rounding: the nearest whole numbers may put two umbilics on one node; then the next ones are tried
 MOST_WAYS = 8
 
@@ -124,6 +126,25 @@ class ElementNetwork:
                 f"lamellas pass around them; another number of cells ({self._even()}, where two lie on one principal "
                 "line) makes them nodes"
             )
+        if not rounded:
+            yield from self._astray()
+
+    def _astray(self) -> Iterator[str]:
+        """Lamellas whose normal curvature, measured on the surface, is another one."""
+        network, wanted = self.network, self.network.normal_curvature
+        if wanted is None:
+            return
+        there = network.sample_darboux
+        off = np.abs(there.kn - wanted) / np.sqrt(np.mean(there.kn**2 + there.tg**2))
+        far = off > ASTRAY
+        if far.any():
+            x, y, z = network.sample_points[off.argmax()]
+            yield (
+                f"the normal curvature of lamellas is off by up to {off.max():.2g} of the curvature scale near "
+                f"({x:.3g}, {y:.3g}, {z:.3g}) m (by more than {ASTRAY:g} at {far.mean():.2%} of the samples): the "
+                "surface's directions are not told well enough there; round the corners of its boundary, or write a "
+                "smaller surface.tolerance"
+            )
 
 
 @dataclass(frozen=True)
@@ -164,7 +185,12 @@ class LaidNet:
             near = np.round(raw.shifts)
             off = _largest_part(raw.shifts - near)
             wanted = np.where(off <= CLOSES, near, np.nan)
-            iso = with_shifts(iso, _shifts(raw, wanted, lattice)) if (off <= CLOSES).any() else iso
+            if (off <= CLOSES).any():
+                try:
+                    iso = with_shifts(iso, _shifts(raw, wanted, lattice))
+                except FoldedError:
+                    # coordinates that turn over somewhere stay as they are, with a seam
+                    wanted[:] = np.nan
         rim_loop = mesh.loop[mesh.connectivity.rim_nodes[:, 0]]
         network = trace_elements(
             CellMap.of(iso, lattice.origin, lattice.step, pattern),

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.errors import InputError
 from lamella.network.isothermic import Isothermic, Transition
 from lamella.network.net_mesh import NetMesh
 from lamella.surface.element.connectivity import Connectivity
@@ -80,7 +81,13 @@ def vertex_relations(
             continue
         sign, factors = around_vertex(mesh, pieces, across, vertex)
         if sign != 1:
-            raise ValueError("the signs around an ordinary vertex of the cut do not agree")
+            x, y, z = mesh.nodes[vertex]
+            raise InputError(
+                f"the principal directions of the surface are not told well enough for a net: near ({x:.4g}, {y:.4g}, "
+                f"{z:.4g}) m they turn differently on both sides",
+                "round the corners of its boundary (a spline or an arc), or write a smaller tolerance",
+                "surface.boundary",
+            )
         result[vertex] = factors
     return result
 

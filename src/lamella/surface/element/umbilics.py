@@ -29,6 +29,8 @@ MOST_STEPS = 30
 REACHES = (2e-3, 6e-3, 2e-2, 6e-2)
 # of the size: umbilics whose distances from the rim differ by less are alike
 DEPTH = 0.01
+# a direction in which the places of no usual symmetry are alike
+ASKEW = np.array([1.0, 0.618, 0.387])
 
 
 @dataclass(frozen=True)
@@ -88,14 +90,18 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
 
 
 def _deepest_first(surface: ElementSurface, position: Floats, step: float) -> Integers:
-    """Order of places by their distance from the rim, the farthest first: the net begins there on whatever elements.
+    """Order of places (n, 3) by their distance from the rim, the farthest first: nets begin there on whatever elements.
 
-    Of alike distances, in steps (m), the first by x, y and z is the first.
+    Of those about as far, within a step (m), the one farthest along `ASKEW` is the first.
     """
     rim = surface.nodes[np.unique(surface.connectivity.rim_nodes)]
     depth, _ = cKDTree(rim).query(position)
-    x, y, z = np.rint(position / step).T
-    return np.lexsort((z, y, x, -np.rint(depth / step)))
+    order = np.argsort(-depth, kind="stable")
+    alike = order[depth[order] > depth.max(initial=0) - step]
+    if not len(alike):
+        return order
+    first = alike[(position[alike] @ ASKEW).argmax()]
+    return np.concatenate([[first], order[order != first]])
 
 
 def _gathered(
