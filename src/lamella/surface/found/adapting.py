@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.surface.element.curvature import element_points
+from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.size_field import SizeField
 from lamella.surface.found.film import Film
@@ -16,6 +17,8 @@ from lamella.surface.points import Floats
 # around a corner of the boundary the curvature of a film itself may be unbounded: parts of the size (or of
 # the loop) left out there
 CORNER_PART = 0.03
+# order of the regular places in each element at which H is checked
+CHECKED = 8
 # least |D| over the curvature scale that an error is weighed by
 LEAST_WEIGHED = 0.1
 # of the tolerance that a new mesh aims at, and the rings of neighbours that share their largest error
@@ -54,7 +57,8 @@ def deviation_of(film: Film, mean_curvature: float) -> Deviation:
     The curvature of a polynomial is farthest off at the element's rim, most of all at its vertices.
     """
     inside, weights = triangle_rule(6)
-    points = np.concatenate([inside, film.connectivity.basis.nodes])
+    # many more places than the nodes can be moved for: between too few of them H would be worse
+    points = np.concatenate([inside, lagrange(CHECKED).nodes])
     weights = np.append(weights, np.zeros(len(points) - len(inside)))
     corners = film.nodes[film.connectivity.elements]
     there = element_points(film.connectivity, corners, points, False)

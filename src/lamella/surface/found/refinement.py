@@ -22,6 +22,8 @@ SLOW = 0.7
 # nodes are moved within the surface again rather than elements made smaller while the deviation is at most this many
 # times the tolerance, and as long as it falls below this part
 NEAR, GAIN = 2.5, 0.8
+# of the tolerance, kept for what lies between the places that are checked
+MARGIN = 0.9
 # of the curvature scale: a film that is off by more is none to speak of
 WRONG = 0.1
 
@@ -73,7 +75,7 @@ def adapted(
         gain = deviation.weighted / best[0] if best else 0.0
         if best is None or deviation.weighted < best[0]:
             best = (deviation.weighted, here)
-        if deviation.weighted <= tolerance:
+        if deviation.weighted <= MARGIN * tolerance:
             shortfall = ""
             break
         size, allowed = refined_sizes(here.film, deviation, tolerance, most_nodes, coarsen=round_ < 3)
