@@ -15,6 +15,7 @@ from hypothesis import settings
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+from command_line import UNDULOID
 from lamella import (
     Catenoid,
     Cylinder,
@@ -43,6 +44,14 @@ KINDS = ("unduloid", "nodoid", "catenoid", "cylinder", "helicoid", "enneper", "e
 def run_of_example(name: str) -> Results:
     """An example's run, computed once for all tests."""
     return compute(read_project(EXAMPLES / f"{name}.toml"), folder=EXAMPLES)
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder to work in, with a project p.toml."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "p.toml").write_text(UNDULOID)
+    return tmp_path
 
 
 def draw_surface(kind: str, rng: np.random.Generator) -> ClosedForm:

@@ -1,12 +1,10 @@
-"""The command line as its users meet it: commands, help, output folders, interrupted and crowded runs."""
+"""The command line as its users meet it: commands, help, output folders."""
 
 from __future__ import annotations
 
 import json
 import os
 import re
-import resource
-import signal
 import subprocess
 import sys
 import tomllib
@@ -14,56 +12,15 @@ from pathlib import Path
 
 import pytest
 
+from command_line import FILES, UNDULOID, contents, lamella
 from lamella import Unduloid, __version__
 from lamella.cli import main
 from lamella.files.mesh_files import write_surface_obj
 from lamella.project import FURTHER_TABLES, SURFACE_TABLES, BoundaryTable
 from lamella.project_file import parse_project
 
-UNDULOID = """name = "x"
-[surface]
-kind = "unduloid"
-neck_radius = 1.6
-bulge_radius = 2.8
-height = [-1.0, 1.0]
-[network]
-cells = 8
-"""
 COMMANDS = ("run", "new", "check", "optimise", "examples", "schema")
 EXAMPLES = Path(__file__).parents[1] / "examples"
-# DESIGN section 7
-FILES = {
-    "surface": {"summary.json", "project.toml", "surface.obj", "surface.ply", "report.html"},
-    "network": {"network.json", "network.obj", "nodes.csv", "model.3dm"},
-    "lamellas": {"lamellas.json"},
-    "fabrication": {
-        "fabrication/A.dxf",
-        "fabrication/B.dxf",
-        "fabrication/sheets.dxf",
-        "fabrication/schedule.csv",
-    },
-}
-
-
-def lamella(*arguments: str, **more: object) -> subprocess.Popen[str]:
-    return subprocess.Popen(  # type: ignore[call-overload,no-any-return]
-        [sys.executable, "-m", "lamella", *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        **more,
-    )
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
-
-
-@pytest.fixture
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "p.toml").write_text(UNDULOID)
-    return tmp_path
 
 
 # --- help, version, commands ------------------------------------------------------------------------------------
@@ -444,119 +401,6 @@ def test_a_file_name_that_is_no_text(tmp_path: Path) -> None:
         assert done.returncode == 0, done.stderr
     (out,) = (tmp_path / "out").iterdir()
     assert json.loads((out / "summary.json").read_bytes())["name"] == "gr��er"
-
-
-# --- full disk, kills, closed pipes -----------------------------------------------------------------------------
-
-
-@pytest.fixture
-def earlier(here: Path) -> dict[str, bytes]:
-    """An earlier run's folder out/p."""
-    assert main(["run", "p.toml", "--until", "network", "--quiet"]) == 0
-    return contents(here / "out")
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="POSIX limits")
-@pytest.mark.parametrize("most", [0, 1_000, 60_000, 200_000])
-def test_a_full_disk_leaves_the_earlier_run_whole(here: Path, earlier: dict[str, bytes], most: int) -> None:
-    process = lamella("run", "p.toml", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 2, err
-    told = err[err.index("lamella: ") :]
-    assert "File too large; what was there before is unchanged\n  remedy: free some space" in told
-    assert "Traceback" not in err
-    assert out == ""
-    assert contents(here / "out") == earlier
-    assert [p.name for p in (here / "out").iterdir()] == ["p"]
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="POSIX limits")
-def test_a_full_disk_leaves_nothing_where_nothing_was(here: Path) -> None:
-    process = lamella("run", "p.toml", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (9_000, 9_000)))
-    process.communicate(timeout=60)
-    assert process.returncode == 2
-    assert sorted(p.name for p in here.iterdir()) == ["p.toml"]
-
-
-def kill_half_way(here: Path, number: signal.Signals) -> tuple[int, str]:
-    """Kill a run once it has begun to write; it stops there, so that the moment is always the same."""
-    code = (
-        "import signal, sys, time, lamella.output as output\n"
-        # a suite in the background of a shell has it ignored, and its processes inherit that
-        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "write = output.write_network\n"
-        "def stop(*a, **k):\n"
-        "    print('half-way', file=sys.stderr, flush=True)\n"
-        "    time.sleep(60)\n"
-        "output.write_network = stop\n"
-        "from lamella.cli import main\n"
-        "sys.exit(main(['run', 'p.toml', '--quiet']))"
-    )
-    process = subprocess.Popen([sys.executable, "-c", code], cwd=here, stderr=subprocess.PIPE, text=True)
-    assert process.stderr
-    assert process.stderr.readline() == "half-way\n"
-    assert len(list((here / "out").iterdir())) == 2  # the earlier run and the one in the making
-    process.send_signal(number)
-    _, err = process.communicate(timeout=30)
-    return process.returncode, err
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-@pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGINT", 130)])
-def test_a_polite_kill_cleans_up(here: Path, earlier: dict[str, bytes], name: str, code: int) -> None:
-    returned, err = kill_half_way(here, signal.Signals[name])
-    assert returned == code
-    assert "Traceback" not in err
-    if name == "SIGINT":
-        assert err == "lamella: interrupted, nothing written\n"
-    assert contents(here / "out") == earlier
-    assert [p.name for p in (here / "out").iterdir()] == ["p"]
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-def test_what_a_hard_kill_leaves_is_cleaned_by_the_next_run(here: Path, earlier: dict[str, bytes]) -> None:
-    assert kill_half_way(here, signal.SIGKILL)[0] == -signal.SIGKILL
-    assert contents(here / "out" / "p") == {name.removeprefix("p/"): data for name, data in earlier.items()}
-    assert len(list((here / "out").iterdir())) == 2
-    assert main(["run", "p.toml", "--until", "surface", "--quiet"]) == 0
-    assert [p.name for p in (here / "out").iterdir()] == ["p"]
-    assert set(contents(here / "out" / "p")) == FILES["surface"]
-
-
-def test_no_memory_is_told(here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    def exhausted(*arguments: object, **more: object) -> None:
-        raise MemoryError
-
-    monkeypatch.setattr("lamella.output.write_network", exhausted)
-    assert main(["run", "p.toml", "--quiet"]) == 2
-    told = capsys.readouterr().err
-    assert told == "lamella: not enough memory; what was there before is unchanged\n  remedy: choose fewer cells\n"
-    assert sorted(p.name for p in here.iterdir()) == ["p.toml"]
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="POSIX pipes")
-@pytest.mark.parametrize("arguments", [["schema", "project"], ["examples"], ["new", "unduloid", "--out", "-"]])
-def test_a_reader_that_goes_early(arguments: list[str]) -> None:
-    read, write = os.pipe()
-    os.close(read)
-    process = subprocess.Popen(
-        [sys.executable, "-m", "lamella", *arguments], stdout=write, stderr=subprocess.PIPE, text=True
-    )
-    os.close(write)
-    _, err = process.communicate(timeout=30)
-    assert process.returncode == 1
-    assert err == ""
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="POSIX pipes")
-def test_a_reader_of_the_progress_that_goes_early(here: Path, earlier: dict[str, bytes]) -> None:
-    read, write = os.pipe()
-    os.close(read)
-    process = subprocess.Popen([sys.executable, "-m", "lamella", "run", "p.toml"], stdout=write, stderr=write)
-    os.close(write)
-    assert process.wait(30) == 1
-    assert contents(here / "out") == earlier
-    assert [p.name for p in (here / "out").iterdir()] == ["p"]
 
 
 def test_the_number_of_threads_does_not_change_a_byte(tmp_path: Path) -> None:

@@ -44,8 +44,6 @@ COARSE = 5e-3
 MOST_STEPS, MOST_POLISHING, MOST_HALVINGS = 20, 6, 5
 # steps towards all the whole numbers that are tried
 MOST_IN_ALL = 50
-# whole steps refused one after the other, after which other whole numbers go first
-PATIENCE = 2
 # of the misses left by a step: with more, the next step's rates are found anew and not carried on
 CARRIED = 0.5
 # of the film's size: what the boundary moves in a step, at most
@@ -184,13 +182,13 @@ class _Search:
             if lost:
                 self.progress(f"  {lost[-1]}: other whole numbers of cells")
             try:
-                return self.polish(self.descend(_Aim(first, whole, lattice.step), PATIENCE))
+                return self.polish(self.descend(_Aim(first, whole, lattice.step), hasty=True))
             except _StuckError as error:
                 lost.append(error)
                 waiting.append(error.aim)
             except _LostError as error:
                 lost.append(error)
-        for aim in waiting:
+        for aim in sorted(waiting, key=lambda one: one.size):
             self.progress(f"  {lost[-1]}: back to those that were left with {_worst(aim.misses):.2g} cells")
             try:
                 return self.polish(self.descend(aim))
@@ -234,16 +232,16 @@ class _Search:
             self.progress(f"    how the net follows {self.films.freedom.count} parameters")
         return self.films.cell_rates(net, step)
 
-    def descend(self, aim: _Aim, patience: int = MOST_STEPS) -> _Aim:
-        """Steps on the coarse film, until the misses are gone or so many whole steps running are refused."""
+    def descend(self, aim: _Aim, *, hasty: bool = False) -> _Aim:
+        """Steps on the coarse film, until the misses are gone; in haste, until one leaves most of them."""
         self._tell(aim)
-        refused = 0
         for _ in range(MOST_STEPS):
             if _worst(aim.misses) < CLOSED:
                 return aim
             if self.steps >= MOST_IN_ALL:
                 raise _LostError(aim, f"not reached in {MOST_IN_ALL} steps")
             self.steps += 1
+            before = aim.size
             try:
                 aim, reason = self._step(aim)
             except _LostError:
@@ -252,10 +250,9 @@ class _Search:
                     return aim
                 raise
             self._tell(aim)
-            refused = refused + 1 if reason else 0
-            if refused and _worst(aim.misses) < NEARLY:
+            if reason and _worst(aim.misses) < NEARLY:
                 return aim
-            if refused >= patience and _worst(aim.misses) >= CLOSED:
+            if reason and hasty and aim.size > CARRIED * before:
                 raise _StuckError(aim, reason)
         raise _LostError(aim, f"not reached in {MOST_STEPS} steps")
 
@@ -275,18 +272,23 @@ class _Search:
         if net.whole.size(aim.misses - rates @ change) > (1 - LEAST_GAIN) * aim.size:
             raise _LostError(aim, "the boundary may not change by more")
         change = self._shortened(net, change)
-        part, reason = 1.0, ""
-        for _ in range(halvings):
-            move = part * change
-            self.progress(f"    following the film over {part:g} of a step" + (f" ({reason})" if reason else ""))
+        # the least boundary that closes the net may be far from this one: then the nearest, and less and less of it
+        nearest = self._shortened(net, self._solved(net, rates, aim.misses, net.shares)[0])
+        parts = 0.5 ** np.arange(halvings - 1)
+        moves = [change, *np.outer(parts if net.shares.any() else parts / 2, nearest)]
+        reason = ""
+        for move in moves[:halvings]:
+            share = float(np.linalg.norm(move) / np.linalg.norm(change))
+            self.progress(f"    following the film over {share:.2g} of a step" + (f" ({reason})" if reason else ""))
             try:
                 there = self._carried(aim, self.films.moved(net, net.shares + move[:-1]), rates, move)
             except FollowError as error:
-                reason, part = str(error), part / 2
+                reason = str(error)
                 continue
-            if there.size < (1 - LEAST_GAIN * part) * aim.size or _worst(there.misses) < 10 * CLOSED:
+            expected = 1 - LEAST_GAIN * min(share, 1.0)
+            if there.size < expected * aim.size or _worst(there.misses) < 10 * CLOSED:
                 return (there if there.size < CARRIED * aim.size else replace(there, rates=None)), reason
-            reason, part = "the misses grow", part / 2
+            reason = "the misses grow"
         raise _LostError(aim, reason)
 
     def _carried(self, aim: _Aim, net: FilmNet, rates: Complexes, move: Floats) -> _Aim:
@@ -329,6 +331,9 @@ class _Search:
             if _worst(there.misses) < CLOSED:
                 break
             slow = move.any() and there.size > CARRIED * aim.size
+            # what is left may be the film's own errors
+            if slow and _worst(best.misses) < NEARLY:
+                break
             aim = there
             rates = self._found_rates(aim.net, aim.step) if slow or aim.rates is None else aim.rates
             move = self._shortened(aim.net, self._solved(aim.net, rates, aim.misses)[0])
@@ -338,10 +343,13 @@ class _Search:
             raise _LostError(best, "the finer surface does not follow")
         return best.net, best.step, _worst(best.misses)
 
-    def _solved(self, net: FilmNet, cell_rates: Complexes, misses: Complexes) -> tuple[Floats, float]:
+    def _solved(
+        self, net: FilmNet, cell_rates: Complexes, misses: Complexes, near: Floats | None = None
+    ) -> tuple[Floats, float]:
         """Change of the shares and of the logarithm of the spacing that undoes misses, to first order; what it costs.
 
-        The least squares of the shares themselves, not of their change, with what they cannot undo weighing more.
+        The least squares of the shares themselves, or of what they differ by from those that they shall be near, with
+        what they cannot undo weighing more.
         """
         measured, missed = net.whole.measured(cell_rates), net.whole.measured(misses)
         rates = np.vstack([measured.real, measured.imag])
@@ -349,7 +357,8 @@ class _Search:
         wanted = np.concatenate([missed.real, missed.imag])
         now = np.append(net.shares, 0.0)
         system = np.vstack([WEIGHT * rates, np.eye(len(now))])
-        right = np.concatenate([WEIGHT * (wanted + rates @ now), np.zeros(len(now))])
+        middle = np.zeros(len(now)) if near is None else np.append(near, 0.0)
+        right = np.concatenate([WEIGHT * (wanted + rates @ now), middle])
         solved = lsq_linear(system, right, bounds=(-1.0, 1.0), method="bvls")
         change = np.asarray(solved.x, float) - now
         change[-1] *= SPACING
