@@ -218,7 +218,7 @@ def test_run_returns_its_folder_and_tells_warnings(tmp_path: Path, monkeypatch: 
     monkeypatch.chdir(tmp_path)
     (tmp_path / "big.toml").write_text("[surface]\nkind = 'cylinder'\nradius = 900.0\nheight = [0, 900]\n")
     told: list[str] = []
-    folder = lamella.run(Path("big.toml"), until="surface", warn=told.append)
+    folder = lamella.run("big.toml", until="surface", warn=told.append)
     assert folder == Path("out/big")
     assert told == json.loads((folder / "summary.json").read_bytes())["warnings"]
     assert len(told) == 1

@@ -89,13 +89,13 @@ class _Clock:
         self._progress(f"  {result} ({self.seconds[stage]:.2f} s)")
 
 
-def make_surface(project: Project, folder: Path = Path(), progress: Progress = silent) -> Surface[Any]:
+def make_surface(project: Project, folder: str | Path = Path(), progress: Progress = silent) -> Surface[Any]:
     """The surface a project describes.
 
     Parameters
     ----------
     project : Project
-    folder : Path
+    folder : str or Path
         Where the files a project names are looked for: the folder of the project file.
     progress : callable
         Is told of the steps where a surface has to be found.
@@ -105,7 +105,7 @@ def make_surface(project: Project, folder: Path = Path(), progress: Progress = s
     InputError
         No such surface.
     """
-    table = project.surface
+    table, folder = project.surface, Path(folder)
     if table.kind not in ("form-found", "mesh"):
         return CLOSED_FORMS[table.kind](**table.model_dump(exclude={"kind"}))
     too_low = cautions.order_caution(table.order, table.tolerance, table.most_nodes)
@@ -234,7 +234,7 @@ def _check_fabrication(project: Project, curvature: float) -> None:
 
 
 def compute(
-    project: Project, *, until: str | None = None, folder: Path = Path(), progress: Progress = silent
+    project: Project, *, until: str | None = None, folder: str | Path = Path(), progress: Progress = silent
 ) -> Results:
     """Run the stages of a project up to `until`, in memory.
 
@@ -243,7 +243,7 @@ def compute(
     project : Project
     until : str, optional
         Last stage, one of `STAGES`; as far as this kind of surface goes when not given.
-    folder : Path
+    folder : str or Path
         Where the files a project names are looked for: the folder of the project file.
     progress : callable
         Is told what is being done, a line at a time; details are indented by four spaces.
@@ -252,7 +252,7 @@ def compute(
     ------
     InputError
     """
-    depth = _last_of(project, until)
+    depth, folder = _last_of(project, until), Path(folder)
     clock = _Clock(progress)
     warnings: list[str] = []
     if depth < STAGES.index("lamellas") and until is None:
@@ -366,9 +366,9 @@ def _depth(until: str) -> int:
 
 
 def run(
-    project_file: Path,
+    project_file: str | Path,
     *,
-    out: Path | None = None,
+    out: str | Path | None = None,
     until: str | None = None,
     progress: Progress = silent,
     warn: Progress = silent,
@@ -377,8 +377,8 @@ def run(
 
     Parameters
     ----------
-    project_file : Path
-    out : Path, optional
+    project_file : str or Path
+    out : str or Path, optional
         Default ``out/<project file's stem>``.
     until : str, optional
         Last stage; as far as this kind of surface goes when not given.
@@ -400,8 +400,9 @@ def run(
     from lamella.files.folder import check_target
 
     _depth(LAST_STAGE if until is None else until)
+    project_file = Path(project_file)
     project = read_project(project_file)
-    target = out if out is not None else Path("out") / project_file.stem
+    target = Path("out") / project_file.stem if out is None else Path(out)
     check_target(target)
     try:
         results = compute(project, until=until, folder=project_file.parent, progress=progress)
@@ -413,20 +414,20 @@ def run(
     return target
 
 
-def write(results: Results, target: Path, *, progress: Progress = silent) -> None:
+def write(results: Results, target: str | Path, *, progress: Progress = silent) -> None:
     """Write the folder of a run; it appears whole or not at all.
 
     Parameters
     ----------
     results : Results
-    target : Path
+    target : str or Path
         Made if it is not there; an earlier run's folder is replaced.
     progress : callable
     """
     from lamella.files.folder import staged_folder
     from lamella.output import write_files
 
-    start = time.process_time()
+    start, target = time.process_time(), Path(target)
     progress(f"writing {target}")
     with staged_folder(target) as folder:
         write_files(results, folder, progress=progress)

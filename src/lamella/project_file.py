@@ -21,14 +21,19 @@ MOST_BYTES = 5_000_000
 MOST_TOLD = 6
 
 
-def read_project(path: Path) -> Project:
+def read_project(path: str | Path) -> Project:
     """Read and check a project file.
+
+    Parameters
+    ----------
+    path : str or Path
 
     Raises
     ------
     InputError
         Whatever is wrong with it, with file, line and key.
     """
+    path = Path(path)
     try:
         if path.is_dir():
             raise InputError(f"{path} is a folder, not a project file", "name the .toml file inside it")

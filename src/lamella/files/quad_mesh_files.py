@@ -52,12 +52,12 @@ class QuadFile:
     face_keys: tuple[str, ...] = ()
 
 
-def read_quad_mesh(path: Path, unit: str | None = None) -> QuadFile:
+def read_quad_mesh(path: str | Path, unit: str | None = None) -> QuadFile:
     """Read a quad mesh; nothing is merged, turned or left out.
 
     Parameters
     ----------
-    path : Path
+    path : str or Path
         The ending tells the format: .obj, .ply, .3dm, or .json of COMPAS.
     unit : str, optional
         Unit of the file's numbers: mm, cm, dm, m, km, in, ft or yd. A .3dm says its own; metres for the others.
@@ -68,7 +68,7 @@ def read_quad_mesh(path: Path, unit: str | None = None) -> QuadFile:
         The file cannot be read, or is no connected manifold mesh of quads of a believable size.
     """
     try:
-        return _read(path, unit)
+        return _read(Path(path), unit)
     except InputError as error:
         raise InputError(error.message, error.remedy, where=str(path)) from None
 
