@@ -65,7 +65,7 @@ def rings(distance: float) -> list[dict[str, Any]]:
         (film({"network": {"cells": 2000}}), "would make about", "network.cells"),
         (film({"network": {"spacing": 1e-3}}), "would make about", "network.spacing"),
         (film({"network": {"spacing": 5.0}}), "cells across the surface, at least 3", "network.spacing"),
-        (film({"network": {"cells": 8, "minimum_length": 100.0}}), "no two lamellas cross", "network.cells"),
+        (film({"network": {"cells": 8, "minimum_length": 100.0}}), "no two lamellas cross", "network.minimum_length"),
         (
             film({"network": {"normal_curvature": 9.0}}),
             "no direction of the surface has it",

@@ -1,5 +1,7 @@
 """Strip ends that meet beyond the rim: on a cylinder their distance from the rim is known exactly."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -24,6 +26,9 @@ def test_single_strips(beyond, overhang, pairs):
     assert len(found) == (pairs > 0)
     if pairs:
         assert found[0].startswith(f"{pairs} pairs")
+        # told by their names; what cannot be shortened is no remedy
+        assert re.search(r"\(A\d+ and B\d+, .*\.\.\.\) meet", found[0])
+        assert "rim_overhang (20.5 mm) or end_distance (20 mm), or move the rim" in found[0]
 
 
 def test_outer_layers_meet_earlier():

@@ -177,6 +177,8 @@ def test_on_elements_as_on_the_closed_form(name: str, pattern: Pattern) -> None:
     size = float(np.linalg.norm(np.ptp(exact.node_points, axis=0)))
     off, _ = from_exact_nodes(form, net, net.step)
     assert off.max() < 1e-5 * size
+    # a principal net's normal curvature is none of H
+    assert not list(on_elements(name, pattern).warnings())
     same_points(inner(net), inner(exact), 5e-5 * size)
     assert (net.node_kinds == SINGULAR).sum() == 1
     assert np.abs(90 - net.node_angles).max() < 0.01

@@ -69,6 +69,10 @@ def check(seed: int) -> str:
     if told == "round":
         assert not (network.node_kinds == SEAM).any(), seed
         assert all(joint.closed for joint in net.joints), seed
+        assert net.describe()["closed"], seed
+        # what is told of loops around holes is told of the rounded net
+        counts = [cells for period in network.periods for cells in period[1:]]
+        assert np.abs(counts - np.round(counts)).max(initial=0.0) < 1e-9, seed
         # a rounded net goes through every umbilic that is not on the rim
         assert all(umbilic["node"] or umbilic["boundary"] for umbilic in net.describe()["umbilics"]), seed
     assert ruler(network)["family_sign_errors"] == 0, seed

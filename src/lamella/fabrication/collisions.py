@@ -11,8 +11,8 @@ from lamella.network.network import BOUNDARY, Network
 Floats = NDArray[np.float64]
 
 
-def end_collisions(network: Network, before: Floats, after: Floats, spread: float) -> int:
-    """Number of pairs of an A and a B strip that meet beyond the rim nodes where they end.
+def end_collisions(network: Network, before: Floats, after: Floats, spread: float) -> list[str]:
+    """Pairs of an A and a B strip that meet beyond the rim nodes where they end, "A1 and B2", by their ids.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def end_collisions(network: Network, before: Floats, after: Floats, spread: floa
     free = (network.node_kinds[node] == BOUNDARY) & (reach > 0)
     a, b = np.flatnonzero(free & is_a), np.flatnonzero(free & ~is_a)
     if not len(a) or not len(b):
-        return 0
+        return []
     points = network.sample_points[sample]
     pairs = cKDTree(points[a]).sparse_distance_matrix(cKDTree(points[b]), 2 * reach[free].max(), output_type="ndarray")
     a, b = a[pairs["i"]], b[pairs["j"]]
@@ -43,4 +43,6 @@ def end_collisions(network: Network, before: Floats, after: Floats, spread: floa
     x_a, x_b = (along_a - cosine * along_b) / square, (cosine * along_a - along_b) / square
     # a node that both share has its slot
     meet = (node[a] != node[b]) & (x_a > 0) & (x_b > 0) & (x_a < reach[a]) & (x_b < reach[b])
-    return int(meet.sum())
+    lamella = np.tile(np.arange(len(first)), 2)
+    pairs = np.unique(np.column_stack([lamella[a[meet]], lamella[b[meet]]]), axis=0)
+    return [f"{network.ids[one]} and {network.ids[other]}" for one, other in pairs.tolist()]

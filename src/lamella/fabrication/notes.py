@@ -29,8 +29,8 @@ class Notes:
         Ids of the lamellas no part is made of.
     unslotted : list of (str, float)
         Id and smallest cell edge (m) of the parts without slots.
-    collisions : int
-        Pairs of strip ends that meet beyond the rim.
+    collisions : list of str
+        Pairs of strips whose ends meet beyond the rim.
     hub_cut : float
         Radius (m) asked of the hubs where it would have taken the first slots with it, else 0.
     hub_needed : float
@@ -43,7 +43,7 @@ class Notes:
     oversize: list[tuple[str, float]] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
     unslotted: list[tuple[str, float]] = field(default_factory=list)
-    collisions: int = 0
+    collisions: list[str] = field(default_factory=list)
     hub_cut: float = 0.0
     hub_needed: float = 0.0
 
@@ -85,11 +85,14 @@ class Notes:
                 f"{1e3 * rules.hub_radius:g} mm, it takes {1e3 * self.hub_needed:.1f} mm, or fewer layers"
             )
         if self.collisions:
+            count = len(self.collisions)
+            longer = {"rim_overhang": rules.rim_overhang, "end_distance": rules.end_distance}
+            shorten = [f"{name} ({1e3 * length:g} mm)" for name, length in longer.items() if length]
             yield (
-                f"{counted(self.collisions, 'pair')} of strips "
-                f"{'meets' if self.collisions == 1 else 'meet'} beyond the rim, where no slot is cut: shorten "
-                f"fabrication.rim_overhang ({1e3 * rules.rim_overhang:g} mm) or end_distance "
-                f"({1e3 * rules.end_distance:g} mm), or move the rim"
+                f"{counted(count, 'pair')} of strips ({_few(self.collisions)}) {'meets' if count == 1 else 'meet'} "
+                "beyond the rim, where no slot is cut: "
+                + (f"shorten fabrication.{' or '.join(shorten)}, or " if shorten else "")
+                + "move the rim"
             )
         if self.unslotted:
             between = 2 * rules.slot_width / rules.edge_scale

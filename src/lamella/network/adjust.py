@@ -20,6 +20,7 @@ from lamella.network.adjustable_films import Films, FollowError
 from lamella.network.between_umbilics import between_umbilics, keeps_apart
 from lamella.network.carried_shifts import Carrier
 from lamella.network.element_lattice import Lattice, choose_lattice
+from lamella.network.element_network import CLOSES
 from lamella.network.film_net import FilmNet
 from lamella.network.holonomy import around_holes, holonomies
 from lamella.network.pattern import LAMELLAS, Pattern
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 # cells: misses below it end the search; a tenth of what counts as closed
 CLOSED = 1e-4
 # cells: with misses below it, half of what counts as closed, the search ends too where it leads no further
-NEARLY = 5e-4
+NEARLY = CLOSES / 2
 # tolerance of the film on which the boundary is looked for, before a finer one that was asked for: the periods of a
 # coarser one are off by more than the misses that end the search
 COARSE = 5e-3
@@ -339,7 +340,7 @@ class _Search:
             move = self._shortened(aim.net, self._solved(aim.net, rates, aim.misses)[0])
             self.steps += 1
         assert best
-        if _worst(best.misses) > NEARLY:
+        if _worst(best.misses) > 0.9 * CLOSES:
             raise _LostError(best, "the finer surface does not follow")
         return best.net, best.step, _worst(best.misses)
 

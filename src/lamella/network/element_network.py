@@ -94,6 +94,7 @@ class ElementNetwork:
             "umbilics": umbilics,
             "isothermic_residual": self.residual,
             "joints": [joint._asdict() for joint in self.joints],
+            "closed": all(joint.closed for joint in self.joints),
         }
 
     def _even(self) -> str:
@@ -132,7 +133,7 @@ class ElementNetwork:
     def _astray(self) -> Iterator[str]:
         """Lamellas whose normal curvature, measured on the surface, is another one."""
         network, wanted = self.network, self.network.normal_curvature
-        if wanted is None:
+        if network.pattern.kind != "lamellas":
             return
         there = network.sample_darboux
         off = np.abs(there.kn - wanted) / np.sqrt(np.mean(there.kn**2 + there.tg**2))
@@ -191,6 +192,7 @@ class LaidNet:
                 except FoldedError:
                     # coordinates that turn over somewhere stay as they are, with a seam
                     wanted[:] = np.nan
+        around = holonomies(iso) if closing == "round" else self.around
         rim_loop = mesh.loop[mesh.connectivity.rim_nodes[:, 0]]
         network = trace_elements(
             CellMap.of(iso, lattice.origin, lattice.step, pattern),
@@ -201,7 +203,7 @@ class LaidNet:
             count=lattice.cells,
             periods=tuple(
                 Period(self.names[one.loop], *pattern.crossed(one.shift, lattice.step))
-                for one in self.around
+                for one in around
                 if one.sign == 1
             ),
             minimum_length=minimum_length,

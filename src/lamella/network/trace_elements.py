@@ -155,6 +155,14 @@ def trace_elements(
     alive &= length >= minimum_length * median
     stops = _stops(tracks, alive, singular, tips)
     if not (stops.kinds == REGULAR).any():
+        short = int((~alive).sum())
+        if short:
+            raise InputError(
+                f"no two lamellas cross: {short} of {chains} are shorter than minimum_length = {minimum_length:g} "
+                f"median cell edges of {median:.3g} m, the longest one has {length.max() / median:.2g}",
+                "lower network.minimum_length, or raise network.cells",
+                "network.minimum_length",
+            )
         raise InputError(
             f"no two lamellas cross: with {count} cells the longest one runs over "
             f"{np.bincount(tracks.owner, tracks.span, chains).max(initial=0.0):.2g} cells",

@@ -111,8 +111,8 @@ class TracedNetwork:
             yield (
                 f"the normal curvature of the lamellas, measured on the surface, is off by up to {most:.2g} 1/m, "
                 f"{most / self.scale:.1e} of the curvature scale (at 95 % of the samples by {usual / self.scale:.1e}; "
-                f"limit {PROMISED:g}): a smaller surface.tolerance, or a finer and smoother mesh, tells directions "
-                "better"
+                f"limit {PROMISED:g}): a finer and smoother mesh, or a smaller surface.tolerance where there "
+                "are vertices enough for it, tells directions better"
             )
 
 

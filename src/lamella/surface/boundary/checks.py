@@ -80,7 +80,7 @@ def _check_size(loop: Loop, where: str) -> None:
         raise InputError(
             f"the loop {loop.name!r} is {loop.size:,.0f} m large (limit {MOST_SIZE:,.0f} m): this looks like "
             "millimetres",
-            'lengths are in metres; for a file write its unit, unit = "mm"',
+            'lengths are in metres: divide these by 1000; for a file write its unit, unit = "mm"',
             where,
         )
 

@@ -34,6 +34,8 @@ MOST_PARTS = 64
 MOST_TRIANGLES = 400_000
 # of a mesh's tolerance, the sag of its rim
 RIM_SHARE = 0.25
+# 1/m^4, of H^2 - K squared: at an umbilic itself the slopes of ln mu have no bound
+LEAST_SQUARE = 1e-200
 
 
 @dataclass(frozen=True)
@@ -171,7 +173,7 @@ class ElementSurface:
     def _points(self, there: ElementFrames, smooth: Floats, by_x: Floats, by_y: Floats) -> SurfacePoints:
         """Points with the smoothed shape operator (6, n) and the slopes (n,) of H^2 - K."""
         mean, deviator = self._shape(there, smooth)
-        square = np.maximum(deviator.real**2 + deviator.imag**2, np.finfo(float).tiny)
+        square = np.maximum(deviator.real**2 + deviator.imag**2, LEAST_SQUARE)
         along = there.to_local[:, 0] * by_x[:, None] + there.to_local[:, 1] * by_y[:, None]
         return SurfacePoints(
             there.position,

@@ -102,7 +102,8 @@ def adapted(
             + (", raise most_nodes," if "most_nodes" in shortfall else "")
             + " or make the boundary smoother there (a spline through more points)"
             if deviation.largest < WRONG
-            else "make the boundary less bent or less narrow there, or raise most_nodes",
+            else "make the boundary less bent or less narrow there"
+            + (", or raise most_nodes" if "most_nodes" in shortfall else ""),
             "surface.tolerance",
         )
     return Found(

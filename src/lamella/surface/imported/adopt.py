@@ -143,18 +143,20 @@ def _coarse(
     edge = float(np.median(find_edges(mesh.faces).lengths(mesh.points)))
     exact = 8 * typical / edge**2 <= table.deviation * fit.scale
     if uneven and not exact:
-        raise _not_constant(fit, table.deviation)
+        raise _not_constant(
+            fit, table.deviation, f", about H = {first.mean_curvature:.2g} 1/m and {1000 * typical:.2g} mm off"
+        )
     _refuse_far(distance, first)
     return first, exact
 
 
-def _not_constant(fit: Fit, limit: float) -> InputError:
-    """The refusal of a mesh whose curvature varies."""
+def _not_constant(fit: Fit, limit: float, nearest: str = "") -> InputError:
+    """The refusal of a mesh whose curvature varies, with words on the nearest surface where it is known."""
     return InputError(
         f"the mesh is not of constant mean curvature: H = {fit.mean_curvature:.4g} 1/m fits best, its vertices are "
         f"off by {fit.deviation:.2g} of the curvature scale {fit.scale:.4g} 1/m (limit {limit:g}, "
         f"largest {fit.deviation_max:.2g})",
-        f"mend the mesh, or raise deviation to take the nearest surface of H = {fit.mean_curvature:.4g} 1/m",
+        f"mend the mesh, or raise deviation to take the nearest surface{nearest}",
         "surface.file",
     )
 
