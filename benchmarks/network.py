@@ -75,6 +75,7 @@ def main() -> None:
     print(f"solver in use: {in_use}; a factorisation: ordering, analysis and numbers")
     print("surface nodes  net nodes  unknowns   run s  " + "  ".join(f"{name:>7s} s" for name in SOLVERS), end="")
     print(f"  run / {in_use}  {in_use} numbers s  run / numbers")
+    first_run: tuple[int, float] | None = None
     last: tuple[int, float] | None = None
     for elements, cells, times in SIZES:
         start = surface(elements)
@@ -99,9 +100,17 @@ def main() -> None:
             + f"  {whole / first:{6 + len(in_use)}.1f}  {again:{10 + len(in_use)}.3f}  {whole / again:13.1f}"
         )
         if last:
-            print(f"  growth exponent {np.log(whole / last[1]) / np.log(nodes / last[0]):.2f}")
+            print(f"  growth exponent {growth(last, (nodes, whole)):.2f}")
         last = (nodes, whole)
+        first_run = first_run or last
         sys.stdout.flush()
+    if first_run and last:
+        print(f"growth exponent from {first_run[0]:,} to {last[0]:,} nodes: {growth(first_run, last):.2f} (limit 1.3)")
+
+
+def growth(small: tuple[int, float], large: tuple[int, float]) -> float:
+    """Exponent of the seconds over the nodes."""
+    return float(np.log(large[1] / small[1]) / np.log(large[0] / small[0]))
 
 
 if __name__ == "__main__":
