@@ -33,7 +33,7 @@ def lay(surface: Surface[Any], project: Project, step: float | None, progress: P
 def weave(laid: LaidNet, project: Project) -> ElementNetwork:
     """The network of that lattice."""
     table = project.network
-    # what is left of an adjusted net's misses is far below what counts as closed
+    # what is left of an adjusted net's misses is below what counts as closed
     closing: Closing = "round" if table.closing == "round" else "open"
     return laid.traced(closing=closing, minimum_length=table.minimum_length)
 
