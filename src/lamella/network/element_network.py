@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from lamella.network.gluing import FoldedError, integrate, with_shifts
 from lamella.network.holonomy import Holonomy, holonomies
 from lamella.network.isothermic import Isothermic, Transition
 from lamella.network.lines import is_traced
-from lamella.network.net_mesh import NetMesh, make_net_mesh
+from lamella.network.net_mesh import NetMesh, make_net_mesh, onto_surface
 from lamella.network.network import SINGULAR, Network, Period
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.network.trace_elements import trace_elements
@@ -198,6 +199,7 @@ class LaidNet:
             CellMap.of(iso, lattice.origin, lattice.step, pattern),
             iso.cut,
             self.umbilics.orders,
+            onto=partial(onto_surface, mesh, self.surface, self.umbilics),
             mean_curvature=self.surface.mean_curvature,
             rim_loop=rim_loop,
             count=lattice.cells,

@@ -67,6 +67,8 @@ class NetMesh:
         Vertex of each umbilic; -1: it lies on the boundary.
     radii : (z,)
         Of the rosettes around them, m.
+    patch : (m,) int
+        Umbilic in whose rosette, or next to it, each element is; -1: it is the surface's own, or a part of one.
     """
 
     connectivity: Connectivity
@@ -77,6 +79,7 @@ class NetMesh:
     loop: Integers
     umbilics: Integers
     radii: Floats
+    patch: Integers
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,13 @@ class _TangentPlane:
 
     at: SurfacePoints
     middles: cKDTree
+
+    @classmethod
+    def of(cls, surface: ElementSurface, umbilics: Umbilics) -> list[_TangentPlane]:
+        """One for each umbilic."""
+        middles = cKDTree(surface.nodes[surface.connectivity.faces].mean(1))
+        count = len(umbilics.orders)
+        return [cls(surface.at(umbilics.places[number : number + 1]), middles) for number in range(count)]
 
     def down(self, points: Floats) -> Complexes:
         """Complex coordinates (...,) of points (..., 3), m."""
@@ -131,14 +141,13 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         return result
 
     parts = bisect(whole(connectivity, surface.nodes, surface.rim_loop), connectivity, surface.nodes, too_large)
-    middles = cKDTree(surface.nodes[connectivity.faces].mean(1))
-    planes = [_TangentPlane(surface.at(umbilics.places[number : number + 1]), middles) for number in range(len(zeros))]
+    planes = _TangentPlane.of(surface, umbilics)
     kept = np.ones(len(parts.faces), bool)
     faces = [parts.faces]
     points = [parts.points]
     at = np.full(len(zeros), -1)
     count = len(parts.points)
-    patches: list[tuple[_TangentPlane, Rosette, int, int]] = []
+    patches: list[tuple[int, Rosette, int, int]] = []
     nodes_of_parts = _positions(parts, surface)
     for number in np.flatnonzero(inside).tolist():
         plane, radius = planes[number], float(radii[number])
@@ -155,7 +164,7 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         names = np.concatenate([ring, count + rose.rim])
         at[number] = count
         faces += [count + rose.faces, names[gap]]
-        patches.append((plane, rose, len(rose.faces), len(gap)))
+        patches.append((number, rose, len(rose.faces), len(gap)))
         points.append(np.full((len(rose.vertices), 3), np.nan))
         count += len(rose.vertices)
     faces[0] = parts.faces[kept]
@@ -173,7 +182,10 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     positions[target] = nodes_of_parts[mine].reshape(-1, 3)
     element[target], local[target] = where.element, where.local
     start = len(mine)
-    for plane, rose, petals, gaps in patches:
+    patch = np.full(len(new.faces), -1)
+    for number, rose, petals, gaps in patches:
+        plane = planes[number]
+        patch[start : start + petals + gaps] = number
         names, z = _patch_nodes(new, start, petals, gaps, rose, plane, positions)
         start += petals + gaps
         places, there = plane.up(z, surface)
@@ -181,7 +193,25 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     every = Places(element, local)
     frames, mean, deviator = surface.shape_at(every)
     shape = shape_entries(frames.e_u, frames.e_v, mean, deviator)
-    return NetMesh(new, positions, every, shape, surface.smooth_normal(every), loop, at, radii)
+    return NetMesh(new, positions, every, shape, surface.smooth_normal(every), loop, at, radii, patch)
+
+
+def onto_surface(
+    mesh: NetMesh, surface: ElementSurface, umbilics: Umbilics, element: Integers, points: Floats
+) -> Floats:
+    """Points (n, 3) of elements (n,) exactly on the surface, m: those around umbilics are next to it only.
+
+    Their polynomials pass through nodes on the surface, and over edges between its elements.
+    """
+    result = points.copy()
+    patch = mesh.patch[element]
+    if not (patch >= 0).any():
+        return result
+    for number, plane in enumerate(_TangentPlane.of(surface, umbilics)):
+        mine = np.flatnonzero(patch == number)
+        if len(mine):
+            result[mine] = plane.up(plane.down(points[mine]), surface)[1]
+    return result
 
 
 def _positions(parts: Parts, surface: ElementSurface) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +35,7 @@ from lamella.surface.points import Floats
 from lamella.surface.vectors import crosses, dots, images, lengths
 
 Integers = NDArray[np.int64]
+Onto = Callable[[Integers, Floats], Floats]
 
 # samples a segment, however short: next to the rim curvatures are read from the last of them
 FEWEST = 3
@@ -109,6 +111,7 @@ def trace_elements(
     cut: NDArray[np.bool_],
     orders: Integers,
     *,
+    onto: Onto,
     mean_curvature: float,
     rim_loop: Integers,
     count: int,
@@ -124,6 +127,8 @@ def trace_elements(
         Edges that are cut, see `Isothermic.cut`.
     orders : (z,) int
         Of the umbilics.
+    onto : callable
+        Points (n, 3) of elements (n,) exactly on the surface.
     mean_curvature : float
         H, 1/m.
     rim_loop : (b,) int
@@ -191,6 +196,7 @@ def trace_elements(
     places, points, velocity = segments.velocity(spots, near[order])
     tangents = velocity / lengths(velocity)[:, None]
     points, tangents = segments.lead_out(spots, points, tangents)
+    points = onto(places.element, points)
     normals, tangents, bend, twist = _frames(cells, places, tangents)
     back = np.empty(len(order), np.int64)
     back[order] = np.arange(len(order))
