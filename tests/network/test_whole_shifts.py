@@ -16,11 +16,11 @@ from lamella.network.between_umbilics import between_umbilics, keeps_apart
 from lamella.network.carried_shifts import Carrier
 from lamella.network.cell_map import CellMap
 from lamella.network.cut import cut_edges
-from lamella.network.element_lattice import lattice_origin
 from lamella.network.element_network import element_network
 from lamella.network.gluing import integrate
 from lamella.network.holonomy import around_vertex, holonomies, tip_vertices, vertex_relations
 from lamella.network.isothermic import Isothermic
+from lamella.network.lattice_origin import lattice_origin
 from lamella.network.net_mesh import NetMesh, make_net_mesh
 from lamella.network.network import SEAM, SINGULAR
 from lamella.network.pattern import LAMELLAS

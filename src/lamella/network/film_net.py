@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 
 from lamella.network.cell_map import CellMap
-from lamella.network.element_lattice import lattice_origin
 from lamella.network.gluing import integrate
 from lamella.network.holonomy import fixed_point_factors
 from lamella.network.isothermic import Isothermic
+from lamella.network.lattice_origin import lattice_origin
 from lamella.network.net_mesh import make_net_mesh
 from lamella.network.pattern import Pattern
 from lamella.network.whole_shifts import WholeShifts

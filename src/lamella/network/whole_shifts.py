@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.network.element_lattice import MIDDLE
 from lamella.network.holonomy import around_vertex, fixed_point_factors, vertex_relations
 from lamella.network.isothermic import Isothermic
+from lamella.network.lattice_origin import MIDDLE
 from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
