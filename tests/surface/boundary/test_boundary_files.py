@@ -137,7 +137,11 @@ def test_layer_and_id_choose_among_rhino_curves(tmp_path: Path) -> None:
 
 def test_files_that_are_none(tmp_path: Path) -> None:
     assert "no such file" in refused(tmp_path, file="missing.3dm").message
-    for name, words in (("a.3dm", "not a .3dm file"), ("a.dxf", "cannot be read as DXF"), ("a.json", "not valid JSON")):
+    for name, words in (
+        ("a.3dm", "like a .3dm"),
+        ("a.dxf", "cannot be read as DXF"),
+        ("a.json", "not valid JSON"),
+    ):
         (tmp_path / name).write_bytes(b"what\0is this")
         assert words in refused(tmp_path, file=name).message
         (tmp_path / name).write_bytes(b"")

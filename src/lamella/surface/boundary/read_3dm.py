@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from lamella.errors import InputError
+from lamella.files.rhino_model import RhinoCurve, read_rhino
 from lamella.surface.boundary.file_curves import FileCurve
 from lamella.surface.boundary.pieces import Pieces
 from lamella.surface.boundary.splines import bezier
@@ -36,33 +36,27 @@ def read_3dm(path: Path, where: str) -> tuple[list[FileCurve], float | None]:
     InputError
         No .3dm file.
     """
-    import rhino3dm
-
-    model = rhino3dm.File3dm.Read(str(path))
-    if model is None:
-        raise InputError(f"{path} is not a .3dm file", "save it from Rhino again", where)
-    layers = {layer.Index: str(layer.FullPath or layer.Name) for layer in model.Layers}
+    try:
+        model = read_rhino(path.read_bytes(), "curves", where)
+    except InputError as error:
+        raise InputError(f"{path}: {error.message}", error.remedy, where) from None
+    layers = {layer.index: layer.full_path for layer in model.layers}
     curves = []
-    for item in model.Objects:
-        geometry, about = item.Geometry, item.Attributes
-        if not isinstance(geometry, rhino3dm.Curve) or about.IsInstanceDefinitionObject:
+    for item in model.objects:
+        if item.kind != "Curve" or item.in_block:
             continue
-        pieces = _pieces(geometry)
-        if pieces is not None:
-            kind = type(geometry).__name__
-            ids = (str(about.Name or ""), str(about.Id))
-            curves.append(FileCurve(layers.get(about.LayerIndex, ""), tuple(filter(None, ids)), kind, pieces))
-    unit = str(model.Settings.ModelUnitSystem).rpartition(".")[2]
-    return curves, _METRES.get(unit)
+        for curve in item.curves:
+            ids = tuple(filter(None, (item.name, item.id)))
+            pieces = _pieces(curve)
+            if pieces is not None:
+                curves.append(FileCurve(layers.get(item.layer, ""), ids, item.type, pieces))
+    return curves, _METRES.get(model.unit)
 
 
-def _pieces(curve: Any) -> Pieces | None:
-    nurbs = curve.ToNurbsCurve()
-    if nurbs is None:
+def _pieces(curve: RhinoCurve) -> Pieces | None:
+    """The curve's pieces; None where its numbers contradict each other."""
+    inner = curve.knots
+    if len(inner) != len(curve.controls) + curve.degree - 1 or not len(inner):
         return None
-    # homogeneous: (w x, w y, w z, w)
-    controls = np.array([(p.X, p.Y, p.Z, p.W) for p in nurbs.Points], float)
-    inner = np.array(list(nurbs.Knots), float)
     # the format leaves out the first and the last knot, which no point of the curve depends on
-    knots = np.concatenate([inner[:1], inner, inner[-1:]])
-    return bezier(knots, int(nurbs.Degree), controls)
+    return bezier(np.concatenate([inner[:1], inner, inner[-1:]]), curve.degree, curve.controls)

@@ -10,6 +10,7 @@ import numpy as np
 
 from lamella.errors import InputError
 from lamella.surface.boundary.arcs import bulge_arc, ellipse_arc
+from lamella.surface.boundary.dxf_document import dxf_damage, open_dxf
 from lamella.surface.boundary.file_curves import FileCurve
 from lamella.surface.boundary.pieces import Floats, Pieces, lines, stack
 from lamella.surface.boundary.splines import bezier, closed_spline, open_spline
@@ -33,22 +34,20 @@ def read_dxf(path: Path, where: str) -> tuple[list[FileCurve], float | None]:
     InputError
         No DXF file.
     """
-    import ezdxf
-
-    try:
-        drawing = ezdxf.readfile(path)
-    except (OSError, UnicodeDecodeError, ezdxf.DXFError, ValueError) as error:
-        raise InputError(f"{path} cannot be read as DXF: {cut(str(error), 120)}", "save it again", where) from None
+    drawing = open_dxf(path, where)
     curves = []
-    for entity in drawing.modelspace():
-        try:
-            pieces = _pieces(entity)
-        except InputError as error:
-            about = f"{path}: {entity.dxftype()} {entity.dxf.handle} on layer {cut(str(entity.dxf.layer), 40)!r}"
-            raise InputError(f"{about}: {error.message}", error.remedy, where) from None
-        if pieces is not None and np.isfinite(pieces.controls).all():
-            curves.append(FileCurve(str(entity.dxf.layer), (str(entity.dxf.handle),), entity.dxftype(), pieces))
-    return curves, _METRES.get(int(drawing.header.get("$INSUNITS", 0)))
+    with dxf_damage(str(path), where):
+        for entity in drawing.modelspace():
+            layer = str(entity.dxf.get("layer", ""))
+            about = f"{path}: {entity.dxftype()} {entity.dxf.handle} on layer {cut(layer, 40)!r}"
+            with dxf_damage(about, where):
+                try:
+                    pieces = _pieces(entity)
+                except InputError as error:
+                    raise InputError(f"{about}: {error.message}", error.remedy, where) from None
+                if pieces is not None and np.isfinite(pieces.controls).all():
+                    curves.append(FileCurve(layer, (str(entity.dxf.handle),), entity.dxftype(), pieces))
+        return curves, _METRES.get(int(drawing.header.get("$INSUNITS", 0)))
 
 
 def _pieces(entity: Any) -> Pieces | None:

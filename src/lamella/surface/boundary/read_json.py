@@ -51,7 +51,7 @@ def read_json(path: Path, where: str) -> tuple[list[FileCurve], float | None]:
     if unknown:
         raise InputError(f"{path}: unknown key {shown(min(unknown))}", "keys: unit, curves", where)
     unit = content.get("unit")
-    if unit is not None and unit not in METRES:
+    if unit is not None and not (isinstance(unit, str) and unit in METRES):
         raise InputError(f"{path}: unit {shown(unit)} is not one of {', '.join(METRES)}", "write one of them", where)
     curves = [_curve(path, name, curve, where) for name, curve in given.items()]
     return curves, None if unit is None else METRES[unit]

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 # points of a loop for its middle
 SAMPLES = 1000
+# of a file of curves: some twenty seconds of the DXF library
+MOST_BYTES = 64_000_000
 _READERS = {".3dm": read_3dm, ".dxf": read_dxf, ".json": read_json}
 _HEADERS = {".3dm": "the model's unit system", ".dxf": "$INSUNITS in its header", ".json": 'its key "unit"'}
 
@@ -90,6 +92,13 @@ def _from_file(table: BoundaryTable, folder: Path, where: str) -> Pieces:
     if not path.is_file():
         raise InputError(f"{path}: no such file", "paths are relative to the project file's folder", where)
     try:
+        size = path.stat().st_size
+        if size > MOST_BYTES:
+            raise InputError(
+                f"{path} has {size / 1e6:,.0f} MB; at most {MOST_BYTES / 1e6:g} MB of curves are read",
+                "save the boundary curves alone in a file of their own",
+                where,
+            )
         with path.open("rb") as file:
             file.read(1)
     except OSError as error:

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any
 
 import numpy as np
-import rhino3dm
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from lamella.surface.imported.raw_mesh import Floats, Integers, Polygons, mesh_error
+from lamella.files.rhino_model import MAGIC, RhinoLayer, RhinoModel, RhinoObject, read_rhino
+from lamella.surface.imported.raw_mesh import FILE_KEY, Floats, Integers, Polygons, mesh_error
+from lamella.wording import cut
 
-MAGIC = b"3D Geometry File Format "
 MESH_IT = "mesh it in Rhino (command Mesh), save the mesh alone, or hide everything else"
 
 METRES = {
@@ -48,11 +47,9 @@ def read_3dm(data: bytes) -> Polygons:
     Several mesh objects are one mesh if their borders connect them; otherwise nobody can know which one is meant.
     """
     _require_whole(data)
-    model = rhino3dm.File3dm.FromByteArray(data)
-    if model is None:
-        raise mesh_error("Rhino's own library cannot read this .3dm", "open it in Rhino and save it again")
+    model = read_rhino(data, "meshes", FILE_KEY)
     shown, hidden = _shown_objects(model)
-    parts = [_mesh_part(item, number) for number, item in enumerate(shown) if _kind(item) == "Mesh"]
+    parts = [_part(item, number) for number, item in enumerate(shown) if item.kind == "Mesh"]
     notes = [f"{hidden} hidden objects left out"] if hidden else []
     if not parts:
         parts = _render_meshes(shown, hidden)
@@ -65,7 +62,7 @@ def read_3dm(data: bytes) -> Polygons:
     faces = np.concatenate([faces + start for (_, _, faces), start in zip(parts, starts, strict=False)])
     sizes = np.where(faces[:, 2] == faces[:, 3], 3, 4).astype(np.int64)
     corners = faces[np.arange(4) < sizes[:, None]]
-    unit = METRES.get(_name(model.Settings.ModelUnitSystem))
+    unit = METRES.get(model.unit)
     return Polygons(points, sizes, corners, tuple(notes), unit)
 
 
@@ -80,92 +77,53 @@ def _require_whole(data: bytes) -> None:
         raise mesh_error(f"the .3dm is not whole: {len(data)} bytes without its end mark", "save it from Rhino again")
 
 
-def _shown_objects(model: Any) -> tuple[list[Any], int]:
+def _shown_objects(model: RhinoModel) -> tuple[list[RhinoObject], int]:
     """Objects on visible layers, and how many are hidden; parts of blocks count as neither."""
-    layers = {str(layer.Id): layer for layer in model.Layers}
+    layers = {layer.id: layer for layer in model.layers}
 
-    def layer_shown(layer: Any) -> bool:
+    def layer_shown(layer: RhinoLayer | None) -> bool:
         for _ in range(len(layers)):
             if layer is None:
                 break
-            if not layer.Visible:
+            if not layer.visible:
                 return False
-            layer = layers.get(str(layer.ParentLayerId))
+            layer = layers.get(layer.parent_id)
         return True
 
-    by_index = {layer.Index: layer_shown(layer) for layer in model.Layers}
-    shown, hidden = [], 0
-    for item in model.Objects:
-        if item.Attributes.IsInstanceDefinitionObject:
-            continue
-        if item.Attributes.Visible and by_index.get(item.Attributes.LayerIndex, True):
-            shown.append(item)
-        else:
-            hidden += 1
-    return shown, hidden
+    by_index = {layer.index: layer_shown(layer) for layer in model.layers}
+    placed = [item for item in model.objects if not item.in_block]
+    shown = [item for item in placed if item.visible and by_index.get(item.layer, True)]
+    return shown, len(placed) - len(shown)
 
 
-def _name(value: Any) -> str:
-    """Name of a value of one of rhino3dm's enumerations."""
-    return str(value).rpartition(".")[2]
+def _label(item: RhinoObject, number: int) -> str:
+    return f"{cut(item.name, 40)!r}" if item.name else f"{item.kind.lower()} {number + 1}"
 
 
-def _kind(item: Any) -> str:
-    return _name(item.Geometry.ObjectType)
+def _part(item: RhinoObject, number: int) -> Part:
+    """An object's meshes, put one after the other."""
+    starts = np.cumsum([0] + [len(mesh.points) for mesh in item.meshes])
+    faces = [mesh.faces + start for mesh, start in zip(item.meshes, starts, strict=False)]
+    points = [mesh.points for mesh in item.meshes]
+    return _label(item, number), np.concatenate(points), np.concatenate(faces)
 
 
-def _label(item: Any, number: int) -> str:
-    name = item.Attributes.Name
-    return f"{name!r}" if name else f"{_kind(item).lower()} {number + 1}"
-
-
-def _mesh_part(item: Any, number: int) -> Part:
-    return (_label(item, number), *_arrays([item.Geometry]))
-
-
-def _arrays(meshes: list[Any]) -> tuple[Floats, Integers]:
-    """Points and faces of rhino3dm's meshes, put one after the other."""
-    points: list[tuple[float, float, float]] = []
-    faces: list[Integers] = []
-    for mesh in meshes:
-        table = mesh.Faces
-        rows = np.array([table[i] for i in range(len(table))], dtype=np.int64).reshape(-1, 4)
-        faces.append(rows + len(points))
-        # Points in double precision are handed out by this call alone.
-        points.extend((p.X, p.Y, p.Z) for p in mesh.Vertices.ToPoint3dArray())
-    return np.array(points, dtype=np.float64).reshape(-1, 3), np.concatenate(faces)
-
-
-def _render_meshes(shown: list[Any], hidden: int) -> list[Part]:
+def _render_meshes(shown: list[RhinoObject], hidden: int) -> list[Part]:
     """Render meshes of surfaces, as Rhino keeps them beside what it has shown shaded."""
-    parts, bare = [], []
-    for number, item in enumerate(shown):
-        geometry = item.Geometry
-        if _kind(item) == "Brep":
-            meshes = [face.GetMesh(rhino3dm.MeshType.Any) for face in geometry.Faces]
-        elif _kind(item) == "Extrusion":
-            meshes = [geometry.GetMesh(rhino3dm.MeshType.Any)]
-        else:
-            if _kind(item) in ("SubD", "Surface"):
-                bare.append(item)
-            continue
-        meshes = [mesh for mesh in meshes if mesh is not None and len(mesh.Faces)]
-        if meshes:
-            parts.append((_label(item, number), *_arrays(meshes)))
-        else:
-            bare.append(item)
+    parts = [_part(item, number) for number, item in enumerate(shown) if item.meshes]
+    bare = [item for item in shown if item.kind in ("Brep", "Extrusion", "SubD", "Surface") and not item.meshes]
     if not parts:
         raise mesh_error(*_nothing(shown, bare, hidden))
     return parts
 
 
-def _nothing(shown: list[Any], bare: list[Any], hidden: int) -> tuple[str, str]:
+def _nothing(shown: list[RhinoObject], bare: list[RhinoObject], hidden: int) -> tuple[str, str]:
     if bare:
         kinds = {"Brep": "surface", "SubD": "SubD", "Surface": "surface", "Extrusion": "extrusion"}
-        counts = Counter(kinds[_kind(item)] for item in bare)
+        counts = Counter(kinds[item.kind] for item in bare)
         held = ", ".join(f"{count} {kind}{'s' if count > 1 else ''}" for kind, count in counts.items())
         return f"the .3dm holds {held} without a mesh, and no mesh", MESH_IT
-    counts = Counter(_kind(item) for item in shown)
+    counts = Counter(item.kind for item in shown)
     held = ", ".join(f"{count} {kind}" for kind, count in counts.items()) or "nothing visible"
     hint = f" ({hidden} hidden objects were not looked at)" if hidden else ""
     if counts["InstanceReference"]:
