@@ -96,7 +96,9 @@ class Films:
             raise FollowError(str(error)) from None
         film, curvature = reached.equilibrium.film, reached.equilibrium.mean_curvature
         rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
-        surface = ElementSurface("form-found", curvature, film.connectivity, film.nodes, rim_loop)
+        surface = ElementSurface(
+            "form-found", curvature, film.connectivity, film.nodes, rim_loop, loop_starts=film.loop_starts()
+        )
         there = FilmNet.of(shares, reached.equilibrium, surface, self.pattern)
         if there.orders != net.orders:
             raise FollowError("umbilics come or go at the boundary")

@@ -128,8 +128,7 @@ def _cell_densities(iso: Isothermic, points: Floats, weights: Floats, pattern: P
 
 def _whole_length(iso: Isothermic, around: tuple[Holonomy, ...], pattern: Pattern) -> tuple[float, complex]:
     """What `cells` divides, sqrt(m), and the period it is: around the first hole, or 0: the longest principal line."""
-    corner = iso.value[:, :3]
-    longest = float(max(np.ptp(corner.real), np.ptp(corner.imag)))
+    longest = iso.longest
     if around and around[0].sign == 1:
         chi = around[0].shift * pattern.factor
         counted = max(abs(chi.real), abs(chi.imag))

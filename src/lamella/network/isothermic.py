@@ -19,6 +19,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components, mini
 from lamella.network.net_mesh import NetMesh
 from lamella.network.poisson import Poisson, deviator_root
 from lamella.surface.element.connectivity import Connectivity
+from lamella.surface.element.edge_basis import edge_values
 from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
@@ -92,6 +93,16 @@ class Isothermic:
     plain: Poisson
 
     @cached_property
+    def longest(self) -> float:
+        """How far u or v reaches over the cut surface, sqrt(m): harmonic functions have their extremes on the rim."""
+        connectivity = self.mesh.connectivity
+        nodes = connectivity.basis.edge_nodes[connectivity.rim_edges]
+        along = edge_values(connectivity.basis.order, np.linspace(0, 1, ALONG_EDGE))
+        rim = self.value[connectivity.rim_elements[:, None], nodes] @ along.T
+        cut = self.value[:, :3][self.cut.any(1)]
+        return float(max(np.ptp(np.concatenate([part(rim).ravel(), part(cut).ravel()])) for part in (np.real, np.imag)))
+
+    @cached_property
     def dirichlet(self) -> Floats:
         """The integral of |change of dw|^2 per pair of shifts, (t, t): without the weight, how large a change is.
 
@@ -101,6 +112,8 @@ class Isothermic:
         return np.asarray(np.einsum("tek,sek->ts", self.moves, stiff))
 
 
+# places along an edge of the rim among which extremes are looked for
+ALONG_EDGE = 17
 # middles of the local edges and the edges' directions in local coordinates
 _MIDDLES = np.array([[0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 _DIRECTIONS = np.array([[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]])

@@ -69,6 +69,8 @@ class NetMesh:
         Of the rosettes around them, m.
     patch : (m,) int
         Umbilic in whose rosette, or next to it, each element is; -1: it is the surface's own, or a part of one.
+    rim_starts : (loops, 3)
+        Where each boundary loop begins, m.
     """
 
     connectivity: Connectivity
@@ -80,6 +82,7 @@ class NetMesh:
     umbilics: Integers
     radii: Floats
     patch: Integers
+    rim_starts: Floats
 
 
 @dataclass(frozen=True)
@@ -193,7 +196,8 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     every = Places(element, local)
     frames, mean, deviator = surface.shape_at(every)
     shape = shape_entries(frames.e_u, frames.e_v, mean, deviator)
-    return NetMesh(new, positions, every, shape, surface.smooth_normal(every), loop, at, radii, patch)
+    normals = surface.smooth_normal(every)
+    return NetMesh(new, positions, every, shape, normals, loop, at, radii, patch, surface.rim_starts)
 
 
 def onto_surface(

@@ -15,6 +15,8 @@ Integers = NDArray[np.int64]
 
 # a turn between neighbouring edges above this is a corner of the boundary, rad
 CORNER = 0.02
+# places along an edge among which the nearest one is looked for, and how often again between its neighbours
+PLACES, ROUNDS = 17, 8
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,11 @@ class ElementRim:
         basis = edge_values(self._nodes.shape[1] - 1, share)
         return np.asarray(np.einsum("nk,nkc->nc", basis, self._nodes[edge]))
 
+    def place_of(self, point: Floats) -> float:
+        """Parameter of the point of the loop that is nearest to a point (3,)."""
+        edge, share = nearest_on_edges(self._nodes, point)
+        return float(self.starts[edge] + share * self._spans[edge])
+
 
 def element_rims(connectivity: Connectivity, nodes: Floats, rim_loop: Integers) -> tuple[ElementRim, ...]:
     """Boundary loops of elements with nodes (n, 3), by the numbers in `rim_loop` (b,)."""
@@ -74,3 +81,21 @@ def element_rims(connectivity: Connectivity, nodes: Floats, rim_loop: Integers) 
         corners = starts[cosine < np.cos(CORNER)]
         rims.append(ElementRim(float(lengths.sum()), corners, edges[:, 0], starts, spans, along))
     return tuple(rims)
+
+
+def nearest_on_edges(edges: Floats, point: Floats) -> tuple[int, float]:
+    """Curved edge, and share of its parameter, where edges with nodes (b, p + 1, 3) come nearest to a point (3,)."""
+    order = edges.shape[1] - 1
+    shares = np.linspace(0, 1, PLACES)
+    apart = ((edge_values(order, shares) @ edges - point) ** 2).sum(2)
+    edge, at = (int(k) for k in np.unravel_index(apart.argmin(), apart.shape))
+    for _ in range(ROUNDS):
+        shares = np.linspace(shares[max(at - 1, 0)], shares[min(at + 1, PLACES - 1)], PLACES)
+        at = int(((edge_values(order, shares) @ edges[edge] - point) ** 2).sum(1).argmin())
+    return edge, float(shares[at])
+
+
+def rim_marks(connectivity: Connectivity, nodes: Floats, rim_loop: Integers, start: Floats, shares: Floats) -> Floats:
+    """Points (n, 3) of the outer loop at shares (n,) of its length from a point of it (3,) on, m."""
+    rim = element_rims(connectivity, nodes, rim_loop)[0]
+    return rim.at(rim.place_of(start) + shares)

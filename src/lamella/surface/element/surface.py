@@ -62,6 +62,8 @@ class ElementSurface:
         What `warnings` tells.
     rim_loop : (b,) int
         Boundary loop of each boundary edge of the connectivity.
+    loop_starts : (loops, 3), optional
+        Where each boundary loop begins, m: what a net is numbered from. By itself with the first of its elements.
     """
 
     kind: str
@@ -71,9 +73,18 @@ class ElementSurface:
     rim_loop: Integers
     figures: dict[str, Any] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    loop_starts: Floats | None = None
 
     constant: ClassVar[bool] = True
     """Whether the mean curvature is constant."""
+
+    @cached_property
+    def rim_starts(self) -> Floats:
+        """Where each boundary loop begins, (loops, 3), m."""
+        if self.loop_starts is not None:
+            return self.loop_starts
+        _, first = np.unique(self.rim_loop, return_index=True)
+        return np.asarray(self.nodes[self.connectivity.rim_nodes[first, 0]])
 
     @cached_property
     def _corners(self) -> Floats:

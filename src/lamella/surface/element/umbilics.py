@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
+from lamella.surface.element.rim import rim_marks
 from lamella.surface.points import Complexes, Floats, SurfacePoints
 from lamella.surface.vectors import diagonal, dots
 
@@ -29,8 +30,9 @@ MOST_STEPS = 30
 REACHES = (2e-3, 6e-3, 2e-2, 6e-2)
 # of the size: umbilics whose distances from the rim differ by less are alike
 DEPTH = 0.01
-# a direction in which the places of no usual symmetry are alike
-ASKEW = np.array([1.0, 0.618, 0.387])
+# shares of the outer loop from its start on: of umbilics that are alike the one nearest to the first of these places
+# goes first, to the next one where that does not tell them apart
+MARKS = np.array([0.0, 0.25, 0.125])
 
 
 @dataclass(frozen=True)
@@ -92,16 +94,21 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
 def _deepest_first(surface: ElementSurface, position: Floats, step: float) -> Integers:
     """Order of places (n, 3) by their distance from the rim, the farthest first: nets begin there on whatever elements.
 
-    Of those about as far, within a step (m), the one farthest along `ASKEW` is the first.
+    Of those about as far, within a step (m), the one nearest to a mark on the outer loop goes first: marks are turned,
+    mirrored and scaled with the surface.
     """
-    rim = surface.nodes[np.unique(surface.connectivity.rim_nodes)]
-    depth, _ = cKDTree(rim).query(position)
-    order = np.argsort(-depth, kind="stable")
-    alike = order[depth[order] > depth.max(initial=0) - step]
-    if not len(alike):
-        return order
-    first = alike[(position[alike] @ ASKEW).argmax()]
-    return np.concatenate([[first], order[order != first]])
+    connectivity = surface.connectivity
+    depth, _ = cKDTree(surface.nodes[np.unique(connectivity.rim_nodes)]).query(position)
+    marks = rim_marks(connectivity, surface.nodes, surface.rim_loop, surface.rim_starts[0], MARKS)
+    measures = [-depth, *np.linalg.norm(marks[:, None] - position, axis=2)]
+    left, order = np.arange(len(position)), []
+    while len(left):
+        alike = left
+        for measure in measures:
+            alike = alike[measure[alike] < measure[alike].min() + step]
+        order.append(int(alike[0]))
+        left = left[left != alike[0]]
+    return np.array(order, np.int64)
 
 
 def _gathered(

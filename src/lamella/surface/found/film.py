@@ -109,6 +109,10 @@ class Film:
         """Diagonal of the bounding box, m."""
         return float(np.linalg.norm(np.ptp(self.nodes, axis=0)))
 
+    def loop_starts(self) -> Floats:
+        """Where the loops begin, (loops, 3), m; of a loop that slides, before it did."""
+        return np.concatenate([loop.at(np.zeros(1)) for loop in self.loops])
+
     @cached_property
     def _sliding(self) -> list[tuple[Integers, Slide]]:
         """Nodes that slide, and on what; the ends of a sliding part are held."""

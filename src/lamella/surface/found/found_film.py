@@ -56,5 +56,12 @@ class Found:
         }
         rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
         return ElementSurface(
-            kind, self.equilibrium.mean_curvature, film.connectivity, film.nodes, rim_loop, known | figures, notes
+            kind,
+            self.equilibrium.mean_curvature,
+            film.connectivity,
+            film.nodes,
+            rim_loop,
+            known | figures,
+            notes,
+            film.loop_starts(),
         )
