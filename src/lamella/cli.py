@@ -73,7 +73,12 @@ def _parser() -> argparse.ArgumentParser:
         "kind",
         help="surface: unduloid, nodoid, catenoid, cylinder, helicoid, enneper, scherk, form-found or mesh",
     )
-    new.add_argument("--out", type=Path, metavar="FILE", help="file to write (default: <kind>.toml; - for the screen)")
+    new.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help="file to write (default: <kind>.toml; - for the screen); a mesh goes beside it",
+    )
 
     check = commands.add_parser(
         "check",
@@ -147,25 +152,29 @@ def _check(arguments: argparse.Namespace) -> None:
 
 def _new(arguments: argparse.Namespace) -> None:
     from lamella.project_errors import explain_kind
-    from lamella.starter import starter
+    from lamella.starter import starter, starter_mesh
 
     kind = arguments.kind
     message, remedy = explain_kind(kind)
     if message:
         raise InputError(message, remedy)
     target: Path = arguments.out or Path(f"{kind}.toml")
-    text = starter(kind, kind if str(target) == "-" else target.stem)
     if str(target) == "-":
-        print(text, end="")
+        print(starter(kind, kind), end="")
         return
-    if target.exists():
-        raise InputError(f"{target} is there already", "name another file with --out, or delete it")
+    mesh = target.with_name(f"{target.stem if target.suffix != '.obj' else target.name}.obj")
+    files = {target: starter(kind, target.stem, mesh.name)} | ({mesh: starter_mesh()} if kind == "mesh" else {})
+    for file in files:
+        if file.exists():
+            raise InputError(f"{file} is there already", "name another file with --out, or delete it")
     from lamella.files.whole import write_whole
 
     if not target.parent.is_dir():
         raise InputError(f"{target.parent}: no such folder", "make it first, or name another file with --out")
-    write_whole(target, text.encode())
-    print(f"wrote {target}; next: lamella run {target}")
+    # the project last: what it names is there when it is
+    for file, text in reversed(files.items()):
+        write_whole(file, text.encode())
+    print(f"wrote {' and '.join(map(str, files))}; next: lamella run {target}")
 
 
 def _examples(arguments: argparse.Namespace) -> None:

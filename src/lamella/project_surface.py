@@ -54,7 +54,7 @@ class UnduloidTable(_WithHeight):
     neck_radius: float = length("Smallest radius, at z = 0.", examples=[1.6])
     bulge_radius: float = length("Largest radius; not below neck_radius.", examples=[2.8])
     height: Range = number(
-        "Heights [z0, z1] of the rims, z = 0 at a neck; several periods allowed.", "m", examples=[[-3.0, 6.0]]
+        "Heights [z0, z1] of the rims, z = 0 at a neck; several periods allowed.", "m", examples=[[-2.0, 3.0]]
     )
 
 
@@ -103,11 +103,11 @@ class HelicoidTable(Table):
 
     kind: Literal["helicoid"]
     pitch: float = number(
-        "Rise of a full turn; negative: left-handed.", "m", ge=-MOST_LENGTH, le=MOST_LENGTH, examples=[4.0]
+        "Rise of a full turn; negative: left-handed.", "m", ge=-MOST_LENGTH, le=MOST_LENGTH, examples=[5.0]
     )
     inner_radius: float = number("Radius of the inner rim.", "m", ge=0, le=MOST_LENGTH, examples=[1.0])
-    outer_radius: float = length("Radius of the outer rim; above inner_radius.", examples=[4.0])
-    turns: float = number("Number of full turns.", "", ge=0.001, le=1000, examples=[1.25])
+    outer_radius: float = length("Radius of the outer rim; above inner_radius.", examples=[3.2])
+    turns: float = number("Number of full turns.", "", ge=0.001, le=1000, examples=[0.5])
 
     @model_validator(mode="after")
     def _possible(self) -> HelicoidTable:

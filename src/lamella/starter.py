@@ -43,11 +43,17 @@ def _boundary() -> str:
     return _BOUNDARY.format(points="\n".join(rows))
 
 
-# keys that come with a value of their own in a new project
-_ACTIVE = {"cells"}
+# keys that come with a value of their own in a new project: one layer, as a pair asks for choices of its own, and a
+# strip that is not overstressed in it
+_ACTIVE: dict[str, Any] = {
+    "network.cells": 24,
+    "lamella.height": 0.08,
+    "lamella.thickness": 0.001,
+    "lamella.layers": 1,
+}
 
 
-def _key(name: str, field: FieldInfo) -> str:
+def _key(table: str, name: str, field: FieldInfo, active: dict[str, Any]) -> str:
     extra = field.json_schema_extra
     unit = extra.get("unit", "") if isinstance(extra, dict) else ""
     about = (field.description or "") + (f" [{unit}]" if unit else "")
@@ -56,21 +62,22 @@ def _key(name: str, field: FieldInfo) -> str:
     # a commented key stands at its default; what has none shows an example
     shown = required or field.default is None or name == "scale"
     value: Any = field.examples[0] if field.examples and shown else field.default
+    value = active.get(f"{table}.{name}", value)
     if value is None:
         return "\n".join([*lines, f"# {name} ="])
     line = f"{name} = " + tomli_w.dumps({"x": value}, indent=0).partition(" = ")[2].strip().replace("\n", " ")
     line = line.replace("[ ", "[").replace(", ]", "]")
-    active = required or name in _ACTIVE or (bool(field.examples) and name == "scale")
-    return "\n".join([*lines, line if active else f"# {line}"])
+    written = required or f"{table}.{name}" in active or (bool(field.examples) and name == "scale")
+    return "\n".join([*lines, line if written else f"# {line}"])
 
 
-def _table(name: str, model: type[BaseModel], skip: frozenset[str] = frozenset()) -> str:
-    keys = [_key(key, field) for key, field in model.model_fields.items() if key not in skip]
+def _table(name: str, model: type[BaseModel], active: dict[str, Any], skip: frozenset[str] = frozenset()) -> str:
+    keys = [_key(name, key, field, active) for key, field in model.model_fields.items() if key not in skip]
     about = textwrap.wrap((model.__doc__ or "").strip(), 98, initial_indent="# ", subsequent_indent="# ")
     return "\n".join([*about, f"[{name}]", *keys])
 
 
-def starter(kind: str, name: str) -> str:
+def starter(kind: str, name: str, mesh: str = "surface.obj") -> str:
     """A project file for a kind of surface; keys with a default are there as comments.
 
     Parameters
@@ -79,9 +86,12 @@ def starter(kind: str, name: str) -> str:
         One of `lamella.project.SURFACE_TABLES`.
     name : str
         Name of the project.
+    mesh : str
+        File of the mesh, where the surface is one.
     """
     model = SURFACE_TABLES[kind]
-    surface = _table("surface", model, frozenset({"kind", "boundary"}))
+    active = _ACTIVE | ({"surface.file": mesh} if kind == "mesh" else {})
+    surface = _table("surface", model, active, frozenset({"kind", "boundary"}))
     surface = surface.replace("[surface]", f'[surface]\nkind = "{kind}"', 1)
     if kind == "form-found":
         surface += f"\n\n{_boundary()}"
@@ -89,9 +99,23 @@ def starter(kind: str, name: str) -> str:
         "# A lamella project. Lengths in metres, angles in degrees, stresses in Pa.\n"
         f"# Run it with:  lamella run FILE\n{tomli_w.dumps({'name': name}).strip()}",
         surface,
-        *(_table(name, model) for name, model in FURTHER_TABLES.items()),
+        *(_table(name, model, active) for name, model in FURTHER_TABLES.items()),
         "# A material of your own (SI units), named in lamella.material:\n"
         '# [materials."my steel"]\n# density = 7850\n# youngs_modulus = 210e9\n# shear_modulus = 81e9\n'
         "# strength = 420e6",
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def starter_mesh() -> str:
+    """A mesh to start from, as .obj in metres: 12 x 8 quads of half a catenoid with a neck of 2 m."""
+    around, along = 13, 9
+    rows = []
+    for k in range(along):
+        z = -2.0 + 4.0 * k / (along - 1)
+        radius = 2.0 * math.cosh(z / 2.0)
+        turns = (math.pi * j / (around - 1) for j in range(around))
+        rows += [f"v {radius * math.cos(t):.6f} {radius * math.sin(t):.6f} {z:.6f}" for t in turns]
+    corners = (1 + k * around + j for k in range(along - 1) for j in range(around - 1))
+    faces = [f"f {one} {one + 1} {one + around + 1} {one + around}" for one in corners]
+    return "\n".join(["# half a catenoid, metres", *rows, *faces]) + "\n"

@@ -102,6 +102,23 @@ def _round(number: float) -> str:
     return f"{number:,.0f}" if number < 1e12 else f"{number:.3g}"
 
 
+def check_requested(cells: int | None, spacing: float | None) -> None:
+    """Refuse both at once, and what is no number of cells or no length.
+
+    Raises
+    ------
+    InputError
+    """
+    if cells is not None and spacing is not None:
+        raise InputError(
+            f"both cells = {cells} and spacing = {spacing:g} m are given", "give one of the two", "network"
+        )
+    if cells is not None and (isinstance(cells, bool) or not isinstance(cells, int | np.integer)):
+        raise InputError(f"cells = {cells!r} is not a whole number", "write a whole number", "network.cells")
+    if spacing is not None and not 0 < spacing < np.inf:
+        raise InputError(f"spacing = {spacing!r} m is no length", "write a number above 0, in m", "network.spacing")
+
+
 def choose_density(
     surface: ClosedForm, *, cells: int | None = None, spacing: float | None = None, pattern: Pattern = LAMELLAS
 ) -> Density:
@@ -123,14 +140,7 @@ def choose_density(
         Both given; fewer than 3 cells; a net of more than 500,000 nodes; every point of the surface umbilic; a number
         of cells around the axis that is no multiple of what is kept.
     """
-    if cells is not None and spacing is not None:
-        raise InputError(
-            f"both cells = {cells} and spacing = {spacing:g} m are given", "give one of the two", "network"
-        )
-    if cells is not None and (isinstance(cells, bool) or not isinstance(cells, int | np.integer)):
-        raise InputError(f"cells = {cells!r} is not a whole number", "write a whole number", "network.cells")
-    if spacing is not None and not 0 < spacing < np.inf:
-        raise InputError(f"spacing = {spacing!r} m is no length", "write a number above 0, in m", "network.spacing")
+    check_requested(cells, spacing)
     refuse_umbilic(surface)
     if pattern.normal_curvature is not None:
         check_normal_curvature(surface, pattern.normal_curvature)
