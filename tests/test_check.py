@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -90,7 +91,7 @@ def test_what_is_left_to_the_run() -> None:
     checked = check_project(project)
     assert checked.nodes is not None
     assert checked.nodes > MOST_TRACED
-    assert checked.left == ("whether all lamellas can be traced (checked in nets of up to 5,000 nodes)",)
+    assert checked.left == ("whether all lamellas can be traced, and their strips (checked up to 5,000 nodes)",)
     assert str(checked).endswith("\n  only a run can tell " + checked.left[0])
     adjusted = annulus(cells=24, closing="adjust")
     assert "whether the boundary can be adjusted" in check_project(parse_project(adjusted)).left[-1]
@@ -106,10 +107,57 @@ def test_spheres_and_planes_have_no_net(height: float) -> None:
     project = parse_project(film(boundary=[circle], mean_curvature=-2 * height / (height**2 + 16)))
     checked = check_project(project)
     assert checked.nodes is None
-    assert "has no net of lamellas" in str(checked)
+    assert "no net" in str(checked)
     results = compute(project)
     assert results.network is None
-    assert checked.no_net.split(":")[0] in results.summary["warnings"][-1]
+    assert checked.warnings == tuple(results.summary["warnings"])
+    assert "ends with the surface" in checked.warnings[-1]
+
+
+UNDULOID = {"kind": "unduloid", "neck_radius": 1.6, "bulge_radius": 2.8, "height": [-1.0, 1.0]}
+
+
+def words(message: str) -> str:
+    """A warning without its figures and places."""
+    return re.sub(r"[-\d.,]+", "#", re.sub(r"\(.*?\)", "()", message))
+
+
+@pytest.mark.parametrize(
+    ("tables", "of"),
+    [
+        ({"surface": UNDULOID, "lamella": {"height": 1.8, "layers": 1}}, ["cell edges", "smallest radius"]),
+        ({"surface": UNDULOID, "lamella": {"material": "S235", "thickness": 0.01, "layers": 1}}, ["utilisation"]),
+        ({"surface": UNDULOID, "lamella": {"layers": 1}, "fabrication": {"sheet": [1.5, 1.0]}}, ["split"]),
+        ({"surface": UNDULOID | {"neck_radius": 1600, "bulge_radius": 2800, "height": [-1e3, 1e3]}}, ["millimetres"]),
+        ({"surface": UNDULOID, "network": {"closing": "round"}, "lamella": {"layers": 1}}, ["nothing to do"]),
+        (film({"lamella": {"layers": 1}}, boundary=rings(3.5), branch="unstable"), ["unstable"]),
+        (film({"network": {"cells": 8}, "lamella": {"height": 2.0, "layers": 1}}), ["cell edges"]),
+        (film({"network": {"kind": "principal", "cells": 12}}), ["ends with the network"]),
+    ],
+    ids=["high", "weak", "sheet", "millimetres", "closing", "unstable", "film", "principal"],
+)
+def test_what_a_run_warns_of(tables: dict[str, Any], of: list[str]) -> None:
+    """All of it, from closed forms to the letter, from coarse elements but for the figures."""
+    project = parse_project(tables)
+    checked, run = check_project(project), compute(project).summary["warnings"]
+    for word in of:
+        assert any(word in message for message in checked.warnings)
+    assert set(map(words, checked.warnings)) == set(map(words, run))
+    if not checked.coarse:
+        assert list(checked.warnings) == run
+    assert f"{len(run)} warning" in str(checked)
+
+
+def test_adjusting_what_may_not_change() -> None:
+    """Before any film is looked for: sliding loops are not adjusted, nor those whose limits are all 0."""
+    sliding = [{"points": SADDLE, "slide": {"direction": [0, 0, 1]}}, {"circle": {"center": [0, 0, 1], "radius": 1}}]
+    held = sliding[1] | {"adjust": {"move": 0.0}}
+    for boundary in ([sliding[0], held], [held]):
+        project = parse_project(film({"network": {"closing": "adjust"}}, boundary=boundary))
+        for look in (check_project, compute):
+            with pytest.raises(InputError) as refused:
+                look(project)
+            assert refused.value.where == "surface.boundary"
 
 
 def test_a_mesh_kept_as_it_is(tmp_path: Path) -> None:

@@ -13,9 +13,8 @@ from pathlib import Path
 import pytest
 
 from command_line import FILES, UNDULOID, contents, lamella
-from lamella import Unduloid, __version__
+from lamella import __version__
 from lamella.cli import main
-from lamella.files.mesh_files import write_surface_obj
 from lamella.project import FURTHER_TABLES, SURFACE_TABLES, BoundaryTable
 from lamella.project_file import parse_project
 
@@ -122,8 +121,6 @@ def test_a_new_project_is_good_and_mentions_every_key(
     assert wanted <= keys
     assert keys - wanted == OTHER_KEYS[kind == "form-found"]
     assert "[m]" in text
-    if kind == "mesh":
-        write_surface_obj(here / "surface.obj", Unduloid(1.6, 2.8, (-1.0, 1.0)).mesh(), name="", version="")
     assert main(["check", f"{kind}.toml"]) == 0
     assert f"{kind}.toml: a good project. {kind}, H = " in capsys.readouterr().out
     found = kind in ("form-found", "mesh")
@@ -236,9 +233,10 @@ def test_examples_are_good(path: Path, capsys: pytest.CaptureFixture[str]) -> No
     assert main(["check", str(path)]) == 0
     told = capsys.readouterr()
     more = r"  only a run can tell whether [\d,]+ nodes keep tolerance = \S+ \(checked: 0\.02\)\n" if found else ""
-    assert re.search(rf"a good project\. \S+, H = \S+ 1/m, \d+ cells, about [\d,]+ nodes\n{more}$", told.out)
+    head = r"(a good project|it runs, with \d warnings?)"
+    assert re.search(rf"{head}\. \S+, H = \S+ 1/m, \d+ cells, about [\d,]+ nodes\n{more}$", told.out)
     assert ("nodes: |H - H0| up to" in told.err) == found
-    assert found or told.err == ""
+    assert found or all(line.startswith("warning: ") for line in told.err.splitlines())
 
 
 def test_schema(capsys: pytest.CaptureFixture[str]) -> None:

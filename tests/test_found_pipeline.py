@@ -188,7 +188,8 @@ def test_found_surfaces_on_the_command_line(
     assert "\n    Newton step 1\n" in capsys.readouterr().err
     laid = SimpleNamespace(lattice=SimpleNamespace(cells=10, estimated_nodes=1234))
     monkeypatch.setattr("lamella.weaving.lay", lambda *_: laid)
-    monkeypatch.setattr("lamella.weaving.weave", lambda *_: None)
+    warned = SimpleNamespace(summary={"warnings": []})
+    monkeypatch.setattr("lamella.check.complete", lambda *_, **__: warned)
     assert main(["check", "films/film.toml"]) == 0
     told = capsys.readouterr()
     kind = found[0].surface.kind

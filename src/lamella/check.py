@@ -1,8 +1,9 @@
 """What can be said of a project before it is run, in a few seconds.
 
 A closed form costs nothing. A surface that has to be found is found on coarse elements: whether there is one, and how
-many cells and nodes its net has, does not depend on the last digits. A net of ordinary size is traced on it, so that a
-project that is called good is one that a run computes, but for what `Checked.left` names.
+many cells and nodes its net has, does not depend on the last digits. A net of ordinary size goes through all stages of
+a run on it, in memory, so that a project that is called good is one that a run computes, with the warnings of a run,
+but for what `Checked.left` names.
 """
 
 from __future__ import annotations
@@ -14,14 +15,17 @@ from typing import Any
 from lamella.cautions import order_caution
 from lamella.errors import InputError
 from lamella.network.lines import is_traced
-from lamella.pipeline import plan
+from lamella.pipeline import Clock, Planned, complete, plan
 from lamella.progress import Progress, silent
 from lamella.project import FormFoundTable, MeshTable, Project
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
+from lamella.wording import counted
 
 # tolerance of the elements on which a surface is looked for
 COARSE = 2e-2
+# of the mesh for pictures, on which the size is measured
+COARSE_MESH = 5e-3
 # nets of more nodes are not traced for a check: it would take longer than finding the surface
 MOST_TRACED = 5_000
 
@@ -36,8 +40,10 @@ class Checked:
         A closed form, or the surface on coarse elements.
     cells, nodes : int or None
         Of the net, about; None: it has none.
-    no_net : str
-        Why it has none.
+    warnings : tuple of str
+        What a run warns of, as far as it was computed.
+    coarse : bool
+        Whether they come from coarse elements: their figures are those of a run to a few hundredths.
     left : tuple of str
         What only a run can tell.
     """
@@ -45,23 +51,22 @@ class Checked:
     surface: Surface[Any]
     cells: int | None
     nodes: int | None
-    no_net: str
+    warnings: tuple[str, ...]
+    coarse: bool
     left: tuple[str, ...]
 
     def __str__(self) -> str:
         """In words."""
-        told = f"{self.surface.kind}, H = {self.surface.mean_curvature:.6g} 1/m"
-        if self.nodes is not None:
-            told += f", {self.cells} cells, about {self.nodes:,} nodes"
-        if self.no_net:
-            told += f"; the run ends with the surface: it is {self.no_net}, and has no net of lamellas"
+        told = "a good project" if not self.warnings else f"it runs, with {counted(len(self.warnings), 'warning')}"
+        told += f". {self.surface.kind}, H = {self.surface.mean_curvature:.6g} 1/m"
+        told += ", no net" if self.nodes is None else f", {self.cells} cells, about {self.nodes:,} nodes"
         if self.left:
             told += f"\n  only a run can tell {'; '.join(self.left)}"
         return told
 
 
 def check_project(project: Project, *, folder: Path = Path(), progress: Progress = silent) -> Checked:
-    """Look for everything that a run would refuse, as far as that takes seconds.
+    """Look for everything that a run would refuse or warn of, as far as that takes seconds.
 
     Parameters
     ----------
@@ -83,36 +88,50 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
         if coarse is project or error.where != "surface.tolerance":
             raise
         # in the project's own numbers
+        coarse = project
         left.clear()
         surface, density = plan(project, folder=folder, progress=progress)
-    if density:
-        return Checked(surface, density.cells, density.estimated_nodes, "", ())
     if coarse is not project and umbilic_reason(surface.check_points(), COARSE):
         # the elements' own errors would decide
-        progress("  nearly a sphere or a plane: found anew as finely as asked for")
+        progress("  nearly a sphere or a plane: found anew as finely as the run does")
+        coarse = project
         left.clear()
-        surface, _ = plan(project, folder=folder, progress=progress)
-    flat = umbilic_reason(surface.check_points())
-    if flat:
-        return Checked(surface, None, None, flat, tuple(left))
-    from lamella.weaving import lay, lay_traced, trace, weave
+        surface, density = plan(project, folder=folder, progress=progress)
+    sizes = None
+    if density:
+        sizes = density.cells, density.estimated_nodes
+    elif not umbilic_reason(surface.check_points()):
+        progress("  laying the net")
+        sizes = _laid(coarse, surface, progress)
+    cells, nodes = sizes or (None, None)
+    until = None
+    if nodes is not None and nodes > MOST_TRACED:
+        until = "surface"
+        left.append(f"whether all lamellas can be traced, and their strips (checked up to {MOST_TRACED:,} nodes)")
+    elif nodes is not None and project.network.closing == "adjust" and not density:
+        until = "surface"
+        left.append("whether the boundary can be adjusted so that the net closes, and what its strips are")
+    warnings = _warnings(coarse, (surface, density, None), until, folder)
+    return Checked(surface, cells, nodes, warnings, coarse is not project, tuple(left))
 
-    progress("  laying the net")
+
+def _laid(project: Project, surface: Surface[Any], progress: Progress) -> tuple[int, int]:
+    """Cells and nodes of a net, about, without tracing it."""
+    from lamella.weaving import lay, lay_traced
+
     if is_traced(surface, project.network.pattern):
         lines = lay_traced(surface, project)
-        cells, nodes = lines.cells, lines.estimated_nodes
-        if nodes <= MOST_TRACED:
-            trace(surface, project, progress)
-    else:
-        laid = lay(surface, project, None, progress)
-        cells, nodes = laid.lattice.cells, laid.lattice.estimated_nodes
-        if project.network.closing == "adjust":
-            left.append("whether the boundary can be adjusted so that the net closes")
-        elif nodes <= MOST_TRACED:
-            weave(laid, project)
-    if nodes > MOST_TRACED:
-        left.append(f"whether all lamellas can be traced (checked in nets of up to {MOST_TRACED:,} nodes)")
-    return Checked(surface, cells, nodes, "", tuple(left))
+        return lines.cells, lines.estimated_nodes
+    lattice = lay(surface, project, None, progress).lattice
+    return lattice.cells, lattice.estimated_nodes
+
+
+def _warnings(project: Project, planned: Planned, until: str | None, folder: Path) -> tuple[str, ...]:
+    """What the stages of a run warn of."""
+    files = project.files.model_copy(update={"mesh_tolerance": max(COARSE_MESH, project.files.mesh_tolerance)})
+    light = project.model_copy(update={"files": files})
+    results = complete(light, planned, Clock(silent), until=until, folder=folder)
+    return tuple(results.summary["warnings"])
 
 
 def _coarse(project: Project, left: list[str]) -> Project:

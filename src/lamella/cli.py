@@ -147,7 +147,9 @@ def _check(arguments: argparse.Namespace) -> None:
         checked = check_project(project, folder=arguments.project.parent, progress=_progress(arguments))
     except InputError as error:
         raise located(error, arguments.project) from None
-    print(f"{arguments.project}: a good project. {checked}")
+    for message in checked.warnings:
+        _say(f"warning{' (from coarse elements)' if checked.coarse else ''}: {message}")
+    print(f"{arguments.project}: {checked}")
 
 
 def _new(arguments: argparse.Namespace) -> None:

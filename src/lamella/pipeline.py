@@ -17,7 +17,7 @@ from lamella.network.lines import check_traced, is_traced
 from lamella.network.network import Network
 from lamella.network.trace import trace_closed_form
 from lamella.progress import Progress, silent
-from lamella.project import Project
+from lamella.project import FormFoundTable, Project
 from lamella.project_file import located, read_project
 from lamella.strip.lamellas import Lamellas, Section, make_lamellas
 from lamella.surface.closed_form import ClosedForm
@@ -73,20 +73,26 @@ class Results:
     adjusted: Adjusted | None = None
 
 
-class _Clock:
+class Clock:
     """CPU seconds of each stage."""
 
     def __init__(self, progress: Progress) -> None:
         self.seconds: dict[str, float] = {}
-        self._progress, self._start = progress, 0.0
+        self.progress, self._start = progress, 0.0
 
     def start(self, message: str) -> None:
-        self._progress(message)
+        """Say what begins."""
+        self.progress(message)
         self._start = time.process_time()
 
     def stop(self, stage: str, result: str) -> None:
+        """Say what has come out of it."""
         self.seconds[stage] = round(time.process_time() - self._start, 4)
-        self._progress(f"  {result} ({self.seconds[stage]:.2f} s)")
+        self.progress(f"  {result} ({self.seconds[stage]:.2f} s)")
+
+
+Planned = tuple[Surface[Any], "Density | None", "Adjusted | None"]
+"""The surface, the density of the net where that is arithmetic, and the boundary where it was adjusted."""
 
 
 def make_surface(project: Project, folder: str | Path = Path(), progress: Progress = silent) -> Surface[Any]:
@@ -169,11 +175,13 @@ def _refuse_adjusting(project: Project) -> None:
             'write closing = "open" or "round", or find the surface from curves (kind = "form-found")',
             "network.closing",
         )
+    if isinstance(project.surface, FormFoundTable):
+        from lamella.surface.boundary.freedom import Freedom, refuse_held
+
+        refuse_held(Freedom(project.surface))
 
 
-def _planned(
-    project: Project, until: str | None, folder: Path, progress: Progress
-) -> tuple[Surface[Any], Density | None, Adjusted | None]:
+def _planned(project: Project, until: str | None, folder: Path, progress: Progress) -> Planned:
     """`plan`, with the boundary adjusted where the project asks for it."""
     table = project.surface
     depth = _last_of(project, until)
@@ -252,14 +260,19 @@ def compute(
     ------
     InputError
     """
-    depth, folder = _last_of(project, until), Path(folder)
-    clock = _Clock(progress)
+    clock = Clock(progress)
+    _last_of(project, until)
+    clock.start(f"surface: {project.surface.kind}")
+    return complete(project, _planned(project, until, Path(folder), progress), clock, until=until, folder=Path(folder))
+
+
+def complete(project: Project, planned: Planned, clock: Clock, *, until: str | None, folder: Path) -> Results:
+    """The stages of a project whose surface is there, see `compute`; the clock runs for the surface already."""
+    depth, progress = _last_of(project, until), clock.progress
     warnings: list[str] = []
     if depth < STAGES.index("lamellas") and until is None:
         warnings.append(f"the run ends with the network: {project.network.pattern.no_strips}")
-
-    clock.start(f"surface: {project.surface.kind}")
-    surface, density, adjusted = _planned(project, until, folder, progress)
+    surface, density, adjusted = planned
     project = fill_in(project, surface)
     progress("    sampling the surface for files and pictures")
     mesh = surface.mesh(project.files.mesh_tolerance)

@@ -26,7 +26,7 @@ from lamella.network.holonomy import around_holes, holonomies
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.progress import Progress, patient
 from lamella.surface.boundary.curve import Loop
-from lamella.surface.boundary.freedom import Freedom
+from lamella.surface.boundary.freedom import Freedom, refuse_held
 from lamella.surface.boundary.tables import boundary_loops
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.points import Complexes, Floats
@@ -108,12 +108,7 @@ def adjust_boundary(
         There is no such film, nothing may change, or the net does not close within what is allowed.
     """
     freedom = Freedom(table)
-    if not freedom.count:
-        raise InputError(
-            'closing = "adjust", but nothing of the boundary may change',
-            "add adjust = {move = 0.3} to a loop that does not slide, or adjust_mean_curvature",
-            "surface.boundary",
-        )
+    refuse_held(freedom)
     films = Films(table, folder, freedom, pattern)
     progress(f"  adjusting {', '.join(freedom.names)}: {freedom.count} parameters")
     first = films.first(COARSE)

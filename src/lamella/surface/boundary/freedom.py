@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from lamella.errors import InputError
 from lamella.project_boundary import PlaceTable
 from lamella.surface.boundary.pieces import Floats
 
@@ -75,9 +76,28 @@ class Freedom:
         return np.concatenate([np.zeros(0), *rates])
 
 
+def refuse_held(freedom: Freedom) -> None:
+    """Raise an `InputError` where nothing of the boundary may change."""
+    if freedom.count:
+        return
+    held = [loop.name for loop in freedom.table.boundary if not slides(loop)]
+    raise InputError(
+        'closing = "adjust", but nothing of the boundary may change',
+        f"write adjust = {{move = 0.3}} in the table of {held[0]!r}, or adjust_mean_curvature = 0.1"
+        if held
+        else 'write closing = "open", or adjust_mean_curvature = 0.1',
+        "surface.boundary",
+    )
+
+
+def slides(loop: BoundaryTable) -> bool:
+    """Whether a loop or a part of it slides: such loops are not adjusted."""
+    return loop.slide is not None or any(part.slide is not None for part in loop.part or ())
+
+
 def _of_loop(index: int, loop: BoundaryTable, usual: bool) -> list[_Part]:
     """Parameters of one loop; waves first, so that shifts, sizes and tilts are those of the waved loop."""
-    if loop.slide is not None:
+    if slides(loop):
         return []
     size = 0.0
     if loop.points is not None:
