@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from lamella.cli import main
+from lamella.files.own import write_summary
 from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE
 
 UNDULOID = """name = "x"
@@ -52,7 +53,7 @@ def refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capt
     monkeypatch.chdir(tmp_path)
     earlier = tmp_path / "out" / "p"
     earlier.mkdir(parents=True)
-    (earlier / "summary.json").write_text("an earlier run")
+    write_summary(earlier, {"name": "an earlier run"})
     before = fingerprint(tmp_path)
 
     def refused(project: str | bytes, *words: str, at: str = "", lines: int = 2) -> str:

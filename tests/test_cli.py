@@ -328,8 +328,8 @@ def test_places_that_cannot_be_written(here: Path, capsys: pytest.CaptureFixture
         ("p.toml", "p.toml is a file\n  remedy: choose another folder with --out"),
         ("p.toml/o", "p.toml is a file\n  remedy: choose another folder with --out"),
         ("p.toml/o/o", "p.toml is a file"),
-        ("mine", "is not empty and holds no summary.json: it is not an earlier run's\n  remedy: "),
-        (".", "is not empty and holds no summary.json"),
+        ("mine", "is not empty and is no earlier run's: it holds thesis.txt\n  remedy: choose another folder"),
+        (".", "is not empty and is no earlier run's: it holds mine/, p.toml"),
         ("/", "cannot be replaced as a whole\n  remedy: name a folder inside it"),
         ("x" * 300, "x cannot be used: "),
     ):

@@ -12,6 +12,7 @@ from lamella import __version__, cautions, summary
 from lamella.errors import InputError
 from lamella.fabrication import Nesting, Parts, make_parts, nest
 from lamella.fabrication.rules import LEAST_END, LEAST_HUB, Rules, clear_hub, edge_scale
+from lamella.files.own import SCHEMA
 from lamella.network.density import Density, choose_density
 from lamella.network.lines import check_traced, is_traced
 from lamella.network.network import Network
@@ -340,7 +341,7 @@ def complete(project: Project, planned: Planned, clock: Clock, *, until: str | N
         clock.stop("fabrication", f"{f['parts']:,} parts, {f['mass']:.4g} kg, {f['sheets']} sheets")
         warnings += parts.warnings
 
-    content: dict[str, Any] = {"schema": "lamella/summary/1", "version": __version__, "name": project.name}
+    content: dict[str, Any] = {"schema": SCHEMA, "version": __version__, "name": project.name}
     content |= {stage: figures.get(stage) for stage in STAGES}
     content |= {"warnings": warnings, "seconds": clock.seconds}
     return Results(project, surface, mesh, network, lamellas, parts, nesting, content, folder, adjusted)
@@ -438,6 +439,7 @@ def write(results: Results, target: str | Path, *, progress: Progress = silent) 
     progress : callable
     """
     from lamella.files.folder import staged_folder
+    from lamella.files.own import write_summary
     from lamella.output import write_files
 
     start, target = time.process_time(), Path(target)
@@ -445,15 +447,7 @@ def write(results: Results, target: str | Path, *, progress: Progress = silent) 
     with staged_folder(target) as folder:
         write_files(results, folder, progress=progress)
         seconds = results.summary["seconds"] | {"files": round(time.process_time() - start, 4)}
-        _write_json(folder / "summary.json", results.summary | {"seconds": seconds})
-
-
-def _write_json(path: Path, content: dict[str, Any]) -> None:
-    import orjson
-
-    from lamella.files.whole import write_whole
-
-    write_whole(path, orjson.dumps(content, option=orjson.OPT_INDENT_2 | orjson.OPT_SERIALIZE_NUMPY) + b"\n")
+        write_summary(folder, results.summary | {"seconds": seconds})
 
 
 __all__ = ["STAGES", "Results", "compute", "make_surface", "plan", "run", "write"]

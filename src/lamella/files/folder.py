@@ -1,8 +1,9 @@
-"""The output folder of a run: it appears whole or not at all.
+"""The output folder of a run: it appears whole or not at all, and takes the place of nothing but a run's own folder.
 
 A run fills a hidden folder beside the target and swaps it in when it is complete. While it works it holds a
 lock on that folder; the system lets go of the lock when the run dies, so a later run knows which folders were
-left behind.
+left behind. What a user has put into the target before or meanwhile is never touched: the run refuses before it
+begins, or leaves its own folder beside the target.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import contextlib
 import errno
 import hashlib
 import os
+import re
 import secrets
 import shutil
 import stat
@@ -20,10 +22,13 @@ from pathlib import Path
 from lamella.errors import InputError
 from lamella.files.exchange import exchange
 from lamella.files.lock import lock_folder, unlock_folder
+from lamella.files.own import MARK, foreign_entries, remove_run, run_files, was_written_by_a_run
+from lamella.wording import cut
 
-SUMMARY = "summary.json"
 ATTEMPTS = 50
 TAKEN = (errno.ENOTEMPTY, errno.EEXIST)
+MOST_LISTED = 4
+_ELSEWHERE = "choose another folder with --out"
 
 
 def check_target(target: Path) -> Path:
@@ -32,7 +37,7 @@ def check_target(target: Path) -> Path:
     Parameters
     ----------
     target : Path
-        Where the output is to appear; a symbolic link is followed.
+        Where the output is to appear; a symbolic link to a folder is followed.
 
     Returns
     -------
@@ -42,11 +47,12 @@ def check_target(target: Path) -> Path:
     Raises
     ------
     InputError
-        If the target is a file, a mount point, or a folder with anything in it but no summary.json, or if it
-        could not be made or replaced where it is.
+        If the target is a file, a link that leads nowhere, a mount point, or a folder with anything in it that
+        no run wrote, or if it could not be made or replaced where it is.
     """
     try:
-        place = target.resolve()
+        place = _as_stored(target.resolve())
+        _check_links(target)
         _check(place)
     except InputError:
         raise
@@ -70,7 +76,14 @@ def staged_folder(target: Path) -> Iterator[Path]:
     Yields
     ------
     Path
-        An empty folder beside the target.
+        An empty folder beside the target (but for its mark); `lamella.files.own.write_summary` is to write its last
+        file, without which it is no run's folder for the next run.
+
+    Raises
+    ------
+    InputError
+        The target cannot be replaced. If that turns out at the end, because of what came into it meanwhile, the
+        complete folder is kept beside it; the message has its name.
     """
     place = check_target(target)
     _clear_up(place)
@@ -80,7 +93,6 @@ def staged_folder(target: Path) -> Iterator[Path]:
     try:
         stage, lock = _make_stage(place, made)
         yield stage
-        _swap_in(stage, place)
     except BaseException:
         if stage is not None:
             shutil.rmtree(stage, ignore_errors=True)
@@ -90,12 +102,42 @@ def staged_folder(target: Path) -> Iterator[Path]:
                 folder.rmdir()
         raise
     else:
-        shutil.rmtree(stage, ignore_errors=True)
+        _finish(stage, place)
     finally:
         unlock_folder(lock)
 
 
-_ELSEWHERE = "choose another folder with --out"
+def _finish(stage: Path, place: Path) -> None:
+    try:
+        _mark(stage).unlink()
+        _swap_in(stage, place)
+    except (OSError, InputError) as error:
+        raise _kept_beside(stage, place, error) from error
+    except BaseException:
+        # whichever of the two folders has this name now
+        with contextlib.suppress(OSError):
+            _discard(stage)
+        raise
+
+
+def _as_stored(place: Path) -> Path:
+    """The path with its last name as the disk has it, where that is the same folder in another case."""
+    with contextlib.suppress(OSError):
+        names = os.listdir(place.parent)
+        if place.name not in names and place.exists():
+            alike = [name for name in names if name.casefold() == place.name.casefold()]
+            return next((place.with_name(name) for name in alike if place.with_name(name).samefile(place)), place)
+    return place
+
+
+def _check_links(target: Path) -> None:
+    """Refuse a path through a link that leads nowhere: what it should lead to is not ours to make."""
+    for step in (target, *target.parents):
+        if step.is_symlink() and not step.exists():
+            raise InputError(
+                f"the output folder {target} leads over the link {step}, which leads to nothing",
+                f"{_ELSEWHERE}, remove the link, or make the folder {os.path.realpath(step)} first",
+            )
 
 
 def _check(place: Path) -> None:
@@ -112,11 +154,7 @@ def _check(place: Path) -> None:
                 f"the output folder {place} is the root of a disk or mount and cannot be replaced as a whole",
                 f"name a folder inside it: --out {place / 'out'}",
             )
-        if not _replaceable(place):
-            raise InputError(
-                f"the output folder {place} is not empty and holds no {SUMMARY}: it is not an earlier run's",
-                f"{_ELSEWHERE}, or empty it",
-            )
+        _check_content(place)
     parent = place.parent
     while not parent.exists() and parent != parent.parent:
         parent = parent.parent
@@ -132,21 +170,42 @@ def _check(place: Path) -> None:
         )
 
 
-def _replaceable(place: Path) -> bool:
-    """Whether a folder is empty, an earlier run's, or gone meanwhile."""
+def _check_content(place: Path) -> None:
+    """Refuse a folder that holds anything that no run wrote."""
     for _ in range(ATTEMPTS):
         try:
             before = place.stat()
-            names = os.listdir(place)
+            files = run_files(place)
+            foreign = foreign_entries(place, files)
             after = place.stat()
         except FileNotFoundError:
-            return True
-        if not names or SUMMARY in names:
-            return True
-        # Another run may have swapped the folder while it was listed, and be deleting what was listed.
+            return
+        if not foreign:
+            return
+        # Another run may have swapped the folder while it was looked at, and be deleting what was listed.
         if os.path.samestat(before, after):
-            return False
-    return True
+            raise _foreign(place, files, foreign)
+
+
+def _foreign(place: Path, files: dict[str, str] | None, foreign: list[str]) -> InputError:
+    listed = ", ".join(cut(name, 60) for name in foreign[:MOST_LISTED])
+    if len(foreign) > MOST_LISTED:
+        listed += f" and {len(foreign) - MOST_LISTED} more"
+    if files is not None:
+        return InputError(
+            f"the output folder {place} holds what its run did not write: {listed}",
+            f"{_ELSEWHERE}, or move {'it' if len(foreign) == 1 else 'them'} away",
+        )
+    if was_written_by_a_run(place):
+        return InputError(
+            f"the output folder {place} has a summary.json that was edited, or is of an older version that kept no "
+            "list of its files: what in it is yours cannot be told",
+            f"{_ELSEWHERE}, or move the folder away",
+        )
+    return InputError(
+        f"the output folder {place} is not empty and is no earlier run's: it holds {listed}",
+        f"{_ELSEWHERE}, or empty it",
+    )
 
 
 def _prefix(place: Path, role: str) -> str:
@@ -156,35 +215,76 @@ def _prefix(place: Path, role: str) -> str:
     return f".{name}.lamella-{role}-"
 
 
-def _clear_up(place: Path) -> None:
-    """Remove what killed runs left beside the target; give an output set aside its name back."""
+def _beside(place: Path, role: str) -> Path:
+    return place.parent / (_prefix(place, role) + secrets.token_hex(6))
+
+
+def _left_beside(place: Path, role: str) -> list[Path]:
+    """Folders that runs have named so, in order."""
+    named = re.compile(re.escape(_prefix(place, role)) + "[0-9a-f]{12}")
     with contextlib.suppress(OSError):
-        left = sorted(place.parent.iterdir())
-        for folder in left:
-            if folder.name.startswith(_prefix(place, "old")):
-                if not place.exists():
-                    with contextlib.suppress(OSError):
-                        os.rename(folder, place)
-                if place.exists():
-                    shutil.rmtree(folder, ignore_errors=True)
-            elif folder.name.startswith(_prefix(place, "new")):
-                lock = lock_folder(folder, wait=False)
-                if lock is not None:
-                    shutil.rmtree(folder, ignore_errors=True)
-                    unlock_folder(lock)
+        return sorted(path for path in place.parent.iterdir() if named.fullmatch(path.name) and not path.is_symlink())
+    return []
+
+
+def _clear_up(place: Path) -> None:
+    """Remove what killed runs left beside the target; give an output set aside its name back.
+
+    A name alone is no proof: only folders with a run's mark or list in them are touched, and empty ones.
+    """
+    for folder in _left_beside(place, "old"):
+        with contextlib.suppress(OSError):
+            if not os.path.lexists(place) and run_files(folder) is not None:
+                os.rename(folder, place)
+            else:
+                _discard(folder)
+    for folder in _left_beside(place, "new"):
+        lock = lock_folder(folder, wait=False)
+        if lock is not None:
+            with contextlib.suppress(OSError):
+                if os.path.lexists(_mark(folder)):
+                    _remove_marked(folder)
+                else:
+                    _discard(folder)
+            unlock_folder(lock)
+
+
+def _mark(stage: Path) -> Path:
+    """The file that marks a folder as being filled: it repeats the folder's own number, so that no copy has it."""
+    return stage / (MARK + stage.name[-12:])
+
+
+def _remove_marked(folder: Path) -> None:
+    """Remove a folder that a killed run was filling; the mark goes last, so that a kill leaves it to the next run."""
+    for entry in os.scandir(folder):
+        if entry.name != _mark(folder).name:
+            if entry.is_dir(follow_symlinks=False):
+                shutil.rmtree(entry.path)
+            else:
+                os.unlink(entry.path)
+    _mark(folder).unlink()
+    folder.rmdir()
+
+
+def _discard(folder: Path) -> None:
+    """Remove a run's complete folder, or an empty one; anything else stays."""
+    files = run_files(folder)
+    if not foreign_entries(folder, files):
+        remove_run(folder, files or {})
 
 
 def _make_stage(place: Path, made: list[Path]) -> tuple[Path, int | None]:
-    """Make and lock the temporary folder; missing parents made for it are added to ``made``."""
+    """Make, lock and mark the temporary folder; missing parents made for it are added to ``made``."""
     for _ in range(ATTEMPTS):
         # Another run that fails takes the parents it made away again, at any moment.
         with contextlib.suppress(FileNotFoundError):
             _make_parents(place.parent, made)
-            stage = place.parent / (_prefix(place, "new") + secrets.token_hex(6))
+            stage = _beside(place, "new")
             stage.mkdir()
             lock = lock_folder(stage)
             # A run that clears up may have come between the making and the locking.
             if stage.exists():
+                _mark(stage).touch()
                 return stage, lock
             unlock_folder(lock)
     raise OSError(f"no temporary folder could be made beside {place}")
@@ -202,7 +302,13 @@ def _make_parents(parent: Path, made: list[Path]) -> None:
 
 
 def _swap_in(stage: Path, place: Path) -> None:
-    """Put a complete folder in the target's place; what was there may have the stage's name afterwards."""
+    """Put a complete folder in the target's place, and discard the run's folder that was there.
+
+    Raises
+    ------
+    InputError
+        Something that no run wrote is there; it has its place still.
+    """
     for _ in range(ATTEMPTS):
         try:
             os.rename(stage, place)  # a free place, or an empty folder's
@@ -213,25 +319,59 @@ def _swap_in(stage: Path, place: Path) -> None:
         # Another run may end at the same time: then the target is gone, or back, a moment later.
         with contextlib.suppress(FileNotFoundError):
             _check(place)
-            if exchange(stage, place) or _replace_in_two_steps(stage, place):
+            if _exchanged(stage, place) or _replace_in_two_steps(stage, place):
                 return
     raise OSError(f"the output folder {place} could not be replaced: other runs keep replacing it")
 
 
+def _exchanged(stage: Path, place: Path) -> bool:
+    """Swap both in one step; False where that cannot be done."""
+    if not exchange(stage, place):
+        return False
+    try:
+        # nobody finds it under its hidden name, so what is in it now is all
+        _check_content(stage)
+    except InputError:
+        exchange(stage, place)
+        raise
+    with contextlib.suppress(OSError):
+        _discard(stage)
+    return True
+
+
 def _replace_in_two_steps(stage: Path, place: Path) -> bool:
     """Set the target aside and put the stage in its place; False if another run took the place between."""
-    aside = place.parent / (_prefix(place, "old") + secrets.token_hex(6))
+    aside = _beside(place, "old")
     try:
         os.rename(place, aside)
+        _check_content(aside)
         os.rename(stage, place)
     except BaseException as error:
         if isinstance(error, OSError) and error.errno in TAKEN:
-            shutil.rmtree(aside, ignore_errors=True)
+            _discard(aside)
             return False
         if not place.exists():
             # Gone where another run has already given it its place back.
             with contextlib.suppress(FileNotFoundError):
                 os.rename(aside, place)
         raise
-    shutil.rmtree(aside, ignore_errors=True)
+    with contextlib.suppress(OSError):
+        _discard(aside)
     return True
+
+
+def _kept_beside(stage: Path, place: Path, error: OSError | InputError) -> InputError:
+    """Give a complete folder that cannot take its place a name beside it, and say so: hours may have gone into it."""
+    kept = stage
+    for number in range(2, 1000):
+        free = place.with_name(f"{place.name}-{number}")
+        if not os.path.lexists(free):
+            with contextlib.suppress(OSError):
+                os.rename(stage, free)
+                kept = free
+                break
+    reason = error.message if isinstance(error, InputError) else f"{place}: {error.strerror or error}"
+    return InputError(
+        f"{reason}. That came while the run worked; its files are complete in {kept}",
+        f"take them from there, or clear {place} and run again",
+    )
