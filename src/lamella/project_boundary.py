@@ -156,7 +156,12 @@ class BoundaryTable(Table):
         default=None,
         examples=[[[0.0, 0.0, 0.0], [4.0, 0.0, 1.0], [4.0, 4.0, 0.0], [0.0, 4.0, 1.0]]],
     )
-    interpolation: Interpolation | None = Field(default=None, description=_INTERPOLATION)
+    interpolation: Interpolation | None = Field(
+        default=None,
+        description=_INTERPOLATION
+        + ' Polylines of a .dxf or .3dm too: there "spline" keeps true corners, and when not given a polyline of many '
+        "vertices that turn little is taken as a smooth curve.",
+    )
     circle: CircleTable | None = Field(default=None, description="A circle {center, radius, normal}.")
     file: Annotated[str | None, file_name(CURVE_FILES)] = Field(
         default=None,
@@ -206,15 +211,12 @@ class BoundaryTable(Table):
         if self.interpolation is not None and self.points is None:
             if self.file is None:
                 raise Refusal("interpolation goes with points", "leave interpolation out", "interpolation")
-            in_file = self.file.lower().endswith(".json")
-            raise Refusal(
-                "interpolation goes with points of this table, not with a file: "
-                + ("each curve of a .json says its own" if in_file else "curves of a drawing are exact as they are"),
-                f'write "interpolation": "{self.interpolation}" beside the points in the file'
-                if in_file
-                else "leave interpolation out",
-                "interpolation",
-            )
+            if self.file.lower().endswith(".json"):
+                raise Refusal(
+                    "interpolation goes with points of this table: each curve of a .json says its own",
+                    f'write "interpolation": "{self.interpolation}" beside the points in the file',
+                    "interpolation",
+                )
         for key in ("layer", "id", "unit"):
             if getattr(self, key) is not None and self.file is None:
                 remedy = "lengths here are in metres" if key == "unit" else f"leave {key} out"

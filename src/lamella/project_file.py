@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from lamella.byte_order import unmarked
 from lamella.errors import InputError
 from lamella.project import FormFoundTable, MeshTable, Project
 from lamella.project_errors import explain, told_once
@@ -51,7 +52,7 @@ def read_project(path: str | Path) -> Project:
             f"more than {MOST_BYTES / 1e6:g} MB long: no project file is", "name the project's .toml file", str(path)
         )
     try:
-        text = raw.decode("utf-8-sig")
+        text = unmarked(raw).decode("utf-8")
     except UnicodeDecodeError as error:
         raise InputError(
             f"not a text file in UTF-8 (byte {error.start})", "a project file is TOML text, saved as UTF-8", str(path)

@@ -10,6 +10,7 @@ import io
 import json
 import os
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -118,6 +119,7 @@ def _object(item: Any, wanted: str, store: _Store) -> dict[str, Any]:
     geometry, about = item.Geometry, item.Attributes
     instance = isinstance(geometry, rhino3dm.InstanceReference)
     curves = [store.curve(curve) for curve in _curves(geometry)] if wanted == "curves" else []
+    solid = _brep(geometry) if wanted == "curves" else None
     return {
         "kind": _last_word(geometry.ObjectType),
         "type": type(geometry).__name__,
@@ -130,6 +132,7 @@ def _object(item: Any, wanted: str, store: _Store) -> dict[str, Any]:
         "on_page": _last_word(about.ActiveSpace) == "PageSpace",
         "curves": [curve for curve in curves if curve is not None],
         "meshes": [store.mesh(mesh) for mesh in _meshes(geometry)] if wanted == "meshes" else [],
+        "faces": 0 if solid is None else len(solid.Faces),
         "block": str(geometry.ParentIdefId) if instance else "",
         "transform": _matrix(geometry.Xform) if instance else np.eye(4).ravel().tolist(),
     }
@@ -139,9 +142,17 @@ def _curves(geometry: Any) -> Iterator[Any]:
     if isinstance(geometry, rhino3dm.Curve):
         yield geometry
         return
+    solid = _brep(geometry)
+    if solid is not None:
+        # an edge that faces share has a trim in each, a seam two in one
+        uses = Counter(trim.EdgeIndex for face in solid.Faces for loop in face.Loops for trim in loop.Trims)
+        yield from (solid.Edges[k] for k in range(len(solid.Edges)) if uses[k] == 1)
+
+
+def _brep(geometry: Any) -> Any:
+    """A surface or an extrusion as faces; None for other things."""
     solid = geometry.ToBrep(False) if isinstance(geometry, rhino3dm.Extrusion) else geometry
-    if isinstance(solid, rhino3dm.Brep):
-        yield from (solid.Edges[k] for k in range(len(solid.Edges)))
+    return solid if isinstance(solid, rhino3dm.Brep) else None
 
 
 def _meshes(geometry: Any) -> Iterator[Any]:

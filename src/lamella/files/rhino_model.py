@@ -104,9 +104,11 @@ class RhinoObject:
     on_page : bool
         In a layout, not in the model.
     curves : tuple of RhinoCurve
-        Of "curves": the curve itself, or all edges of a Brep or an extrusion.
+        Of "curves": the curve itself, or the naked edges of a Brep or an extrusion.
     meshes : tuple of RhinoMesh
         Of "meshes": the mesh itself, or render meshes of faces.
+    faces : int
+        Of "curves": number of faces of a Brep or an extrusion.
     block : str
         Of an instance: id of its definition.
     transform : (4, 4)
@@ -124,6 +126,7 @@ class RhinoObject:
     on_page: bool
     curves: tuple[RhinoCurve, ...]
     meshes: tuple[RhinoMesh, ...]
+    faces: int
     block: str
     transform: Floats
 

@@ -17,7 +17,7 @@ from lamella.surface.boundary.tables import boundary_loops
 from lamella.surface.element.placing import rim_parameters
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.film import Film
-from lamella.surface.found.find import find_film, notes_on
+from lamella.surface.found.find import find_film, notes_on, remarks_on
 from lamella.surface.found.loop_path import BreakError, along_loops
 from lamella.surface.found.newton import Equilibrium
 from lamella.surface.points import Complexes, Floats
@@ -59,8 +59,9 @@ class Films:
     def found(self, shares: Floats, tolerance: float) -> FilmNet:
         """The film of some shares from nothing, to a tolerance."""
         table = self.freedom.changed(shares)
+        loops = boundary_loops(table, self.folder)
         found = find_film(
-            boundary_loops(table, self.folder),
+            loops,
             table.mean_curvature or 0.0,
             volume=table.volume,
             order=table.order,
@@ -68,7 +69,7 @@ class Films:
             branch=table.branch,
             most_nodes=table.most_nodes,
         )
-        notes = notes_on(found, given_curvature=table.volume is None)
+        notes = remarks_on(loops) + notes_on(found, given_curvature=table.volume is None)
         surface = found.surface("form-found", notes, tolerance=table.tolerance)
         return FilmNet.of(shares, found.equilibrium, surface, self.pattern)
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from imported_meshes import disc, grid, triangles
 
-from lamella.surface.imported.border import border_curve, border_curves, find_corners, turning_angles
+from lamella.surface.boundary.corners import find_corners, turning_angles
+from lamella.surface.imported.border import border_curve, border_curves
 from lamella.surface.imported.clean import clean
 from lamella.surface.imported.raw_mesh import RawMesh
 from lamella.surface.imported.zigzag import is_zigzag

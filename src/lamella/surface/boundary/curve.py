@@ -74,6 +74,8 @@ class Loop:
         Which corners are none to the eye: only the curvature's derivative jumps there, and a film's curvature is
         bounded.
     slides : tuple of Slide
+    remarks : tuple of str
+        What was done to a curve of a file.
     """
 
     name: str
@@ -82,6 +84,7 @@ class Loop:
     turns: Floats
     smooth: NDArray[np.bool_]
     slides: tuple[Slide, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     @property
     def length(self) -> float:
@@ -136,7 +139,15 @@ class Loop:
             start = (1.0 - slide.end) % 1.0
             slides.append(replace(slide, start=start, end=start + slide.end - slide.start))
         pieces = self.course.pieces.reversed().transformed(1.0, self.course.origin)
-        return Loop(self.name, Course(pieces), corners[order], self.turns[order], self.smooth[order], tuple(slides))
+        return Loop(
+            self.name,
+            Course(pieces),
+            corners[order],
+            self.turns[order],
+            self.smooth[order],
+            tuple(slides),
+            self.remarks,
+        )
 
     def scaled(self, factor: float, shift: ArrayLike = (0.0, 0.0, 0.0)) -> Loop:
         """The loop of the points factor x + shift, factor > 0, shift (3,) in m."""
@@ -169,7 +180,14 @@ class Sliding:
     direction: Floats | None = None
 
 
-def make_loop(name: str, pieces: Pieces, sliding: Sequence[Sliding] = (), *, where: str = "") -> Loop:
+def make_loop(
+    name: str,
+    pieces: Pieces,
+    sliding: Sequence[Sliding] = (),
+    *,
+    remarks: tuple[str, ...] = (),
+    where: str = "",
+) -> Loop:
     """A loop from pieces that join end to end, the last one with the first.
 
     Parameters
@@ -178,6 +196,8 @@ def make_loop(name: str, pieces: Pieces, sliding: Sequence[Sliding] = (), *, whe
     pieces : Pieces
         m.
     sliding : sequence of Sliding, optional
+    remarks : tuple of str, optional
+        What was done to the curve.
     where : str, optional
         Key for messages.
 
@@ -223,7 +243,7 @@ def make_loop(name: str, pieces: Pieces, sliding: Sequence[Sliding] = (), *, whe
         )
         for part in sliding
     )
-    return Loop(name, course, joints[:-1][kept], turn[kept], knot[kept], slides)
+    return Loop(name, course, joints[:-1][kept], turn[kept], knot[kept], slides, remarks)
 
 
 def _check_moving(called: str, course: Course, where: str) -> None:

@@ -14,17 +14,20 @@ SAVE_AGAIN = "open it in CAD, run its AUDIT or RECOVER command and save it again
 
 
 def open_dxf(path: Path, where: str) -> Any:
-    """The drawing of a file, as the library has it.
+    """The drawing of a file, as the library's recovering reader has it, which decodes its names too.
 
     Raises
     ------
     InputError
         No DXF file, or a damaged one.
     """
-    import ezdxf
+    from ezdxf import recover
 
+    if b"ENTITIES" not in path.read_bytes():
+        # the recovering reader makes an empty drawing of anything
+        raise InputError(f"{path} cannot be read as DXF: it has no section ENTITIES", SAVE_AGAIN, where)
     with dxf_damage(str(path), where):
-        return ezdxf.readfile(path)
+        return recover.readfile(path)[0]
 
 
 @contextlib.contextmanager

@@ -17,6 +17,9 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+_ROUNDING = 1e-9
+"""Of a curve's size: ends further apart have a gap."""
+
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
@@ -139,11 +142,27 @@ class Pieces:
         turned = x if turn is None else x @ turn.T
         return Pieces(np.concatenate([factor * turned + w * shift, w], axis=-1))
 
+    def mapped(self, matrix: Floats) -> Pieces:
+        """The image of the curve under an affine map (4, 4) of columns (x, y, z, 1): exact, whatever it shears."""
+        w, x = self.controls[..., 3:], self.controls[..., :3]
+        return Pieces(np.concatenate([x @ matrix[:3, :3].T + w * matrix[:3, 3], w], axis=-1))
+
     def from_to(self, start: Floats, end: Floats) -> Pieces:
-        """The curve with its very first and last point moved, to close gaps of rounding."""
-        controls = self.controls.copy()
-        controls[0, 0, :3] = start * controls[0, 0, 3]
-        controls[-1, -1, :3] = end * controls[-1, -1, 3]
+        """The curve with its very first and last point moved, to close gaps.
+
+        Straight pieces stay straight. Where a curved piece is moved by more than rounding, it is moved with its first
+        and second derivative there and stays as it is at its other end: no tangent turns and no curvature jumps for it.
+        """
+        moves = start - self.starts[0], end - self.ends[-1]
+        if self.degree == 1 or max(np.linalg.norm(move) for move in moves) <= _ROUNDING * self.extent:
+            controls = self.controls.copy()
+            controls[0, 0, :3] = start * controls[0, 0, 3]
+            controls[-1, -1, :3] = end * controls[-1, -1, 3]
+            return Pieces(controls)
+        # of degree 5 the first three control points hold position, tangent and curvature of one end
+        controls = self.raised(5).controls.copy()
+        controls[0, :3, :3] += controls[0, :3, 3:] * moves[0]
+        controls[-1, -3:, :3] += controls[-1, -3:, 3:] * moves[1]
         return Pieces(controls)
 
 

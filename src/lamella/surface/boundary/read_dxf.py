@@ -1,8 +1,12 @@
-"""Curves of a DXF drawing's model space, exactly."""
+"""Curves of a DXF drawing's model space, and of the blocks put there, exactly."""
 
 from __future__ import annotations
 
 import math
+import re
+import unicodedata
+from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +15,7 @@ import numpy as np
 from lamella.errors import InputError
 from lamella.surface.boundary.arcs import bulge_arc, ellipse_arc
 from lamella.surface.boundary.dxf_document import dxf_damage, open_dxf
-from lamella.surface.boundary.file_curves import FileCurve
+from lamella.surface.boundary.file_curves import CurveFile, FileCurve
 from lamella.surface.boundary.pieces import Floats, Pieces, lines, stack
 from lamella.surface.boundary.splines import bezier, closed_spline, open_spline
 from lamella.wording import cut
@@ -24,10 +28,36 @@ _SPLINE_FRAME = 16
 """Flag of a vertex that is a control point, which the polyline does not run through."""
 
 
-def read_dxf(path: Path, where: str) -> tuple[list[FileCurve], float | None]:
-    """Curves of the model space, and metres per unit by $INSUNITS (None: unitless).
+_MOST_NESTED, _MOST_CURVES = 16, 100_000
+"""Blocks within blocks, and curves of a drawing: more are a mistake, and would take for ever."""
 
-    Curves inside blocks are left out.
+# what a drawing holds that is no curve, as the trade calls it
+_OTHERS = {
+    "3DFACE": "3DFACE",
+    "HATCH": "hatch",
+    "3DSOLID": "solid",
+    "BODY": "solid",
+    "REGION": "region",
+    "SURFACE": "surface",
+    "EXTRUDEDSURFACE": "surface",
+    "LOFTEDSURFACE": "surface",
+    "REVOLVEDSURFACE": "surface",
+    "SWEPTSURFACE": "surface",
+    "PLANESURFACE": "surface",
+    "MESH": "mesh",
+    "POLYLINE": "polyface mesh",
+    "TEXT": "text",
+    "MTEXT": "text",
+    "DIMENSION": "dimension",
+    "POINT": "point",
+    "SOLID": "filled area",
+    "XLINE": "endless line",
+    "RAY": "endless line",
+}
+
+
+def read_dxf(path: Path, where: str) -> CurveFile:
+    """What the model space of a drawing holds, block instances included, and metres per unit by $INSUNITS.
 
     Raises
     ------
@@ -35,19 +65,107 @@ def read_dxf(path: Path, where: str) -> tuple[list[FileCurve], float | None]:
         No DXF file.
     """
     drawing = open_dxf(path, where)
-    curves = []
+    reading = _Reading(drawing, path, where)
     with dxf_damage(str(path), where):
-        for entity in drawing.modelspace():
-            layer = str(entity.dxf.get("layer", ""))
-            about = f"{path}: {entity.dxftype()} {entity.dxf.handle} on layer {cut(layer, 40)!r}"
-            with dxf_damage(about, where):
+        reading.read(drawing.modelspace(), np.eye(4), None, "", 0)
+        for layout in drawing.layouts:
+            if layout.is_any_paperspace:
+                kinds = [entity.dxftype() for entity in layout]
+                drawn = sum(kind in _CURVES or kind == "INSERT" for kind in kinds)
+                reading.others.update({"paper space curve": drawn} if drawn else {})
+        metres = _METRES.get(int(drawing.header.get("$INSUNITS", 0)))
+    return CurveFile(tuple(reading.curves), metres, others=reading.others)
+
+
+class _Reading:
+    """Curves of a drawing, gathered from its model space and its blocks."""
+
+    def __init__(self, drawing: Any, path: Path, where: str) -> None:
+        self._drawing, self._path, self._where = drawing, path, where
+        self.curves: list[FileCurve] = []
+        self.others: Counter[str] = Counter()
+
+    def read(self, entities: Iterable[Any], matrix: Floats, inherited: str | None, ids: str, depth: int) -> None:
+        """Add what is drawn in model space or in a block.
+
+        Parameters
+        ----------
+        entities : iterable
+        matrix : (4, 4)
+            Where the block is put.
+        inherited : str or None
+            Layer of the instance, which entities on layer 0 of its block are on; None: model space.
+        ids : str
+            Handles of the instances, each followed by a slash.
+        depth : int
+            Number of instances.
+        """
+        for entity in entities:
+            layer = str(entity.dxf.get("layer", "0"))
+            layer = inherited if inherited is not None and layer == "0" else layer
+            if entity.dxftype() == "INSERT":
+                self._instance(entity, matrix, layer, ids, depth)
+                continue
+            about = f"{self._path}: {entity.dxftype()} {entity.dxf.handle} on layer {cut(plain(layer), 40)!r}"
+            with dxf_damage(about, self._where):
                 try:
                     pieces = _pieces(entity)
                 except InputError as error:
-                    raise InputError(f"{about}: {error.message}", error.remedy, where) from None
-                if pieces is not None and np.isfinite(pieces.controls).all():
-                    curves.append(FileCurve(layer, (str(entity.dxf.handle),), entity.dxftype(), pieces))
-        return curves, _METRES.get(int(drawing.header.get("$INSUNITS", 0)))
+                    raise InputError(f"{about}: {error.message}", error.remedy, self._where) from None
+            if pieces is None:
+                self.others[_OTHERS.get(entity.dxftype(), entity.dxftype())] += 1
+            elif np.isfinite(pieces.controls).all():
+                if len(self.curves) >= _MOST_CURVES:
+                    limit = f"{self._path} holds more than {_MOST_CURVES:,} curves"
+                    raise InputError(limit, "save the boundary alone", self._where)
+                pieces = pieces.mapped(matrix) if depth else pieces
+                handle = str(entity.dxf.handle)
+                names = (ids + handle, handle, *ids.split("/")[:-1]) if depth else (handle,)
+                hidden = self._hidden(entity, layer)
+                self.curves.append(FileCurve(plain(layer), names, entity.dxftype(), pieces, hidden))
+
+    def _instance(self, instance: Any, matrix: Floats, layer: str, ids: str, depth: int) -> None:
+        block = self._drawing.blocks.get(instance.dxf.get("name", ""))
+        if block is None or depth >= _MOST_NESTED:
+            self.others["block instance"] += 1
+            return
+        if block.block is not None and block.block.is_xref:
+            self.others["external reference"] += 1
+            return
+        before = len(self.curves)
+        for number, one in enumerate(instance.multi_insert() if instance.mcount > 1 else [instance]):
+            # the library's points are rows
+            put = one.matrix44()
+            here = matrix @ np.array([put.get_row(row) for row in range(4)], float).T
+            place = f"{instance.dxf.handle}{f'.{number + 1}' if instance.mcount > 1 else ''}/"
+            self.read(block, here, layer, ids + place, depth + 1)
+        if len(self.curves) == before:
+            self.others["block instance"] += 1
+
+    def _hidden(self, entity: Any, layer: str) -> str:
+        if entity.dxf.get("invisible", 0):
+            return "the object is hidden"
+        if layer not in self._drawing.layers:
+            return ""
+        about = self._drawing.layers.get(layer)
+        if about.is_frozen():
+            return "its layer is frozen"
+        return "its layer is off" if about.is_off() else ""
+
+
+def plain(name: str) -> str:
+    """A name as CAD shows it: with its \\U+XXXX and %% escapes decoded."""
+    name = re.sub(r"\\U\+([0-9A-Fa-f]{4})", lambda found: chr(int(found[1], 16)), name)
+    signs = {"d": "\u00b0", "c": "\u00d8", "p": "\u00b1", "%": "%"}
+
+    def sign(found: re.Match[str]) -> str:
+        code = found[1].lower()
+        return chr(int(code)) if code.isdigit() else signs[code]
+
+    return unicodedata.normalize("NFC", re.sub(r"%%(\d{3}|[dcpDCP%])", sign, name))
+
+
+_CURVES = ("LINE", "CIRCLE", "ARC", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE")
 
 
 def _pieces(entity: Any) -> Pieces | None:

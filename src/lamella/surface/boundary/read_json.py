@@ -20,9 +20,10 @@ from typing import Any
 
 import orjson
 
+from lamella.byte_order import unmarked
 from lamella.errors import InputError
 from lamella.project import Refusal, read_points
-from lamella.surface.boundary.file_curves import FileCurve
+from lamella.surface.boundary.file_curves import CurveFile, FileCurve
 from lamella.surface.boundary.pieces import lines
 from lamella.surface.boundary.point_list import clean_points
 from lamella.surface.boundary.splines import closed_spline
@@ -32,7 +33,7 @@ from lamella.wording import cut, shown
 _REMEDY = 'write {"unit": "m", "curves": {"NAME": {"points": [[x, y, z], ...]}}}'
 
 
-def read_json(path: Path, where: str) -> tuple[list[FileCurve], float | None]:
+def read_json(path: Path, where: str) -> CurveFile:
     """Closed curves by name, and metres per unit (None: not given).
 
     Raises
@@ -41,7 +42,7 @@ def read_json(path: Path, where: str) -> tuple[list[FileCurve], float | None]:
         Anything that is not as above, with the curve's name.
     """
     try:
-        content = orjson.loads(path.read_bytes())
+        content = orjson.loads(unmarked(path.read_bytes()))
     except orjson.JSONDecodeError as error:
         raise InputError(f"{path} is not valid JSON: {cut(str(error), 120)}", _REMEDY, where) from None
     given = content.get("curves") if isinstance(content, dict) else None
@@ -53,8 +54,8 @@ def read_json(path: Path, where: str) -> tuple[list[FileCurve], float | None]:
     unit = content.get("unit")
     if unit is not None and not (isinstance(unit, str) and unit in METRES):
         raise InputError(f"{path}: unit {shown(unit)} is not one of {', '.join(METRES)}", "write one of them", where)
-    curves = [_curve(path, name, curve, where) for name, curve in given.items()]
-    return curves, None if unit is None else METRES[unit]
+    curves = tuple(_curve(path, name, curve, where) for name, curve in given.items())
+    return CurveFile(curves, None if unit is None else METRES[unit])
 
 
 def _curve(path: Path, name: str, given: Any, where: str) -> FileCurve:

@@ -11,14 +11,15 @@ from scipy.spatial.transform import Rotation
 from lamella.errors import InputError
 from lamella.surface.boundary.arcs import arc_through, circle
 from lamella.surface.boundary.checks import check_loops
+from lamella.surface.boundary.choosing import choose_loop
 from lamella.surface.boundary.curve import Loop, Sliding, make_loop
-from lamella.surface.boundary.file_curves import choose_loop
 from lamella.surface.boundary.joining import join_in_order
 from lamella.surface.boundary.pieces import Floats, Pieces, lines
 from lamella.surface.boundary.point_list import clean_points
 from lamella.surface.boundary.read_3dm import read_3dm
 from lamella.surface.boundary.read_dxf import read_dxf
 from lamella.surface.boundary.read_json import read_json
+from lamella.surface.boundary.smooth_polyline import smooth_curve, vertices
 from lamella.surface.boundary.splines import closed_spline, open_spline
 from lamella.surface.boundary.units import metres_per_unit
 
@@ -62,6 +63,7 @@ def _loop(table: BoundaryTable, folder: Path, where: str) -> Loop:
     if table.part is not None:
         loop = _composed(table.name, table.part, where)
         return loop if table.place is None else _placed(loop, table.place, where)
+    remarks: tuple[str, ...] = ()
     if table.circle is not None:
         ring = table.circle
         pieces = circle(np.array(ring.center), ring.radius, np.array(ring.normal))
@@ -70,9 +72,9 @@ def _loop(table: BoundaryTable, folder: Path, where: str) -> Loop:
         splined = table.interpolation == "spline"
         pieces = closed_spline(points, where=f"{where}.points") if splined else lines(points, closed=True)
     else:
-        pieces = _from_file(table, folder, f"{where}.file")
+        pieces, remarks = _from_file(table, folder, f"{where}.file")
     sliding = () if table.slide is None else (_sliding(table.slide, 0, pieces.count),)
-    loop = make_loop(table.name, pieces, sliding, where=where)
+    loop = make_loop(table.name, pieces, sliding, remarks=remarks, where=where)
     return loop if table.place is None else _placed(loop, table.place, where)
 
 
@@ -82,10 +84,12 @@ def _placed(loop: Loop, place: PlaceTable, where: str) -> Loop:
     turn = Rotation.from_rotvec(np.radians(place.turn)).as_matrix()
     # the pieces of a course are measured from its origin
     shift = middle + np.array(place.shift) + place.scale * turn @ (loop.course.origin - middle)
-    return make_loop(loop.name, loop.course.pieces.transformed(place.scale, shift, turn), where=where)
+    pieces = loop.course.pieces.transformed(place.scale, shift, turn)
+    return make_loop(loop.name, pieces, remarks=loop.remarks, where=where)
 
 
-def _from_file(table: BoundaryTable, folder: Path, where: str) -> Pieces:
+def _from_file(table: BoundaryTable, folder: Path, where: str) -> tuple[Pieces, tuple[str, ...]]:
+    """The curve of a file, m, and remarks on it."""
     assert table.file is not None
     path = folder / table.file
     suffix = path.suffix.lower()
@@ -103,13 +107,19 @@ def _from_file(table: BoundaryTable, folder: Path, where: str) -> Pieces:
             file.read(1)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}", "check its permissions", where) from None
-    curves, in_header = _READERS[suffix](path, where)
+    content = _READERS[suffix](path, where)
     try:
-        unit = metres_per_unit(table.unit, in_header, _HEADERS[suffix], where)
-        pieces = choose_loop(curves, table.layer, table.id, where, unit)
+        unit = metres_per_unit(table.unit, content.metres_per_unit, _HEADERS[suffix], where)
+        chosen = choose_loop(content, table.layer, table.id, where, unit)
+        pieces, remarks = chosen.pieces.transformed(unit, np.zeros(3)), chosen.remarks
+        # curves of a .json say themselves how their points are joined
+        corners = None if suffix == ".json" else vertices(pieces, table.interpolation, where)
+        if corners is not None:
+            pieces, remark = smooth_curve(corners, table.interpolation, where)
+            remarks += (remark,) if remark else ()
     except InputError as error:
         raise InputError(f"{path}: {error.message}", error.remedy, where) from None
-    return pieces.transformed(unit, np.zeros(3))
+    return pieces, remarks
 
 
 def _composed(name: str, tables: tuple[PartTable, ...], where: str) -> Loop:

@@ -23,11 +23,12 @@ from lamella.surface.found.self_crossing import self_crossing
 
 if TYPE_CHECKING:
     from lamella.project import FormFoundTable
+    from lamella.surface.boundary import Loop as BoundaryLoop
 
 # of the film's size: a film of the same mean curvature this near is told
 BESIDE = 0.02
 
-__all__ = ["Found", "adapted", "find_film", "notes_on", "surface_of_table"]
+__all__ = ["Found", "adapted", "find_film", "notes_on", "remarks_on", "surface_of_table"]
 
 
 def surface_of_table(table: FormFoundTable, folder: Path, progress: Progress = silent) -> ElementSurface:
@@ -47,6 +48,9 @@ def surface_of_table(table: FormFoundTable, folder: Path, progress: Progress = s
     from lamella.surface.boundary import boundary_loops
 
     loops = boundary_loops(table, folder)
+    remarks = remarks_on(loops)
+    for remark in remarks:
+        progress(f"  {remark}")
     found = find_film(
         loops,
         table.mean_curvature or 0.0,
@@ -57,8 +61,13 @@ def surface_of_table(table: FormFoundTable, folder: Path, progress: Progress = s
         most_nodes=table.most_nodes,
         progress=progress,
     )
-    notes = notes_on(found, given_curvature=table.volume is None)
+    notes = remarks + notes_on(found, given_curvature=table.volume is None)
     return found.surface("form-found", notes, tolerance=table.tolerance)
+
+
+def remarks_on(loops: tuple[BoundaryLoop, ...]) -> tuple[str, ...]:
+    """What was done to boundary curves when they were read."""
+    return tuple(f"the loop {loop.name!r}: {remark}" for loop in loops for remark in loop.remarks)
 
 
 def notes_on(found: Found, *, given_curvature: bool = True) -> tuple[str, ...]:

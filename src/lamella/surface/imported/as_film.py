@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 from scipy.spatial import cKDTree
 
 from lamella.errors import InputError
 from lamella.surface.boundary import Loop, make_loop
-from lamella.surface.boundary.joining import join_in_order
-from lamella.surface.boundary.splines import closed_spline, open_spline
+from lamella.surface.boundary.smooth_polyline import through_points
 from lamella.surface.element.remesh import TriangleMesh
 from lamella.surface.found.film import Film
 from lamella.surface.imported.border import BorderCurve, border_curves
@@ -33,15 +30,7 @@ def border_loops(mesh: CleanMesh, corner_angle: float) -> tuple[tuple[Loop, ...]
 
 def _loop(curve: BorderCurve, name: str) -> Loop:
     where = "surface.file"
-    corners = np.flatnonzero(curve.corner)
-    if not len(corners):
-        return make_loop(name, closed_spline(curve.points, where=where), where=where)
-    points = np.roll(curve.points, -corners[0], axis=0)
-    cuts = np.append(corners - corners[0], len(points))
-    closed = np.vstack([points, points[:1]])
-    parts = [open_spline(closed[a : b + 1], where=where) for a, b in pairwise(cuts)]
-    names = [f"{name}, side {k + 1}" for k in range(len(parts))]
-    return make_loop(name, join_in_order(parts, names, where), where=where)
+    return make_loop(name, through_points(curve.points, curve.corner, where), where=where)
 
 
 def as_film(mesh: CleanMesh, loops: tuple[Loop, ...]) -> Film:

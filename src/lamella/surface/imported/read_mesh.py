@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lamella.byte_order import unmarked
 from lamella.surface.imported.polygons import split_polygons
 from lamella.surface.imported.raw_mesh import MAXIMUM_FACES, Polygons, RawMesh, mesh_error
 from lamella.surface.imported.read_3dm import read_3dm
@@ -83,7 +84,8 @@ def _bytes(path: Path) -> bytes:
         raise mesh_error(f"{path} cannot be read: {reason.strerror}", "check the file and its permissions") from None
     if not data.strip():
         raise mesh_error(f"{path.name} is empty", "export the file again")
-    return data
+    # the words of a binary file may begin like a mark
+    return data if path.suffix.lower() in (".3dm", ".stl") else unmarked(data)
 
 
 def check_polygons(found: Polygons) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from lamella.surface.imported.noise import smooth_scatter
+from lamella.surface.boundary.scatter import smooth_scatter
 
 
 def circle(a):

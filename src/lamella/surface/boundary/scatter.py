@@ -12,7 +12,7 @@ from math import factorial
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.surface.imported.raw_mesh import Floats
+from lamella.surface.boundary.pieces import Floats
 
 FEWEST = 12
 """A stretch with fewer vertices says too little of what is scatter and what is meant."""
