@@ -106,7 +106,9 @@ def test_a_rhino_file_as_plain_data(rhino_file: bytes) -> None:
     (member,) = (item for item in model.objects if item.in_block)
     assert model.blocks[0].members == (member.id,)
     sphere = next(item for item in model.objects if item.kind == "Brep")
-    assert sphere.curves
+    # no edge of a closed surface is naked
+    assert not sphere.curves
+    assert sphere.faces == 1
     assert all(not item.meshes for item in model.objects)
 
 
