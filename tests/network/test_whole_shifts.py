@@ -200,7 +200,7 @@ def test_an_umbilic_next_to_the_rim(inside: float, joints: int, closing: Literal
     assert not np.isin(net.network.node_kinds, (SEAM, SINGULAR)).any()
     # a disc, but for a face of more than six corners around the umbilic, which takes a bite out of it
     assert euler(net.network) in (1 - len(net.network.faces_left_out), 1)
-    assert len(net.network.ids) >= 33
+    assert len(net.network.ids) >= 30
 
 
 def test_closest_vectors_are_those_of_all() -> None:

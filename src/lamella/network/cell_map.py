@@ -23,6 +23,9 @@ from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
 
+# of an element: nodes on the rim may lie this far beyond, within the surface's error
+BEYOND_RIM = 0.25
+
 
 @dataclass(frozen=True)
 class CellMap:
@@ -135,5 +138,5 @@ class CellMap:
             target[0, index], target[1, index] = after.real, after.imag
             turn[index] *= sign
 
-        places, found = find_places(self.mesh.connectivity, self._chi.jet, start, target, cross)
+        places, found = find_places(self.mesh.connectivity, self._chi.jet, start, target, cross, BEYOND_RIM)
         return places, np.where(found, turn, 1.0), found

@@ -14,6 +14,8 @@ Integers = NDArray[np.int64]
 
 # corners of a face that is written, and of one that is left out
 MOST_SIDES, MOST_CORNERS = 6, 12
+# radians
+ALONG_RIM = 0.3
 
 
 class Faces(NamedTuple):
@@ -84,8 +86,8 @@ def trace_faces(
     angle = np.arctan2(
         np.einsum("ij,ij->i", directions, sideways[tails]), np.einsum("ij,ij->i", directions, reference[tails])
     )
-    # on the rim every edge lies to the left of the way forward; -1e-6 is rounding of an edge along the rim
-    angle = np.where(angle < -1e-6, angle + 2 * np.pi, angle)
+    # on the rim every edge lies to the left of the way forward, but for edges along it of nodes that are next to it
+    angle = np.where(angle < -ALONG_RIM, angle + 2 * np.pi, angle)
 
     tail = np.r_[tails, free_tail, free_head]
     angle = np.r_[angle, np.full(len(free_tail), -1.0), np.full(len(free_tail), 7.0)]

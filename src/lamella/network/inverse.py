@@ -21,12 +21,14 @@ MOST_STEPS, MOST_HOPS = 40, 20
 FINE = 1e-12
 # local coordinates: the step after one as small as this is rounding, since the steps' sizes are squared
 SMALL = 1e-6
+# local coordinates; a place this far beyond an edge is on it
+ON_EDGE = 1e-6
 # values this near are there as well when the steps have run out
 NEAR = 1e-9
 
 
 def find_places(
-    connectivity: Connectivity, jet: Jet, start: Places, target: Floats, cross: Cross
+    connectivity: Connectivity, jet: Jet, start: Places, target: Floats, cross: Cross, beyond_rim: float = ON_EDGE
 ) -> tuple[Places, NDArray[np.bool_]]:
     """Places near given ones where the polynomials have their targets.
 
@@ -41,6 +43,8 @@ def find_places(
         Wanted values; `cross` may change them.
     cross : callable
         Is called with targets (k,), elements and local edges, before the search goes on beyond these edges.
+    beyond_rim : float
+        Local coordinates; as far beyond an edge of the rim a place still counts, on the element's own polynomials.
 
     Returns
     -------
@@ -55,7 +59,10 @@ def find_places(
     element, local = start.element.copy(), np.array(start.local.T)
 
     def settle(index: Integers, at: Integers, place: Floats) -> None:
-        inside = np.minimum(np.minimum(place[0], place[1]), 1 - place[0] - place[1]) > -1e-6
+        barycentric = np.stack([1 - place[0] - place[1], *place])
+        # the edge opposite a corner begins at the next one
+        rim = connectivity.neighbours.take(at, 0).T[[1, 2, 0]] < 0
+        inside = (barycentric > np.where(rim, -beyond_rim, -ON_EDGE)).all(0)
         if not inside.all():
             index, at, place = index[inside], at[inside], place[:, inside]
         found[index], result.element[index], result.local[index] = True, at, place.T

@@ -11,18 +11,22 @@ from numpy.typing import NDArray
 from lamella.blocks import blocks
 from lamella.errors import InputError
 from lamella.network.cell_map import CellMap
+from lamella.network.crossings import Crossings, find_crossings
 from lamella.network.element_arcs import ElementArcs
 from lamella.network.element_segments import ElementSegments
 from lamella.network.faces import trace_faces
 from lamella.network.lattice import ragged_ranges
 from lamella.network.level_lines import (
     CLOSED,
+    RIM,
     SEAM_END,
     SINGULAR_END,
     level_chains,
     small_triangles,
 )
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network, Period
+from lamella.network.numbering import numbered, rim_places
+from lamella.network.rim_ends import Ends, along_rim, settled_ends, within_tips
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
 from lamella.network.tracks import A, B, Tracks, make_tracks, rim_tips, singular_ends
 from lamella.network.turning import turning
@@ -30,7 +34,7 @@ from lamella.sparse import counted
 from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
 from lamella.surface.element.polynomials import Polynomials
-from lamella.surface.element.rim import element_rims
+from lamella.surface.element.rim import ElementRim, element_rims
 from lamella.surface.points import Floats
 from lamella.surface.vectors import crosses, dots, images, lengths
 
@@ -51,46 +55,27 @@ class _Stops:
     kinds: Integers  # of the nodes
 
 
-def _crossings(tracks: Tracks, alive: NDArray[np.bool_]) -> tuple[Integers, Floats, Integers]:
-    """Chain, tau and name of every whole number passed by a living chain whose partner lives as well."""
-    end = tracks.start + tracks.way * tracks.span
-    low, high = np.minimum(tracks.start, end), np.maximum(tracks.start, end)
-    first, last = np.floor(low).astype(np.int64) + 1, np.ceil(high).astype(np.int64) - 1
-    count = np.where(alive[tracks.owner], np.maximum(last - first + 1, 0), 0)
-    link = np.repeat(np.arange(len(count)), count)
-    whole = first[link] + ragged_ranges(count)
-    is_a = tracks.family[tracks.owner[link]] == A
-    levels = [np.where(is_a, tracks.level[link], whole), np.where(is_a, whole, tracks.level[link])]
-    parts = [tracks.triangle[link], *(level - level.min(initial=0) for level in levels)]
-    name = np.ravel_multi_index(parts, [int(part.max(initial=0)) + 1 for part in parts])
-    _, number = np.unique(name, return_inverse=True)
-    both = (np.bincount(number[is_a], minlength=number.max(initial=-1) + 1) == 1) & (
-        np.bincount(number[~is_a], minlength=number.max(initial=-1) + 1) == 1
-    )
-    kept = both[number]
-    tau = tracks.tau[link] + np.abs(whole - tracks.start[link])
-    return tracks.owner[link][kept], tau[kept], number[kept]
-
-
-def _stops(tracks: Tracks, alive: NDArray[np.bool_], singular: Integers, tips: Floats) -> _Stops:
-    """All stops of living chains; `singular` (c, 2) is the umbilic at each end, `tips` (c, 2) the exact tau there."""
-    chain, tau, name = _crossings(tracks, alive)
+def _stops(tracks: Tracks, crossings: Crossings, singular: Integers, ends: Ends) -> _Stops:
+    """All stops of the chains; `singular` (c, 2) is the umbilic at each end."""
+    nodes, chains = len(ends.boundary), len(tracks.family)
     closed = tracks.ends[:, 0] == CLOSED
-    nodes = int(name.max(initial=-1)) + 1
-    parts = [(chain, tau, name, np.full(len(chain), REGULAR))]
-    umbilics = int(singular.max(initial=-1)) + 1
+    kind_there = np.where(ends.boundary, BOUNDARY, REGULAR)
+    parts = [(crossings.chain.ravel(), crossings.tau.ravel(), np.tile(np.arange(nodes), 2), np.tile(kind_there, 2))]
+    shared = nodes + ends.shared
+    own = shared + int(singular.max(initial=-1)) + 1
     for side in range(2):
-        mine = np.flatnonzero(alive & ~closed)
-        kind = tracks.ends[mine, side]
-        own = nodes + umbilics + np.arange(len(mine)) + side * len(tracks.family)
-        node = np.where(kind == SINGULAR_END, nodes + singular[mine, side], own)
+        # where a crossing is the end it is a stop already
+        mine = np.flatnonzero(~closed & ((ends.node[:, side] < 0) | (ends.node[:, side] >= nodes)))
+        kind, name = tracks.ends[mine, side], ends.node[mine, side]
+        name = np.where(name >= 0, name, own + mine + side * chains)
+        name = np.where(kind == SINGULAR_END, shared + singular[mine, side], name)
         told = np.where(kind == SINGULAR_END, SINGULAR, np.where(kind == SEAM_END, SEAM, BOUNDARY))
-        parts.append((mine, tips[mine, side], node, told))
+        parts.append((mine, ends.tips[mine, side], name, told))
     chain, tau, node, kind = (np.concatenate(column) for column in zip(*parts, strict=True))
     order = np.lexsort((tau, chain))
     chain, tau, node, kind = chain[order], tau[order], node[order], kind[order]
     # a closed lamella begins at its first node and comes back to it
-    looped = [k for k in np.flatnonzero(alive & closed).tolist() if (chain == k).any()]
+    looped = [k for k in np.flatnonzero(closed).tolist() if (chain == k).any()]
     for k in looped:
         at = np.flatnonzero(chain == k)
         whole = tracks.tau[tracks.last[k]] + tracks.span[tracks.last[k]]
@@ -145,32 +130,26 @@ def trace_elements(
         No two lamellas cross, or the net is too coarse.
     """
     small = small_triangles(cells, cut, cells.mesh.umbilics[cells.mesh.umbilics >= 0])
-    tracks = make_tracks(small, (level_chains(small, cells, A), level_chains(small, cells, B)))
+    found = make_tracks(small, (level_chains(small, cells, A), level_chains(small, cells, B)))
+    rims = element_rims(cells.mesh.connectivity, cells.mesh.nodes, rim_loop)
+    length, median = _lengths(cells, found)
+    short = length < minimum_length * median
+    tracks, on_rim = _kept(cells, rims, found, ~short)
     chains = len(tracks.family)
     singular = singular_ends(cells, tracks)
-    tips = rim_tips(cells, tracks)
-    begin = cells.positions(Places(tracks.element, tracks.local_start))
-    # every link ends where the next one begins, but for the last ones
-    end = np.roll(begin, -1, 0)
-    end[tracks.last] = cells.positions(Places(tracks.element[tracks.last], tracks.local_end[tracks.last]))
-    rough = lengths(end - begin)
-    length = np.bincount(tracks.owner, rough, chains)
-    alive = np.ones(chains, bool)
-    median = np.median(rough / np.maximum(tracks.span, 1e-12)) if len(rough) else 0.0
-    alive &= length >= minimum_length * median
-    stops = _stops(tracks, alive, singular, tips)
+    crossings, rim_ends = _settled(cells, tracks)
+    stops = _stops(tracks, crossings, singular, rim_ends)
     if not (stops.kinds == REGULAR).any():
-        short = int((~alive).sum())
-        if short:
+        if short.any():
             raise InputError(
-                f"no two lamellas cross: {short} of {chains} are shorter than minimum_length = {minimum_length:g} "
-                f"median cell edges of {median:.3g} m, the longest one has {length.max() / median:.2g}",
+                f"no two lamellas cross: {short.sum()} of {len(short)} are shorter than minimum_length = "
+                f"{minimum_length:g} median cell edges of {median:.3g} m, the longest has {length.max() / median:.2g}",
                 "lower network.minimum_length, or raise network.cells",
                 "network.minimum_length",
             )
         raise InputError(
             f"no two lamellas cross: with {count} cells the longest one runs over "
-            f"{np.bincount(tracks.owner, tracks.span, chains).max(initial=0.0):.2g} cells",
+            f"{np.bincount(found.owner, found.span, len(short)).max(initial=0.0):.2g} cells",
             "raise network.cells, or lower network.spacing",
             "network.cells",
         )
@@ -227,7 +206,7 @@ def trace_elements(
     node_sample = np.empty(len(nodes), np.int64)
     node_sample[at[::-1]] = stop_sample[::-1]
     kinds = stops.kinds[nodes]
-    loops, rim_directions = _rims(cells, rim_loop, places, node_sample, kinds)
+    loops, rim_directions = _rims(cells, rims, tracks, stops, rim_ends, nodes)
     starts, ends = stop_sample[first_stop], stop_sample[first_stop + 1]
     tails, heads = at[first_stop], at[first_stop + 1]
     faces = trace_faces(
@@ -246,7 +225,7 @@ def trace_elements(
         step=cells.step,
         cells=count,
         periods=periods,
-        left_out=int(chains - len(used)),
+        left_out=int(len(short) - on_rim - len(used)),
         node_points=points[node_sample],
         node_normals=normals[node_sample],
         node_kinds=kinds,
@@ -293,28 +272,59 @@ def _frames(cells: CellMap, places: Places, directions: Floats) -> tuple[Floats,
 
 
 def _rims(
-    cells: CellMap, rim_loop: Integers, places: Places, node_sample: Integers, kinds: Integers
+    cells: CellMap,
+    rims: tuple[ElementRim, ...],
+    tracks: Tracks,
+    stops: _Stops,
+    ends: Ends,
+    nodes: Integers,
 ) -> tuple[list[Integers], Floats]:
-    """Boundary nodes of each loop in order, and the rim's direction at all nodes."""
-    mesh = cells.mesh
-    rims = element_rims(mesh.connectivity, mesh.nodes, rim_loop)
-    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-    boundary = np.flatnonzero(kinds == BOUNDARY)
-    at = Places(places.element[node_sample[boundary]], places.local[node_sample[boundary]])
-    barycentric = np.column_stack([1 - at.local.sum(1), at.local])
-    barycentric[mesh.connectivity.neighbours[at.element[:, None], (np.arange(3) + 1) % 3] >= 0] = np.inf
-    edge = (barycentric.argmin(1) + 1) % 3
-    along = corners[(edge + 1) % 3] - corners[edge]
-    share = ((at.local - corners[edge]) * along).sum(1) / (along**2).sum(1)
-    _, first, second = cells.tangents(at)
-    directions = np.zeros((len(kinds), 3))
-    directions[boundary] = along[:, :1] * first + along[:, 1:] * second
-    directions[boundary] /= lengths(directions[boundary])[:, None]
-    vertex = mesh.connectivity.faces[at.element, edge]
-    loops = []
-    for rim in rims:
-        order = np.full(len(mesh.loop), -1)
-        order[rim.vertices] = np.arange(len(rim.vertices))
-        mine = np.flatnonzero(order[vertex] >= 0)
-        loops.append(boundary[mine[np.lexsort((share[mine], order[vertex[mine]]))]])
-    return loops, directions
+    """Boundary nodes of each loop in order, and the rim's direction at all nodes: from where lamellas meet it."""
+    chain, side = np.nonzero(tracks.ends == RIM)
+    first = np.searchsorted(stops.chain, np.arange(len(tracks.family)))
+    last = np.searchsorted(stops.chain, np.arange(len(tracks.family)), side="right") - 1
+    node = stops.node[np.where(side == 0, first[chain], last[chain])]
+    # each node once, where it is one of the net
+    there = np.isin(node, nodes)
+    node, at = np.unique(node[there], return_index=True)
+    loop, place, direction = rim_places(cells, rims, ends.places[(2 * chain + side)[there][at]])
+    number = np.searchsorted(nodes, node)
+    directions = np.zeros((len(nodes), 3))
+    directions[number] = direction
+    order = np.lexsort((place, loop))
+    return [number[order[loop[order] == k]] for k in range(len(rims))], directions
+
+
+def _lengths(cells: CellMap, tracks: Tracks) -> tuple[Floats, float]:
+    """Rough lengths of the chains, m, (c,), and the median length of a cell, alike on fine and coarse elements."""
+    begin = cells.positions(Places(tracks.element, tracks.local_start))
+    # every link ends where the next one begins, but for the last ones
+    end = np.roll(begin, -1, 0)
+    end[tracks.last] = cells.positions(Places(tracks.element[tracks.last], tracks.local_end[tracks.last]))
+    rough = lengths(end - begin)
+    if not len(rough):
+        return np.zeros(0), 0.0
+    edge = rough / np.maximum(tracks.span, 1e-12)
+    order = np.argsort(edge)
+    share = np.cumsum(tracks.span[order])
+    median = float(edge[order[np.searchsorted(share, share[-1] / 2)]])
+    return np.asarray(np.bincount(tracks.owner, rough, len(tracks.family)), np.float64), median
+
+
+def _kept(cells: CellMap, rims: tuple[ElementRim, ...], tracks: Tracks, long: NDArray[np.bool_]) -> tuple[Tracks, int]:
+    """The chains that are lamellas, in order; and how many others are the rim."""
+    crossings = find_crossings(tracks)
+    crossings = crossings.of(long)
+    tips, _ = rim_tips(cells, tracks)
+    beam = along_rim(cells, rims, tracks, tips, crossings.take(within_tips(tracks, tips, crossings)))
+    kept = long & ~beam
+    crossings = crossings.of(kept)
+    return numbered(cells, rims, tracks, crossings, np.flatnonzero(kept)), int((long & beam).sum())
+
+
+def _settled(cells: CellMap, tracks: Tracks) -> tuple[Crossings, Ends]:
+    """Crossings, and how the chains end on the rim."""
+    tips, places = rim_tips(cells, tracks)
+    crossings = find_crossings(tracks)
+    crossings = crossings.take(within_tips(tracks, tips, crossings))
+    return crossings, settled_ends(cells, tracks, tips, places, crossings)

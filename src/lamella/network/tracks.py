@@ -47,6 +47,47 @@ class Tracks:
         """Last link of each chain."""
         return np.searchsorted(self.owner, np.arange(len(self.family)), side="right") - 1
 
+    @cached_property
+    def links(self) -> Integers:
+        """Number of links of each chain."""
+        return self.last - self.first + 1
+
+    def arranged(self, chains: Integers, backward: NDArray[np.bool_], rolled: Integers) -> Tracks:
+        """Some of the chains in another order.
+
+        Parameters
+        ----------
+        chains : (c,) int
+        backward : (c,) bool
+            Which of these run the other way.
+        rolled : (c,) int
+            Which link of each goes first; on a chain that does not close the first or the last one.
+        """
+        first, count = self.first[chains], self.links[chains]
+        owner = np.repeat(np.arange(len(chains)), count)
+        place = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+        back = backward[owner]
+        place = np.where(back, rolled[owner] - place, rolled[owner] + place)
+        link = first[owner] + place % count[owner]
+        end = self.start + self.way * self.span
+        span = self.span[link]
+        running = np.cumsum(span) - span
+        begin = np.searchsorted(owner, np.arange(len(chains)))
+        return Tracks(
+            self.family[chains],
+            np.where(backward[:, None], self.ends[chains][:, ::-1], self.ends[chains]),
+            owner,
+            self.triangle[link],
+            self.level[link],
+            np.where(back, end[link], self.start[link]),
+            np.where(back, -self.way[link], self.way[link]),
+            running - running[begin][owner] if len(begin) else running,
+            span,
+            np.where(back[:, None], self.local_end[link], self.local_start[link]),
+            np.where(back[:, None], self.local_start[link], self.local_end[link]),
+            self.element[link],
+        )
+
 
 def make_tracks(small: SmallTriangles, chains: tuple[Chains, Chains]) -> Tracks:
     """Chains of the families A and B with their running coordinate."""
@@ -91,14 +132,16 @@ def singular_ends(cells: CellMap, tracks: Tracks) -> Integers:
     return result
 
 
-def rim_tips(cells: CellMap, tracks: Tracks) -> Floats:
-    """Exact tau of the chains' ends on the rim, (c, 2): where the boundary edge has the chain's level."""
+def rim_tips(cells: CellMap, tracks: Tracks) -> tuple[Floats, Places]:
+    """Exact tau of the chains' ends, (c, 2), where the boundary edge has the chain's level, and their places (2 c)."""
     last = tracks.last
     tips = np.stack([np.zeros(len(last)), tracks.tau[last] + tracks.span[last]], 1)
-    for side, (link, local) in enumerate(((tracks.first, tracks.local_start), (last, tracks.local_end))):
+    local = np.stack([tracks.local_start[tracks.first], tracks.local_end[last]], 1)
+    for side, link in enumerate((tracks.first, last)):
         mine = np.flatnonzero((tracks.ends[:, side] != SINGULAR_END) & (tracks.ends[:, side] != CLOSED))
-        tips[mine, side] = _on_edges(cells, tracks, link[mine], local[link[mine]])
-    return tips
+        tips[mine, side], local[mine, side] = _on_edges(cells, tracks, link[mine], local[mine, side])
+    element = tracks.element[np.stack([tracks.first, last], 1)]
+    return tips, Places(element.ravel(), local.reshape(-1, 2))
 
 
 def passages(cells: CellMap, tracks: Tracks) -> tuple[Integers, Floats]:
@@ -112,15 +155,15 @@ def passages(cells: CellMap, tracks: Tracks) -> tuple[Integers, Floats]:
     link = np.flatnonzero(tracks.element != tracks.element[following])
     # element by element they are found sooner
     link = link[np.argsort(tracks.element[link], kind="stable")]
-    tau = _on_edges(cells, tracks, link, tracks.local_end[link])
+    tau, _ = _on_edges(cells, tracks, link, tracks.local_end[link])
     chain = tracks.owner[link]
     again = closed[chain]
     last = tracks.last[chain[again]]
     return np.r_[chain, chain[again]], np.r_[tau, tau[again] + tracks.tau[last] + tracks.span[last]]
 
 
-def _on_edges(cells: CellMap, tracks: Tracks, link: Integers, local: Floats) -> Floats:
-    """Exact tau of places (n, 2) of links on edges of their elements: where the edge has the chain's level."""
+def _on_edges(cells: CellMap, tracks: Tracks, link: Integers, local: Floats) -> tuple[Floats, Floats]:
+    """Exact tau (n,) and place (n, 2) of places (n, 2) of links on edges: where the edge has the chain's level."""
     basis = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     barycentric = np.column_stack([1 - local.sum(1), local])
     edge = (barycentric.argmin(1) + 1) % 3
@@ -135,6 +178,7 @@ def _on_edges(cells: CellMap, tracks: Tracks, link: Integers, local: Floats) -> 
         before, share = share, np.clip(share - miss / np.where(is_a, slope.imag, slope.real), 0, 1)
         if np.abs(share - before).max(initial=0.0) < EDGE_FINE:
             break
-    chi, _, _ = cells.jet(Places(element, begin + share[:, None] * along))
+    there = begin + share[:, None] * along
+    chi, _, _ = cells.jet(Places(element, there))
     other = np.where(is_a, chi.real, chi.imag)
-    return np.asarray(tracks.tau[link] + (other - tracks.start[link]) * tracks.way[link])
+    return np.asarray(tracks.tau[link] + (other - tracks.start[link]) * tracks.way[link]), there
