@@ -392,7 +392,10 @@ WARNINGS = {
     "11_cap": [r"the run ends with the surface: it is a piece of a sphere of radius .*, and has no net of lamellas"],
     "12_cushion": [SEAMS, MISSED, LEFT_OUT, FACES, BEYOND, SPLIT],
     "14_three_columns": [SEAMS, MISSED, LEFT_OUT, BEYOND],
-    "16_hall": [LEFT_OUT, SPLIT],
+    # small lamellas in its four corners
+    "15_vault": [LEFT_OUT],
+    # lamellas of both families meet on its arches
+    "16_hall": [BEYOND, SPLIT],
     "17_gridshell": [LEFT_OUT, BEYOND],
     # 1,617 vertices do not tell more
     "18_saddle_roof": [BENT, LEFT_OUT, SPLIT],

@@ -135,6 +135,7 @@ def trace_elements(
     length, median = _lengths(cells, found)
     short = length < minimum_length * median
     tracks, on_rim = _kept(cells, rims, found, ~short)
+    short &= ~on_rim
     chains = len(tracks.family)
     singular = singular_ends(cells, tracks)
     crossings, rim_ends = _settled(cells, tracks)
@@ -225,7 +226,7 @@ def trace_elements(
         step=cells.step,
         cells=count,
         periods=periods,
-        left_out=int(len(short) - on_rim - len(used)),
+        left_out=int(short.sum() + chains - len(used)),
         node_points=points[node_sample],
         node_normals=normals[node_sample],
         node_kinds=kinds,
@@ -311,15 +312,17 @@ def _lengths(cells: CellMap, tracks: Tracks) -> tuple[Floats, float]:
     return np.asarray(np.bincount(tracks.owner, rough, len(tracks.family)), np.float64), median
 
 
-def _kept(cells: CellMap, rims: tuple[ElementRim, ...], tracks: Tracks, long: NDArray[np.bool_]) -> tuple[Tracks, int]:
-    """The chains that are lamellas, in order; and how many others are the rim."""
+def _kept(
+    cells: CellMap, rims: tuple[ElementRim, ...], tracks: Tracks, long: NDArray[np.bool_]
+) -> tuple[Tracks, NDArray[np.bool_]]:
+    """The chains that are lamellas, in order; and which of all are the rim, (c,)."""
     crossings = find_crossings(tracks)
     crossings = crossings.of(long)
     tips, _ = rim_tips(cells, tracks)
     beam = along_rim(cells, rims, tracks, tips, crossings.take(within_tips(tracks, tips, crossings)))
     kept = long & ~beam
     crossings = crossings.of(kept)
-    return numbered(cells, rims, tracks, crossings, np.flatnonzero(kept)), int((long & beam).sum())
+    return numbered(cells, rims, tracks, crossings, np.flatnonzero(kept)), beam
 
 
 def _settled(cells: CellMap, tracks: Tracks) -> tuple[Crossings, Ends]:
