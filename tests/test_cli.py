@@ -163,7 +163,7 @@ def test_new_to_the_screen_and_to_other_places(here: Path, capsys: pytest.Captur
     assert 'name = "mine"' in (here / "mine.toml").read_text()
     capsys.readouterr()
     for target, words in (
-        ("p.toml", "p.toml is there already\n  remedy: name another file with --out, or delete it"),
+        ("p.toml", "p.toml is there already\n  remedy: name another file with --out, or move it away"),
         ("none/p.toml", "none: no such folder\n  remedy: make it first"),
         ("p.toml/x.toml", "p.toml: no such folder"),
     ):

@@ -166,16 +166,15 @@ def _new(arguments: argparse.Namespace) -> None:
         return
     mesh = target.with_name(f"{target.stem if target.suffix != '.obj' else target.name}.obj")
     files = {target: starter(kind, target.stem, mesh.name)} | ({mesh: starter_mesh()} if kind == "mesh" else {})
-    for file in files:
-        if file.exists():
-            raise InputError(f"{file} is there already", "name another file with --out, or delete it")
-    from lamella.files.whole import write_whole
+    from lamella.files.whole import write_new_whole
 
     if not target.parent.is_dir():
         raise InputError(f"{target.parent}: no such folder", "make it first, or name another file with --out")
     # the project last: what it names is there when it is
-    for file, text in reversed(files.items()):
-        write_whole(file, text.encode())
+    write_new_whole(
+        {file: text.encode() for file, text in reversed(files.items())},
+        "name another file with --out, or move it away",
+    )
     print(f"wrote {' and '.join(map(str, files))}; next: lamella run {target}")
 
 

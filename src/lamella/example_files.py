@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from difflib import get_close_matches
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from lamella.errors import InputError
-from lamella.files.whole import write_whole
+from lamella.files.whole import write_new_whole
 
 
 def _folder() -> Traversable:
@@ -23,6 +24,7 @@ def _all() -> dict[str, Traversable]:
     }
 
 
+REMEDY = "name another folder with --copy"
 MESHES = "optimise"
 """Folder of quad meshes for `lamella optimise`; its name stands for all of them."""
 
@@ -74,13 +76,12 @@ def copy_examples(names: list[str], target: Path) -> list[Path]:
     known = {item.name: item for item in _folder().iterdir()} | meshes
     wanted += meshes
     for name in wanted:
-        if (target / name).exists():
-            raise InputError(f"{target / name} is there already", "name another folder with --copy")
+        if os.path.lexists(target / name):
+            raise InputError(f"{target / name} is there already", REMEDY)
     if target.exists() and not target.is_dir():
         raise InputError(f"{target} is a file", "name a folder with --copy")
     target.mkdir(parents=True, exist_ok=True)
     if meshes:
         (target / MESHES).mkdir(exist_ok=True)
-    for name in wanted:
-        write_whole(target / name, known[name].read_bytes())
+    write_new_whole({target / name: known[name].read_bytes() for name in wanted}, REMEDY)
     return [target / name for name in wanted]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from lamella import __version__
 from lamella.errors import InputError
+from lamella.files.ours import is_ours
 from lamella.optimise_wishes import USED, Wishes, driver_of
 
 if TYPE_CHECKING:
@@ -154,7 +155,9 @@ def run_optimise(arguments: argparse.Namespace) -> int:
     figures = replace(figures, faces={**figures.faces, **result.faces})
     files = _files(arguments, given, result, figures)
     if arguments.picture is not None:
-        _draw(arguments, given, result)
+        files[arguments.picture] = _picture(arguments, given, result)
+    # hours may lie between: what came meanwhile is not replaced either
+    _check_targets(arguments)
     write_all_whole(files)
     last = result.solutions[-1]
     for remark in result.remarks:
@@ -162,7 +165,7 @@ def run_optimise(arguments: argparse.Namespace) -> int:
     if not result.solved:
         print(_not_solved(last), file=sys.stderr, flush=True)
     if not arguments.quiet:
-        print(f"{last.verdict}; wrote " + ", ".join(str(path) for path in [*files, arguments.picture] if path))
+        print(f"{last.verdict}; wrote " + ", ".join(str(path) for path in files))
     return 0 if result.solved else NOT_SOLVED
 
 
@@ -196,17 +199,20 @@ def fallen(solution: Solution) -> float:
 
 def _check_targets(arguments: argparse.Namespace) -> None:
     """Refuse targets before anything is computed."""
-    taken = {arguments.mesh.resolve()}
-    for option in ("out", "json", "picture"):
-        path: Path | None = getattr(arguments, option)
-        if path is None:
-            continue
+    given = [arguments.mesh, *([arguments.surface] if arguments.surface is not None else [])]
+    taken = {path.resolve() for path in given}
+    for option, path in _targets(arguments):
         if not path.parent.is_dir():
             raise InputError(f"{path.parent}: no such folder", f"make it first, or name another file with --{option}")
         if path.is_dir():
             raise InputError(f"--{option} {path} is a folder", "name a file")
-        if path.resolve() in taken:
+        if path.resolve() in taken or any(path.exists() and path.samefile(one) for one in given if one.exists()):
             raise InputError(f"--{option} {path} is in use already", "name another file: what is given stays")
+        if not is_ours(path):
+            raise InputError(
+                f"--{option} {path} is there already and was not written by lamella",
+                "name another file, or move it away",
+            )
         taken.add(path.resolve())
     if arguments.colour is not None and arguments.colour not in ("planarity", "sphericity", "radius", "angle"):
         raise InputError(f"--colour {arguments.colour} is not known", "planarity, sphericity, radius or angle")
@@ -218,6 +224,18 @@ def _check_targets(arguments: argparse.Namespace) -> None:
         from lamella.view.figure import require_matplotlib
 
         require_matplotlib()
+
+
+def _targets(arguments: argparse.Namespace) -> list[tuple[str, Path]]:
+    """Files to be written, each with the option it follows from."""
+    found = [(option, getattr(arguments, option)) for option in ("out", "json", "picture")]
+    if arguments.problem == "straighten":
+        found.insert(1, ("out", _lamellas_file(arguments.out)))
+    return [(option, path) for option, path in found if path is not None]
+
+
+def _lamellas_file(out: Path) -> Path:
+    return out.with_name(f"{out.stem}-lamellas{out.suffix}")
 
 
 def _colour(arguments: argparse.Namespace) -> Any:
@@ -240,7 +258,7 @@ def _files(
     files = {out: quad_mesh_bytes(out.suffix, result.mesh, figures, colours={colours.on: colours.rgb}, **common)}
     if result.lamellas is not None:
         own = mesh_figures(result.lamellas)
-        target = out.with_name(f"{out.stem}-lamellas{out.suffix}")
+        target = _lamellas_file(out)
         files[target] = quad_mesh_bytes(out.suffix, result.lamellas, own, **common)
     if arguments.json is not None:
         about = optimise_bytes(result, figures, given, problem=arguments.problem, file=arguments.mesh.name)
@@ -248,7 +266,10 @@ def _files(
     return files
 
 
-def _draw(arguments: argparse.Namespace, given: QuadFile, result: Optimised) -> None:
+def _picture(arguments: argparse.Namespace, given: QuadFile, result: Optimised) -> bytes:
+    import tempfile
+
+    from lamella.files.ours import signed_png
     from lamella.view.net_picture import NetPanel, draw_nets
 
     colour = _colour(arguments)
@@ -262,4 +283,7 @@ def _draw(arguments: argparse.Namespace, given: QuadFile, result: Optimised) -> 
     after = NetPanel("after", result.mesh, colour, driven(result.mesh), "all" if result.same else "boundary")
     # strips are no other state of the mesh they follow
     title, own = ("before", colour) if result.same else ("polylines", None)
-    draw_nets([NetPanel(title, given.mesh, own, driven(given.mesh)), after], arguments.picture)
+    with tempfile.TemporaryDirectory() as folder:
+        picture = Path(folder) / "picture.png"
+        draw_nets([NetPanel(title, given.mesh, own, driven(given.mesh)), after], picture)
+        return signed_png(picture.read_bytes())

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import orjson
 
+from lamella import __version__
 from lamella.errors import InputError
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.unknowns import Floats
@@ -95,7 +96,7 @@ def compas_bytes(
         "max_vertex": max((key for key in number if isinstance(key, int)), default=-1),
         "max_face": max((int(key) for key in faces if key.isdigit()), default=-1),
     }
-    return orjson.dumps({"dtype": DTYPE, "data": data, "name": name})
+    return orjson.dumps({"lamella": __version__, "dtype": DTYPE, "data": data, "name": name})
 
 
 def _rows(keys: Sequence[str], columns: dict[str, Floats]) -> dict[str, dict[str, float]]:

@@ -7,6 +7,8 @@ import secrets
 from collections.abc import Mapping
 from pathlib import Path
 
+from lamella.errors import InputError
+
 
 def write_whole(path: Path, content: bytes) -> None:
     """Write a file that appears complete or not at all; an older file of that name stays until then.
@@ -38,3 +40,54 @@ def write_all_whole(files: Mapping[Path, bytes]) -> None:
         for part in parts.values():
             part.unlink(missing_ok=True)
         raise
+
+
+def write_new_whole(files: Mapping[Path, bytes], remedy: str) -> None:
+    """Write files that are not there yet; all of them, or none.
+
+    Parameters
+    ----------
+    files : Path to bytes
+        Written in this order.
+    remedy : str
+        Of the error about a file that is there.
+
+    Raises
+    ------
+    InputError
+        One of them is there already, even as a link that leads nowhere. It is as it was.
+    OSError
+        As `write_whole`.
+    """
+    made: list[Path] = []
+    try:
+        for path in files:
+            if os.path.lexists(path):
+                raise FileExistsError(path)
+        for path, content in files.items():
+            _write_new(path, content)
+            made.append(path)
+    except BaseException as error:
+        for path in made:
+            path.unlink(missing_ok=True)
+        if isinstance(error, FileExistsError):
+            taken = error.filename or error.args[0]
+            raise InputError(f"{taken} is there already", remedy) from None
+        raise
+
+
+def _write_new(path: Path, content: bytes) -> None:
+    part = path.with_name(f".{secrets.token_hex(6)}.part")
+    try:
+        part.write_bytes(content)
+        try:
+            # unlike a change of name, a second name never takes the place of a file that came meanwhile
+            os.link(part, path)
+        except FileExistsError:
+            raise FileExistsError(path) from None
+        except OSError:
+            # no second names on this file system
+            with path.open("xb") as file:
+                file.write(content)
+    finally:
+        part.unlink(missing_ok=True)
