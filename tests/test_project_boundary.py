@@ -96,9 +96,9 @@ def loops_of(text: str) -> tuple[Loop, ...]:
             ["surface.boundary[0].slide: point, normal, direction is given"],
         ),
         (
-            HEAD + RING + "place = {scale = 2}\n",
+            HEAD + "[[surface.boundary]]\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\nplace = {scale = 2}\n",
             5,
-            ["boundary[0].place: place goes with file or part, not with circle"],
+            ["boundary[0].place: place goes with circle, file or part, not with points"],
         ),
         (
             NEXT + "file = 'a.dxf'\nslide = {direction = [0, 0, 1]}\nplace = {scale = 2}\n",
@@ -112,9 +112,9 @@ def loops_of(text: str) -> tuple[Loop, ...]:
         ),
         (NEXT + "file = 'a.dxf'\nplace = {scale = 0}\n", 8, ["surface.boundary[1].place.scale: 0 is out of range"]),
         (
-            NEXT + "file = 'a.dxf'\nadjust = {points = 1}\n",
+            NEXT + "file = 'a.dxf'\nplace = {waves = [[0, 0, 1], [0, 0, 0]]}\n",
             8,
-            ["boundary[1].adjust.points: a curve from a file has no points to shift", "write move, scale or tilt"],
+            ["surface.boundary[1].place.waves: 2 shifts: has to be an odd number up to 9"],
         ),
         (HEAD + RING + "name = 'a'\n" + RING + "name = 'a'\n", 3, ["boundary[0] and boundary[1] are both called 'a'"]),
         (HEAD + "points = [[1]]\n" + RING, 3, ["surface.points: unknown key here", "[[surface.boundary]]"]),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from lamella import __version__
 from lamella.fabrication import write_drawings, write_schedule
+from lamella.files.curves_3dm import write_curves_3dm
 from lamella.files.lamellas_json import write_lamellas
 from lamella.files.mesh_files import write_network_obj, write_surface_obj, write_surface_ply
 from lamella.files.model_3dm import write_model
@@ -17,6 +18,7 @@ from lamella.files.surface_3dm import write_surface_3dm
 from lamella.files.text import one_line
 from lamella.files.whole import write_whole
 from lamella.project_file import moved
+from lamella.surface.boundary.tables import boundary_loops, drawing_unit
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.report import ReportData, write_report
@@ -54,6 +56,11 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
         told = f"# {one_line(project.name)}, with the boundary as lamella {__version__} has adjusted it\n"
         own = project.model_copy(update={"surface": results.adjusted.table})
         put("adjusted.toml", write_whole, (told + moved(own, results.folder, folder).to_toml()).encode())
+        unit = drawing_unit(results.adjusted.table, results.folder)
+        if unit:
+            put(
+                "adjusted.3dm", write_curves_3dm, boundary_loops(results.adjusted.table, results.folder), unit, **signed
+            )
     put("surface.obj", write_surface_obj, results.mesh, **signed)
     put("surface.ply", write_surface_ply, results.mesh, **signed)
     if isinstance(results.surface, ElementSurface):

@@ -21,6 +21,7 @@ from lamella.project_values import (
 
 CURVE_FILES = (".3dm", ".dxf", ".json")
 MOST_PARTS = 200
+MOST_WAVES = 4
 
 
 class CircleTable(Table):
@@ -102,7 +103,7 @@ class AdjustTable(Table):
     scale: float = number("Change of size, as a share of it, at most.", "", ge=0, le=0.5, default=0.0, examples=[0.05])
     tilt: float = number("Turn about each of x, y and z, at most.", "degrees", ge=0, le=45, default=0.0, examples=[5.0])
     points: float = number(
-        "Shift of the points in x, y and z, in waves along the loop, at most; goes with points.",
+        "Shift of the curve in x, y and z, in waves along the loop, at most: of its points, or by arc length.",
         "m",
         ge=0,
         le=1000,
@@ -125,7 +126,7 @@ class AdjustTable(Table):
 
 
 class PlaceTable(Table):
-    """Where a curve is put: turned and scaled about its middle, the centroid of its length, then shifted."""
+    """Where a curve is put: turned and scaled about its middle, the centroid of its length, then shifted and waved."""
 
     shift: Point = number("Shift [x, y, z].", "m", default=(0.0, 0.0, 0.0), examples=[[0.5, 0.0, 0.0]])
     scale: float = number("Size over that in the file.", "", gt=0, le=1e6, default=1.0, examples=[1.05])
@@ -135,10 +136,26 @@ class PlaceTable(Table):
         default=(0.0, 0.0, 0.0),
         examples=[[0.0, 0.0, 15.0]],
     )
+    waves: Points = number(
+        "Shifts [x, y, z] in waves along the curve, by the fraction t of its length: an even one, then of cos and sin "
+        "of 2 pi t, 4 pi t, ...; up to four waves.",
+        "m",
+        default=(),
+        examples=[[[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0]]],
+    )
+
+    @field_validator("waves", mode="after")
+    @classmethod
+    def _whole(cls, waves: tuple[tuple[float, float, float], ...]) -> tuple[tuple[float, float, float], ...]:
+        if len(waves) > 2 * MOST_WAVES + 1 or (waves and len(waves) % 2 == 0):
+            raise Refusal(
+                f"{len(waves)} shifts: has to be an odd number up to {2 * MOST_WAVES + 1}",
+                "write an even shift and two for each wave",
+            )
+        return waves
 
 
 _SHAPES = ("points", "circle", "file", "part")
-_OWN = {"circle": "a circle", "file": "a curve from a file", "part": "a loop of parts"}
 
 
 class BoundaryTable(Table):
@@ -187,7 +204,7 @@ class BoundaryTable(Table):
         json_schema_extra={"minItems": 1, "maxItems": MOST_PARTS},
     )
     place: PlaceTable | None = Field(
-        default=None, description="Where a curve given by file or part is put; as it is given when not given."
+        default=None, description="Where a curve given by circle, file or part is put; as it is given when not given."
     )
     slide: SlideTable | None = Field(default=None, description="Where the loop may slide; fixed when not given.")
     adjust: AdjustTable | None = Field(
@@ -227,10 +244,8 @@ class BoundaryTable(Table):
                 if getattr(self, key) is not None:
                     told = "adjusted" if key == "adjust" else "placed"
                     raise Refusal(f"a loop that slides cannot be {told}", f"hold the loop, or leave {key} out", key)
-        if self.place is not None and self.file is None and self.part is None:
-            raise Refusal(f"place goes with file or part, not with {given[0]}", f"change {given[0]} itself", "place")
-        if self.adjust is not None and self.adjust.points and self.points is None:
-            raise Refusal(f"{_OWN[given[0]]} has no points to shift", "write move, scale or tilt", "adjust.points")
+        if self.place is not None and self.points is not None:
+            raise Refusal("place goes with circle, file or part, not with points", "change points themselves", "place")
         if self.slide is not None and self.part is not None:
             raise Refusal("a loop of parts slides by its parts", "move slide into the parts that slide", "slide")
         return self

@@ -13,7 +13,7 @@ from lamella.network.pattern import Pattern
 from lamella.network.shift_rates import curvature_rates_of_volume, jacobi_fields, shift_rates
 from lamella.surface.boundary.curve import Loop
 from lamella.surface.boundary.freedom import Freedom
-from lamella.surface.boundary.tables import boundary_loops
+from lamella.surface.boundary.tables import Drawn, boundary_loops
 from lamella.surface.element.placing import rim_parameters
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.film import Film
@@ -50,16 +50,17 @@ class Films:
 
     def __init__(self, table: FormFoundTable, folder: Path, freedom: Freedom, pattern: Pattern) -> None:
         self.table, self.folder, self.freedom, self.pattern = table, folder, freedom, pattern
+        self._drawn: Drawn = {}
         self._rates: WeakKeyDictionary[FilmNet, Complexes] = WeakKeyDictionary()
 
     def loops(self, shares: Floats) -> tuple[Loop, ...]:
         """The boundary at some shares."""
-        return boundary_loops(self.freedom.changed(shares), self.folder)
+        return boundary_loops(self.freedom.changed(shares), self.folder, self._drawn)
 
     def found(self, shares: Floats, tolerance: float) -> FilmNet:
         """The film of some shares from nothing, to a tolerance."""
         table = self.freedom.changed(shares)
-        loops = boundary_loops(table, self.folder)
+        loops = self.loops(shares)
         found = find_film(
             loops,
             table.mean_curvature or 0.0,

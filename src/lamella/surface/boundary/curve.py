@@ -186,6 +186,7 @@ def make_loop(
     sliding: Sequence[Sliding] = (),
     *,
     remarks: tuple[str, ...] = (),
+    drawn: NDArray[np.bool_] | None = None,
     where: str = "",
 ) -> Loop:
     """A loop from pieces that join end to end, the last one with the first.
@@ -198,6 +199,8 @@ def make_loop(
     sliding : sequence of Sliding, optional
     remarks : tuple of str, optional
         What was done to the curve.
+    drawn : (m,) bool, optional
+        Which pieces begin at a knot of the curve as it was drawn, where only some do.
     where : str, optional
         Key for messages.
 
@@ -225,9 +228,14 @@ def make_loop(
     jump = np.linalg.norm(_curvature(behind, bent_behind) - _curvature(before, bent_before), axis=1)
     corner = (turn > CORNER_ANGLE) | (jump * course.length > CURVATURE_JUMP)
     joints = np.append(course.joints, course.length) / course.length
-    gap = np.diff(joints)
+    knots = np.ones(m, bool) if drawn is None else drawn
+    # from each knot to the next one
+    gap = np.zeros(m)
+    gap[knots] = np.diff(np.append(joints[:-1][knots], 1.0 + joints[:-1][knots][:1]))
     bend = np.linalg.norm(_curvature_slopes(course, 0.0) - np.roll(_curvature_slopes(course, 1.0), 1, 0), axis=1)
-    knot = ~corner & (bend * course.length**2 > THIRD_JUMP) & (np.minimum(gap, np.roll(gap, 1)) > KNOT_GAP)
+    near = gap.copy()
+    near[knots] = np.minimum(gap[knots], np.roll(gap[knots], 1))
+    knot = ~corner & (bend * course.length**2 > THIRD_JUMP) & (near > KNOT_GAP)
     marks = [(part.first, part.first + part.count) for part in sliding if part.count < m]
     for first, last in marks:
         corner[[first, last % m]] = True

@@ -10,15 +10,16 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lamella.errors import InputError
-from lamella.project_boundary import PlaceTable
+from lamella.project_boundary import MOST_WAVES, PlaceTable
 from lamella.surface.boundary.pieces import Floats
+from lamella.surface.boundary.waves import wave_rows
 
 if TYPE_CHECKING:
     from lamella.project import FormFoundTable
     from lamella.project_boundary import BoundaryTable
 
-# waves of a loop's points: full turns along the loop, at most, and points for each
-MOST_WAVES, POINTS_A_WAVE = 4, 3
+# points of a loop for each full wave along it
+POINTS_A_WAVE = 3
 # where a project names no freedom: of a loop's size
 USUAL = 0.05
 
@@ -112,11 +113,15 @@ def _of_loop(index: int, loop: BoundaryTable, usual: bool) -> list[_Part]:
     elif usual and size:
         move, scale, points = USUAL * size, USUAL, USUAL * size if loop.points is not None else 0.0
     parts = []
+    # an even wave is a shift
+    first = 1 if move else 0
     if points and loop.points is not None:
         waves = _waves(len(loop.points))
-        first = 1 if move else 0
         ranges = np.full(axes * (len(waves) - first), points)
         parts.append(_Part(f"points of {loop.name!r}", ranges, _waved(index, waves[first:])))
+    elif points:
+        ranges = np.full(axes * (2 * MOST_WAVES + 1 - first), points)
+        parts.append(_Part(f"points of {loop.name!r}", ranges, _curve_waved(index, first)))
     if move:
         parts.append(_Part(f"place of {loop.name!r}", np.full(axes, move), _placed(index)))
     if scale:
@@ -127,13 +132,8 @@ def _of_loop(index: int, loop: BoundaryTable, usual: bool) -> list[_Part]:
 
 
 def _waves(points: int) -> Floats:
-    """Even, and one to four full waves along a loop of points, (waves, points), each 1 at most."""
-    angle = 2 * np.pi * np.arange(points) / points
-    most = min(MOST_WAVES, points // POINTS_A_WAVE)
-    rows = [np.ones(points)]
-    for turns in range(1, most + 1):
-        rows += [np.cos(turns * angle), np.sin(turns * angle)]
-    return np.array(rows)
+    """Even, and one to four full waves along a loop of points, (2 waves + 1, points), each 1 at most."""
+    return wave_rows(np.arange(points) / points, min(MOST_WAVES, points // POINTS_A_WAVE))
 
 
 def _replaced(table: FormFoundTable, index: int, loop: BoundaryTable) -> FormFoundTable:
@@ -198,6 +198,21 @@ def _waved(index: int, waves: Floats) -> Callable[[FormFoundTable, Floats], Form
         loop = table.boundary[index]
         points = np.array(loop.points) + waves.T @ _in_space(values.reshape(len(waves), -1))
         return _replaced(table, index, loop.model_copy(update={"points": _tuples(points)}))
+
+    return apply
+
+
+def _curve_waved(index: int, first: int) -> Callable[[FormFoundTable, Floats], FormFoundTable]:
+    """Waves by arc length, added to those the curve is placed with; without the even one where it is moved anyway."""
+
+    def apply(table: FormFoundTable, values: Floats) -> FormFoundTable:
+        loop = table.boundary[index]
+        place = loop.place or PlaceTable()
+        rows = np.zeros((2 * MOST_WAVES + 1, 3))
+        rows[: len(place.waves)] = np.array(place.waves).reshape(-1, 3)
+        rows[first:] += _in_space(values.reshape(len(rows) - first, -1))
+        waves = _tuples(rows) if rows.any() else ()
+        return _replaced(table, index, loop.model_copy(update={"place": place.model_copy(update={"waves": waves})}))
 
     return apply
 

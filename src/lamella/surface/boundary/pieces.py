@@ -147,6 +147,32 @@ class Pieces:
         w, x = self.controls[..., 3:], self.controls[..., :3]
         return Pieces(np.concatenate([x @ matrix[:3, :3].T + w * matrix[:3, 3], w], axis=-1))
 
+    def cut(self, piece: Integers, low: Floats, high: Floats) -> Pieces:
+        """Parts of pieces, (n,), from one parameter to another, as pieces of their own."""
+        controls = self.controls[piece]
+        # de Casteljau's scheme, with each parameter in turn: blossoms of both
+        for end, s in ((1, high), (0, low / np.where(high > 0, high, 1.0))):
+            points, kept = controls, []
+            share = s[:, None, None]
+            while points.shape[1]:
+                kept.append(points[:, 0] if end else points[:, -1])
+                points = (1 - share) * points[:, :-1] + share * points[:, 1:]
+            controls = np.stack(kept if end else kept[::-1], axis=1)
+        return Pieces(controls)
+
+    def shifted(self, shifts: Floats) -> Pieces:
+        """The curve x(s) + d(s), d a polynomial on each piece with Bezier points (m, degree + 1, 3), m."""
+        p, q = self.degree, shifts.shape[1] - 1
+        w = self.controls[..., 3]
+        more = np.zeros((self.count, p + q + 1, 3))
+        # the product of two polynomials in Bernstein's form
+        for i in range(p + 1):
+            for j in range(q + 1):
+                more[:, i + j] += comb(p, i) * comb(q, j) / comb(p + q, i + j) * w[:, i, None] * shifts[:, j]
+        controls = self.raised(p + q).controls.copy()
+        controls[..., :3] += more
+        return Pieces(controls)
+
     def from_to(self, start: Floats, end: Floats) -> Pieces:
         """The curve with its very first and last point moved, to close gaps.
 

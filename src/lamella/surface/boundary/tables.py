@@ -21,7 +21,8 @@ from lamella.surface.boundary.read_dxf import read_dxf
 from lamella.surface.boundary.read_json import read_json
 from lamella.surface.boundary.smooth_polyline import smooth_curve, vertices
 from lamella.surface.boundary.splines import closed_spline, open_spline
-from lamella.surface.boundary.units import metres_per_unit
+from lamella.surface.boundary.units import METRES, metres_per_unit
+from lamella.surface.boundary.waves import waved
 
 if TYPE_CHECKING:
     from lamella.project import BoundaryTable, FormFoundTable, PartTable, PlaceTable, SlideTable
@@ -34,7 +35,11 @@ _READERS = {".3dm": read_3dm, ".dxf": read_dxf, ".json": read_json}
 _HEADERS = {".3dm": "the model's unit system", ".dxf": "$INSUNITS in its header", ".json": 'its key "unit"'}
 
 
-def boundary_loops(table: FormFoundTable, folder: Path) -> tuple[Loop, ...]:
+Drawn = dict["BoundaryTable", Loop]
+"""Curves of files before they are placed, by their tables: read once where a boundary is built many times."""
+
+
+def boundary_loops(table: FormFoundTable, folder: Path, drawn: Drawn | None = None) -> tuple[Loop, ...]:
     """The loops of a form-found surface, built and checked.
 
     Parameters
@@ -43,6 +48,8 @@ def boundary_loops(table: FormFoundTable, folder: Path) -> tuple[Loop, ...]:
         [surface] of a project.
     folder : Path
         Where relative paths of curve files begin: the project file's folder.
+    drawn : dict, optional
+        Curves of files that were read before; those that were not are added.
 
     Returns
     -------
@@ -54,15 +61,39 @@ def boundary_loops(table: FormFoundTable, folder: Path) -> tuple[Loop, ...]:
     InputError
         Whatever is wrong with them, with the key of the table.
     """
-    loops = tuple(_loop(one, folder, f"surface.boundary[{k}]") for k, one in enumerate(table.boundary))
+    drawn = {} if drawn is None else drawn
+    loops = tuple(_loop(one, folder, f"surface.boundary[{k}]", drawn) for k, one in enumerate(table.boundary))
     check_loops(loops)
     return loops
 
 
-def _loop(table: BoundaryTable, folder: Path, where: str) -> Loop:
+def drawing_unit(table: FormFoundTable, folder: Path) -> str | None:
+    """The unit of the first curve file of a form-found surface, as a project names it; None: no curve is of a file.
+
+    A drawing in a unit that a project has no name for counts as one in metres.
+    """
+    first = next((loop for loop in table.boundary if loop.file is not None), None)
+    if first is None:
+        return None
+    if first.unit is not None:
+        return first.unit
+    path = folder / str(first.file)
+    metres = _READERS[path.suffix.lower()](path, "surface.boundary").metres_per_unit
+    return next((name for name, length in METRES.items() if length == metres), "m")
+
+
+def _loop(table: BoundaryTable, folder: Path, where: str, drawn: Drawn) -> Loop:
+    as_drawn = table.model_copy(update={"place": None})
+    loop = drawn.get(as_drawn) or _as_drawn(table, folder, where)
+    if table.file is not None:
+        drawn[as_drawn] = loop
+    return loop if table.place is None else _placed(loop, table.place, where)
+
+
+def _as_drawn(table: BoundaryTable, folder: Path, where: str) -> Loop:
+    """A loop before it is placed."""
     if table.part is not None:
-        loop = _composed(table.name, table.part, where)
-        return loop if table.place is None else _placed(loop, table.place, where)
+        return _composed(table.name, table.part, where)
     remarks: tuple[str, ...] = ()
     if table.circle is not None:
         ring = table.circle
@@ -74,18 +105,21 @@ def _loop(table: BoundaryTable, folder: Path, where: str) -> Loop:
     else:
         pieces, remarks = _from_file(table, folder, f"{where}.file")
     sliding = () if table.slide is None else (_sliding(table.slide, 0, pieces.count),)
-    loop = make_loop(table.name, pieces, sliding, remarks=remarks, where=where)
-    return loop if table.place is None else _placed(loop, table.place, where)
+    return make_loop(table.name, pieces, sliding, remarks=remarks, where=where)
 
 
 def _placed(loop: Loop, place: PlaceTable, where: str) -> Loop:
-    """A held loop turned and scaled about the centroid of its length, and shifted."""
+    """A held loop turned and scaled about the centroid of its length, and shifted, as a whole and in waves."""
     middle = loop.at(np.arange(SAMPLES) / SAMPLES).mean(0)
     turn = Rotation.from_rotvec(np.radians(place.turn)).as_matrix()
     # the pieces of a course are measured from its origin
     shift = middle + np.array(place.shift) + place.scale * turn @ (loop.course.origin - middle)
     pieces = loop.course.pieces.transformed(place.scale, shift, turn)
-    return make_loop(loop.name, pieces, remarks=loop.remarks, where=where)
+    placed = make_loop(loop.name, pieces, remarks=loop.remarks, where=where)
+    if not place.waves:
+        return placed
+    pieces, drawn = waved(placed, np.array(place.waves))
+    return make_loop(loop.name, pieces, drawn=drawn, remarks=loop.remarks, where=where)
 
 
 def _from_file(table: BoundaryTable, folder: Path, where: str) -> tuple[Pieces, tuple[str, ...]]:
