@@ -103,7 +103,9 @@ def _as_drawn(table: BoundaryTable, folder: Path, where: str) -> Loop:
         splined = table.interpolation == "spline"
         pieces = closed_spline(points, where=f"{where}.points") if splined else lines(points, closed=True)
     else:
-        pieces, remarks = _from_file(table, folder, f"{where}.file")
+        # numbers of a damaged file may be of any size; what comes out of them is looked at afterwards
+        with np.errstate(all="ignore"):
+            pieces, remarks = _from_file(table, folder, f"{where}.file")
     sliding = () if table.slide is None else (_sliding(table.slide, 0, pieces.count),)
     return make_loop(table.name, pieces, sliding, remarks=remarks, where=where)
 
