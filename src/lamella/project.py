@@ -63,8 +63,9 @@ class NetworkTable(Table):
         "lines, for panels that are nearly planar quads. A principal net has no strips: the run ends with the network.",
     )
     cells: int | None = number(
-        "Number of A lamellas that cross a loop once around the axis; on a simply connected surface, number of "
-        "cells along its longest principal line. 24 when spacing is not given either.",
+        "Number of A lamellas that cross a loop once around the axis, or that end on the rim of the first hole (B "
+        "where these are more); on a simply connected surface, number of cells along its longest principal line. 24 "
+        "when spacing is not given either.",
         "",
         ge=3,
         le=10**12,
@@ -72,7 +73,8 @@ class NetworkTable(Table):
         examples=[24],
     )
     spacing: float | None = length(
-        "Wanted median cell edge, instead of cells; the nearest whole number of cells is taken.",
+        "Wanted median cell edge, instead of cells; the nearest whole number of cells is taken, or a spacing up to a "
+        "tenth away with which the net closes and its umbilics are nodes.",
         default=None,
         examples=[0.5],
     )
