@@ -191,9 +191,12 @@ class LaidNet:
             near = np.round(raw.shifts)
             off = _largest_part(raw.shifts - near)
             wanted = np.where(off <= CLOSES, near, np.nan)
-            if (off <= CLOSES).any():
+            # lines of one family go on where those of the other one do not
+            off_parts, near_parts = raw.shifts - near, np.stack([near.real, near.imag])
+            closes = np.abs(np.stack([off_parts.real, off_parts.imag])) <= CLOSES
+            if closes.any():
                 try:
-                    iso = with_shifts(iso, _shifts(raw, wanted, lattice))
+                    iso = with_shifts(iso, *_turned(raw, np.where(closes, near_parts, np.nan), lattice))
                 except FoldedError:
                     # coordinates that turn over somewhere stay as they are, with a seam
                     wanted[:] = np.nan
@@ -347,9 +350,11 @@ def _largest_part(shifts: Complexes) -> Floats:
     return np.maximum(np.abs(shifts.real), np.abs(shifts.imag))
 
 
-def _shifts(raw: CellMap, wanted: Complexes, lattice: Lattice) -> Complexes:
-    """Shifts of w (t,), sqrt(m), of shifts in cells."""
-    return raw.pattern.isothermic(wanted, lattice.step) - (raw.signs - 1) * lattice.origin
+def _turned(raw: CellMap, wanted: Floats, lattice: Lattice) -> tuple[Floats, complex]:
+    """Both parts (2, t) of shifts of w, sqrt(m), turned by a factor as cells are, of shifts in cells; the factor."""
+    turn, every = raw.pattern.factor, np.array(raw.pattern.every[::-1])
+    hung = (raw.signs - 1) * lattice.origin * turn
+    return wanted * (every[:, None] * lattice.step) - np.stack([hung.real, hung.imag]), turn
 
 
 def _rounded(iso: Isothermic, raw: CellMap, lattice: Lattice) -> tuple[Isothermic, Complexes]:
@@ -358,7 +363,8 @@ def _rounded(iso: Isothermic, raw: CellMap, lattice: Lattice) -> tuple[Isothermi
     ways = WholeShifts.of(iso, iso.gram).nearest(raw.shifts, MOST_WAYS)
     for wanted in ways:
         try:
-            return with_shifts(iso, _shifts(raw, wanted, lattice)), wanted
+            parts = np.stack([wanted.real, wanted.imag])
+            return with_shifts(iso, *_turned(raw, parts, lattice)), wanted
         except FoldedError as error:
             folded = folded or error
     assert folded
