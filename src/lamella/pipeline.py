@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -328,10 +329,18 @@ def complete(project: Project, planned: Planned, clock: Clock, *, until: str | N
         strip = project.lamella
         clock.start(f"lamellas: {strip.height * 1000:g} x {strip.thickness * 1000:g} mm, {strip.material}")
         section = Section(strip.height, strip.thickness, strip.layers, strip.offset, strip.marks, strip.layer_lengths)
-        lamellas = make_lamellas(network, section, project.material())
+        make = partial(make_lamellas, network, material=project.material())
+        lamellas = make(section)
         figures["lamellas"] = f = summary.lamella_summary(network, lamellas, strip.material, project.material())
         clock.stop("lamellas", f"{f['total_length']:.4g} m of lamella, utilisation up to {f['utilisation_max']:.2f}")
-        warnings += cautions.lamella_cautions(mesh, network, lamellas, project.fabrication.slot_width or 0.0)
+        warnings += cautions.lamella_cautions(
+            mesh,
+            network,
+            lamellas,
+            project.fabrication.slot_width or 0.0,
+            project.material().strength,
+            lambda other: float(make(other).utilisation.max()),
+        )
     if network and lamellas and depth >= STAGES.index("fabrication"):
         cut = project.fabrication
         clock.start("fabrication: parts and sheets")

@@ -162,7 +162,7 @@ def _check_slots(project: Project) -> None:
     if width is not None and width < thickness:
         raise InputError(
             f"slot_width = {width:g} m is less than the thickness {thickness:g} m of the strip that goes in",
-            f"write slot_width = {2 * thickness:g}, twice the thickness, or leave it out",
+            "leave slot_width out: it is twice the thickness then",
             "fabrication.slot_width",
         )
 

@@ -14,7 +14,9 @@ def cut(text: str, most: int = 80) -> str:
 
 
 def rounded(value: float, *, up: bool, digits: int = 3) -> float:
-    """A number above 0 to some digits, never to the wrong side: what is offered as a limit has to keep it."""
+    """A number to some digits, never to the wrong side: what is offered as a limit has to keep it."""
+    if value <= 0:
+        return -rounded(-value, up=not up, digits=digits) if value else 0.0
     scale = 10.0 ** (digits - 1 - math.floor(math.log10(value)))
     # what is whole but for rounding stays
     count = value * scale

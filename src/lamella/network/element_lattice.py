@@ -17,6 +17,7 @@ from lamella.network.isothermic import Integers, Isothermic
 from lamella.network.lattice_origin import lattice_origin
 from lamella.network.median_edge import EdgeSizes
 from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
+from lamella.wording import rounded
 
 # share of a spacing; moved by more for a net that closes, the new one is reported
 MOVED = 0.02
@@ -97,7 +98,9 @@ def choose_lattice(
     elif chosen is None:
         assert cells is not None
         if cells < LEAST_CELLS:
-            raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
+            raise InputError(
+                f"{cells} cells, at least {LEAST_CELLS} are needed", f"write cells = {LEAST_CELLS} or more", key
+            )
         if count.follows_period(pattern):
             name = repr(names[around[0].loop]) if names else "the first hole"
             cells = fitting_cells(cells, pattern.multiple(count.period), name, given=True)
@@ -122,11 +125,11 @@ def _check_room(count: CellCount, sizes: EdgeSizes, step: float, spacing: float)
     room = max(count.length, count.across)
     if room / step < LEAST_CELLS:
         # rounded down: what is written has to do
-        most = 0.99 * sizes.median(room / LEAST_CELLS)
+        most = rounded(0.99 * sizes.median(room / LEAST_CELLS), up=False)
         raise InputError(
             f"spacing = {spacing:g} m leaves {room / step:.2g} cells across the surface, at least {LEAST_CELLS} are "
             "needed",
-            f"choose a spacing of at most {most:.3g} m",
+            f"choose a spacing of at most {most:g} m",
             "network.spacing",
         )
 
@@ -146,7 +149,7 @@ def _check_size(
         f"{MOST_NODES:,} nodes)",
         f"at most {int(cells * finer)} cells fit this surface"
         if spacing is None
-        else f"choose a spacing of at least {1.01 * spacing / finer:.3g} m",
+        else f"choose a spacing of at least {rounded(1.01 * spacing / finer, up=True):g} m",
         key,
     )
 

@@ -113,7 +113,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
                 raise InputError(
                     f"no two lamellas cross once the {left_out} shorter than minimum_length = {minimum_length:g} cell "
                     "edges are left out",
-                    "lower network.minimum_length",
+                    "write minimum_length = 0, with which none is left out",
                     "network.minimum_length",
                 )
             reach = float((lines.end - lines.start).max(initial=0.0))
@@ -131,7 +131,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         if short.all():
             raise InputError(
                 f"all {len(short)} lamellas are shorter than minimum_length = {minimum_length:g} cell edges",
-                "lower network.minimum_length",
+                "write minimum_length = 0, with which none is left out",
                 "network.minimum_length",
             )
         left_out += int(short.sum())

@@ -145,13 +145,13 @@ def trace_elements(
             raise InputError(
                 f"no two lamellas cross: {short.sum()} of {len(short)} are shorter than minimum_length = "
                 f"{minimum_length:g} median cell edges of {median:.3g} m, the longest has {length.max() / median:.2g}",
-                "lower network.minimum_length, or raise network.cells",
+                "write minimum_length = 0, with which none is left out, or raise network.cells",
                 "network.minimum_length",
             )
+        longest = float(np.bincount(found.owner, found.span, len(short)).max(initial=0.0))
         raise InputError(
-            f"no two lamellas cross: with {count} cells the longest one runs over "
-            f"{np.bincount(found.owner, found.span, len(short)).max(initial=0.0):.2g} cells",
-            "raise network.cells, or lower network.spacing",
+            f"no two lamellas cross: with {count} cells the longest one runs over {longest:.2g} cells",
+            f"raise network.cells to about {np.ceil(2 * count / max(longest, 1e-3)):.0f}, or lower network.spacing",
             "network.cells",
         )
     pair = np.flatnonzero(stops.chain[1:] == stops.chain[:-1])

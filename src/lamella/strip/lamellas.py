@@ -13,6 +13,7 @@ from lamella.network.network import Network
 from lamella.strip.material import Material
 from lamella.strip.planarity import planarity_score
 from lamella.strip.stress import shortening, stresses
+from lamella.wording import rounded
 
 Floats = NDArray[np.float64]
 Marks = Literal["arc-length", "relaxed"]
@@ -160,7 +161,8 @@ def make_lamellas(network: Network, section: Section, material: Material) -> Lam
         raise InputError(
             f"height = {section.height:g} m: strips of radius {limit / 2:.4g} m cannot be "
             f"{limit:.4g} m high or more, their inner edge would reach the centre",
-            "lower lamella.height, or check that the surface is in metres",
+            f"write lamella.height = {rounded(0.99 * limit / 2, up=False):g} or less, or check that the surface is in "
+            "metres",
             "lamella.height",
         )
     kn, kg, tg = network.sample_darboux
