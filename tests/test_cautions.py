@@ -87,7 +87,7 @@ def test_one_is_and_several_are() -> None:
         utilisation = np.zeros_like(results.lamellas.utilisation)
         utilisation[results.network.sample_offsets[:count]] = 2.5
         lamellas = replace(results.lamellas, utilisation=utilisation)
-        told = next(lamella_cautions(results.mesh, results.network, lamellas, 0.003))
+        told = next(lamella_cautions(results.mesh, results.network, lamellas, 0.003, 2e8, lambda section: 1.0))
         assert told.startswith("utilisation reaches 2.50 in lamella A1 at (")
         assert f"({count} of 48 lamellas {'is' if count == 1 else 'are'} over 1)" in told
 
@@ -97,8 +97,8 @@ def test_cells_smaller_than_the_strip() -> None:
     assert not any("cell edges" in m for m in warnings("cylinder", "network", {"network": {"cells": 60}}, **values))
     told = warnings("cylinder", "network", {"network": {"cells": 120}}, **values)
     assert told == [
-        "half of the cell edges are shorter than 74 mm, less than the strip's height of 100 mm: choose fewer cells "
-        "or a lower strip"
+        "half of the cell edges are shorter than 74 mm, less than the strip's height of 100 mm: at most 84 cells, or a "
+        "strip up to 74 mm high"
     ]
 
 
@@ -110,7 +110,7 @@ def test_overstress_names_the_lamella_and_counts() -> None:
     most = results.summary["lamellas"]["utilisation_max"]
     assert most > 1
     assert told[0].startswith(f"utilisation reaches {most:.2f} in lamella ")
-    assert "(48 of 48 lamellas are over 1): a thinner or lower strip" in told[0]
+    assert "(48 of 48 lamellas are over 1): a thickness of " in told[0]
 
 
 def test_strips_too_high_for_the_curvature() -> None:

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, Literal
 
 import numpy as np
 
 from lamella.network.cell_sizes import MOST_RATIO, large_cells
+from lamella.network.density import LEAST_CELLS
 from lamella.network.network import Network
-from lamella.strip.lamellas import Lamellas, layer_drift
-from lamella.strip.material import Material
+from lamella.strip.lamellas import Lamellas, Section, layer_drift
+from lamella.strip.sections import bearable
 from lamella.surface.element.surface import SMOOTHED_ORDER, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
-from lamella.wording import counted
+from lamella.wording import counted, rounded
 
 # m; the largest timber gridshells span well under 200 m
 LARGE = 250.0
@@ -22,10 +23,6 @@ LARGE = 250.0
 SLENDER = 2500.0
 # share of the radius of curvature beyond which half the strip's height is no small strip any more
 DEEP = 0.5
-# share of the strength beyond which the stress of layers beside the centre line matters
-LAYER_SHARE = 0.2
-# of the mean distance of layers on lamella curves: farther off than by this factor they are worth a look
-UNEVEN = 1.5
 
 
 def size_cautions(mesh: SurfaceMesh, height: float) -> Iterator[str]:
@@ -106,8 +103,15 @@ def network_cautions(network: Network, height: float, closing: str = "open", *, 
     if median < height and network.pattern.kind == "lamellas":
         yield (
             f"half of the cell edges are shorter than {median * 1000:.3g} mm, less than the strip's height of "
-            f"{height * 1000:g} mm: choose fewer cells or a lower strip"
+            f"{height * 1000:g} mm: {_fewer(network, median, height)}a strip up to "
+            f"{rounded(median * 1000, up=False):g} mm high"
         )
+
+
+def _fewer(network: Network, median: float, height: float) -> str:
+    """How many cells have edges as long as the strip is high, where that many make a net."""
+    cells = int(0.95 * network.cells * median / height)
+    return f"at most {cells} cells, or " if cells >= LEAST_CELLS else ""
 
 
 def _why_large(network: Network, traced: bool) -> str:
@@ -122,8 +126,18 @@ def _why_large(network: Network, traced: bool) -> str:
     )
 
 
-def lamella_cautions(mesh: SurfaceMesh, network: Network, lamellas: Lamellas, slot_width: float) -> Iterator[str]:
-    """Overstress, strips too high for the surface's curvature, layers that differ by more than their slots allow."""
+def lamella_cautions(
+    mesh: SurfaceMesh,
+    network: Network,
+    lamellas: Lamellas,
+    slot_width: float,
+    strength: float,
+    utilisation: Callable[[Section], float],
+) -> Iterator[str]:
+    """Overstress, strips too high for the surface's curvature, layers that differ by more than their slots allow.
+
+    `strength` is the material's, Pa; `utilisation` the largest one of another section of it.
+    """
     worst = int(np.argmax(lamellas.utilisation))
     if lamellas.utilisation[worst] > 1:
         lamella = int(np.searchsorted(network.sample_offsets, worst, "right")) - 1
@@ -131,8 +145,8 @@ def lamella_cautions(mesh: SurfaceMesh, network: Network, lamellas: Lamellas, sl
         over = int((np.add.reduceat(lamellas.utilisation > 1, network.sample_offsets[:-1]) > 0).sum())
         yield (
             f"utilisation reaches {lamellas.utilisation[worst]:.2f} in lamella {network.ids[lamella]} at ({point}) m "
-            f"({over} of {len(network.ids)} lamellas {'is' if over == 1 else 'are'} over 1): a thinner or lower strip, "
-            "a stronger material or a flatter surface helps"
+            f"({over} of {len(network.ids)} lamellas {'is' if over == 1 else 'are'} over 1): "
+            + _bearable(lamellas, strength, utilisation)
         )
     half = lamellas.section.height / 2
     curvature = float(max(np.abs(mesh.k1).max(), np.abs(mesh.k2).max()))
@@ -142,7 +156,7 @@ def lamella_cautions(mesh: SurfaceMesh, network: Network, lamellas: Lamellas, sl
             f"curvature ({1 / curvature:.3g} m): the strips' edges are far from their centre lines"
         )
     section = lamellas.section
-    if section.layers > 1 and not section.own_parts:
+    if section.layers > 1 and section.layer_lengths == "alike":
         drift = layer_drift(network) * section.offset * (section.layers - 1)
         # a lamella's layers sit in the crossing ones' slots and these in its own
         play = 2 * (slot_width - section.thickness)
@@ -156,27 +170,11 @@ def lamella_cautions(mesh: SurfaceMesh, network: Network, lamellas: Lamellas, sl
             )
 
 
-def layer_cautions(network: Network, lamellas: Lamellas, material: Material) -> Iterator[str]:
-    """Layers that are bent about their strong axis, or whose distances vary much."""
-    section, starts = lamellas.section, network.sample_offsets[:-1]
-    share = lamellas.layer / material.strength
-    worst = int(np.argmax(share))
-    if share[worst] > LAYER_SHARE:
-        over = int((np.maximum.reduceat(share, starts) > LAYER_SHARE).sum())
-        point = ", ".join(f"{x:.3g}" for x in network.sample_points[worst])
-        yield (
-            f"layers {np.abs(section.layer_offsets).max() * 1000:.3g} mm beside the centre line are bent about their "
-            f"strong axis, up to {lamellas.layer[worst] / 1e6:.3g} MPa at ({point}) m, by more than {LAYER_SHARE:.0%} "
-            f"of the strength in {over} of {len(network.ids)} lamellas: cut them to their own outlines "
-            "(lamella.layer_curves = 'cut'), or choose a smaller lamella.offset or one layer"
-        )
-    if section.layer_curves != "lamella" or section.layers == 1:
-        return
-    apart = np.diff(lamellas.layers.distances, axis=0)[:, lamellas.layers.followed]
-    least, most = float(apart.min()), float(apart.max())
-    if least < section.offset / UNEVEN or most > UNEVEN * section.offset:
-        close = f"; strips {section.thickness * 1000:g} mm thick touch" if least <= section.thickness else ""
-        yield (
-            f"on lamella curves of their own layers are {least * 1000:.3g} to {most * 1000:.3g} mm apart, where offset "
-            f"= {section.offset * 1000:g} mm is the mean{close}: lamella.layer_curves = 'cut' keeps them parallel"
-        )
+def _bearable(lamellas: Lamellas, strength: float, utilisation: Callable[[Section], float]) -> str:
+    """What brings the utilisation to 1."""
+    measures: tuple[Literal["thickness", "height"], ...] = ("thickness", "height")
+    found = {measure: bearable(lamellas.section, measure, utilisation) for measure in measures}
+    ways = [f"a {measure} of {value * 1000:g} mm" for measure, value in found.items() if value is not None]
+    needed = rounded(strength * float(lamellas.utilisation.max()) / 1e6, up=True)
+    ways.append(f"a material as stiff with a strength of {needed:g} MPa")
+    return f"{' or '.join(ways)} brings it to 1"

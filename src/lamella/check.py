@@ -15,7 +15,7 @@ from typing import Any
 from lamella.cautions import order_caution
 from lamella.errors import InputError
 from lamella.network.lines import is_traced
-from lamella.pipeline import Clock, Planned, complete, plan
+from lamella.pipeline import Clock, Planned, Results, complete, plan
 from lamella.progress import Progress, silent
 from lamella.project import FormFoundTable, MeshTable, Project
 from lamella.surface.surface import Surface
@@ -111,8 +111,10 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
     elif nodes is not None and project.network.closing == "adjust" and not density:
         until = "surface"
         left.append("whether the boundary can be adjusted so that the net closes, and what its strips are")
-    warnings = _warnings(coarse, (surface, density, None), until, folder)
-    return Checked(surface, cells, nodes, warnings, coarse is not project, tuple(left))
+    results = _computed(coarse, (surface, density, None), until, folder)
+    if results.network:
+        nodes = len(results.network.node_points)
+    return Checked(surface, cells, nodes, tuple(results.summary["warnings"]), coarse is not project, tuple(left))
 
 
 def _laid(project: Project, surface: Surface[Any], progress: Progress) -> tuple[int, int]:
@@ -126,12 +128,11 @@ def _laid(project: Project, surface: Surface[Any], progress: Progress) -> tuple[
     return lattice.cells, lattice.estimated_nodes
 
 
-def _warnings(project: Project, planned: Planned, until: str | None, folder: Path) -> tuple[str, ...]:
-    """What the stages of a run warn of."""
+def _computed(project: Project, planned: Planned, until: str | None, folder: Path) -> Results:
+    """What the stages of a run make of a surface."""
     files = project.files.model_copy(update={"mesh_tolerance": max(COARSE_MESH, project.files.mesh_tolerance)})
     light = project.model_copy(update={"files": files})
-    results = complete(light, planned, Clock(silent), until=until, folder=folder)
-    return tuple(results.summary["warnings"])
+    return complete(light, planned, Clock(silent), until=until, folder=folder)
 
 
 def _coarse(project: Project, left: list[str]) -> Project:

@@ -63,8 +63,9 @@ class NetworkTable(Table):
         "lines, for panels that are nearly planar quads. A principal net has no strips: the run ends with the network.",
     )
     cells: int | None = number(
-        "Number of A lamellas that cross a loop once around the axis; on a simply connected surface, number of "
-        "cells along its longest principal line. 24 when spacing is not given either.",
+        "Number of A lamellas that cross a loop once around the axis, or that end on the rim of the first hole (B "
+        "where these are more); on a simply connected surface, number of cells along its longest principal line. 24 "
+        "when spacing is not given either.",
         "",
         ge=3,
         le=10**12,
@@ -72,7 +73,8 @@ class NetworkTable(Table):
         examples=[24],
     )
     spacing: float | None = length(
-        "Wanted median cell edge, instead of cells; the nearest whole number of cells is taken.",
+        "Wanted median cell edge, instead of cells; the nearest whole number of cells is taken, or a spacing up to a "
+        "tenth away with which the net closes and its umbilics are nodes.",
         default=None,
         examples=[0.5],
     )
@@ -177,15 +179,6 @@ class LamellaTable(Table):
         default="alike",
         description='"alike": every layer is marked at the node distances of the centre line; "own": each at those of '
         "its own curve to the side, as a part of its own.",
-    )
-    layer_curves: Literal["offset", "cut", "lamella"] = Field(
-        default="offset",
-        description='Where layers run, and how they are cut. "offset": at equal distances, all straight or of one '
-        "radius; beside the centre line they are bent about their strong axis, which is counted as a stress. "
-        '"cut": at equal distances, each with an outline of its own, some millimetres off, free of that stress. '
-        '"lamella": on lamella curves of their own, straight or of one radius and free of that stress; offset is then '
-        "their mean distance, which goes with the cell edge. The last two make every layer a part of its own length. "
-        "With one layer nothing changes.",
     )
 
     @model_validator(mode="after")

@@ -18,6 +18,11 @@ from lamella.wording import cut
 
 # a project file is written by hand; anything larger is some other file
 MOST_BYTES = 5_000_000
+# of a dotted key; the reader's time grows with the square of it
+MOST_PARTS = 32
+_DEEP = re.compile(rf"""(?<![\w.'"-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
+# errors looked at
+MOST_ERRORS = 200
 # errors told at once
 MOST_TOLD = 6
 
@@ -65,6 +70,14 @@ def read_project(path: str | Path) -> Project:
 
 
 def _toml(text: str, source: str) -> dict[str, Any]:
+    deep = _DEEP.search(text)
+    if deep:
+        line = text.count("\n", 0, deep.start()) + 1
+        raise InputError(
+            f"a key of more than {MOST_PARTS} parts: {cut(deep[0], 60)}",
+            "see `lamella new` for a project that is",
+            f"{source}:{line}",
+        )
     try:
         return tomllib.loads(text)
     except RecursionError:
@@ -107,8 +120,9 @@ def parse_project(values: dict[str, Any], *, source: str = "", text: str = "") -
     try:
         project = Project.model_validate(values)
     except ValidationError as failure:
-        errors = told_once([explain(error, values) for error in failure.errors()])
-        more = len(errors) - MOST_TOLD
+        found = failure.errors(include_url=False)
+        errors = told_once([explain(error, values) for error in found[:MOST_ERRORS]])
+        more = len(errors) - MOST_TOLD + max(len(found) - MOST_ERRORS, 0)
         told = [InputError(m, r, _where(source, text, key)) for key, m, r in errors[:MOST_TOLD]]
         if more > 0:
             told.append(InputError(f"and {more} more {'error' if more == 1 else 'errors'}", where=source))
@@ -162,7 +176,7 @@ def _check_slots(project: Project) -> None:
     if width is not None and width < thickness:
         raise InputError(
             f"slot_width = {width:g} m is less than the thickness {thickness:g} m of the strip that goes in",
-            f"write slot_width = {2 * thickness:g}, twice the thickness, or leave it out",
+            "leave slot_width out: it is twice the thickness then",
             "fabrication.slot_width",
         )
 

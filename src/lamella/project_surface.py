@@ -21,7 +21,7 @@ from lamella.project_values import (
     number,
     two_numbers,
 )
-from lamella.wording import shown
+from lamella.wording import rounded, shown
 
 # of a helicoid: the longer side of its parameter rectangle over the shorter one
 MOST_ELONGATED = 10_000
@@ -84,7 +84,8 @@ class CatenoidTable(_WithHeight):
                 raise Refusal(
                     f"at z = {z:g} m a catenoid of neck_radius = {self.neck_radius:g} m is wider than "
                     f"{MOST_LENGTH:g} m (limit |z| <= {limit:.4g} m)",
-                    "shorten the range or widen the neck",
+                    f"keep height within [{-rounded(limit, up=False):g}, {rounded(limit, up=False):g}], or widen the "
+                    "neck",
                     "height",
                 )
         return self
@@ -161,7 +162,8 @@ class EnneperTable(Table):
             raise Refusal(
                 f"radius = {self.radius:g} is out of range: at most {limit:.4g} for order {self.order}, where the "
                 f"rim's cells are {MOST_ENNEPER_GROWTH**2:,} times those in the middle",
-                "lower radius; beyond a radius of about 1 the surface cuts through itself anyway",
+                f"write radius = {rounded(limit, up=False):g} or less; beyond a radius of about 1 the surface cuts "
+                "through itself anyway",
                 "radius",
             )
         return self

@@ -26,6 +26,8 @@ def lay(surface: Surface[Any], project: Project, step: float | None, progress: P
         step=step,
         pattern=table.pattern,
         loop_names=tuple(loop.name for loop in getattr(project.surface, "boundary", ())),
+        seams=table.closing == "open",
+        minimum_length=table.minimum_length,
         progress=progress,
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from datetime import date, datetime, time
 from typing import Any
 
@@ -10,6 +11,17 @@ def cut(text: str, most: int = 80) -> str:
     """One line of text that fits a message."""
     line = "".join(c if c.isprintable() else "?" for c in text)
     return line if len(line) <= most else line[: most - 3] + "..."
+
+
+def rounded(value: float, *, up: bool, digits: int = 3) -> float:
+    """A number to some digits, never to the wrong side: what is offered as a limit has to keep it."""
+    if value <= 0:
+        return -rounded(-value, up=not up, digits=digits) if value else 0.0
+    scale = 10.0 ** (digits - 1 - math.floor(math.log10(value)))
+    # what is whole but for rounding stays
+    count = value * scale
+    whole = math.ceil(count * (1 - 1e-12)) if up else math.floor(count * (1 + 1e-12))
+    return float(f"{whole / scale:.{digits}g}")
 
 
 def counted(number: int, one: str, several: str = "") -> str:

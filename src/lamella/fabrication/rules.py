@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lamella.errors import InputError
 from lamella.fabrication.flat import longest_fitting
+from lamella.wording import rounded
 
 Floats = NDArray[np.float64]
 
@@ -62,8 +63,6 @@ class Rules:
         Length and width, m.
     gap : float
         Between parts and to the sheet's edge, m.
-    bow : float
-        How far outlines of layers that are cut to their own curvature leave the others' at most, m.
     """
 
     layers: int
@@ -78,7 +77,12 @@ class Rules:
     slot_width: float
     sheet: tuple[float, float]
     gap: float
-    bow: float = 0.0
+
+    @property
+    def spread(self) -> Floats:
+        """Stations of a crossing's slots from its node, m, (layers,)."""
+        steps = np.arange(self.layers, dtype=np.float64) - 0.5 * (self.layers - 1)
+        return np.asarray(steps * self.offset, dtype=np.float64)
 
     @property
     def edge_scale(self) -> float:
@@ -94,7 +98,7 @@ class Rules:
     def longest_on_sheet(self) -> float:
         """Length of the longest strip that fits the sheet, m."""
         length, width = max(self.sheet) - 2 * self.gap, min(self.sheet) - 2 * self.gap
-        return longest_fitting(length, width, self.height + 2 * self.bow, self.curvature, LARGEST_TURN)
+        return longest_fitting(length, width, self.height, self.curvature, LARGEST_TURN)
 
     def check(self) -> None:
         """Raise an `InputError` for measures that no part can be made with."""
@@ -106,32 +110,41 @@ class Rules:
         for name, value, bound in least:
             if not (np.isfinite(value) and value > bound):
                 raise InputError(
-                    f"{name} is {value:g}, it has to be more than {bound:g}", f"raise {name}", f"fabrication.{name}"
+                    f"{name} is {value:g}, it has to be more than {bound:g}",
+                    f"write a {name} above {bound:g}",
+                    f"fabrication.{name}",
                 )
         for name, value in (("hub_radius", self.hub_radius), ("rim_overhang", self.rim_overhang)):
             if not (np.isfinite(value) and value >= 0):
                 raise InputError(
                     f"{name} is {value:g} m, it cannot be less than 0", "give 0 or more", f"fabrication.{name}"
                 )
+        # twice the thickness, where the strip is high enough
+        usual = min(2 * self.thickness, (self.thickness + self.height) / 2)
         if not (np.isfinite(self.slot_width) and self.slot_width >= self.thickness):
             raise InputError(
                 f"slot_width is {self.slot_width:g} m, less than the thickness {self.thickness:g} m "
                 "of the strip that goes in",
-                f"raise slot_width to {2 * self.thickness:g} m, twice the thickness",
+                f"write slot_width = {usual:g}",
                 "fabrication.slot_width",
             )
         if self.slot_width >= self.height:
             raise InputError(
                 f"slot_width is {self.slot_width:g} m, not less than the strip's height {self.height:g} m",
-                f"lower slot_width; twice the thickness is {2 * self.thickness:g} m",
+                f"write slot_width = {usual:g}",
                 "fabrication.slot_width",
             )
         # a tighter circle's inner edge would be narrower than the slots and their distances
         if self.edge_scale <= 0.5 or abs(self.curvature) * self.slot_width >= self.edge_scale:
+            bend = abs(self.curvature)
+            # both limits, with slots of twice the thickness
+            highest = 2 * (1 - max(0.5, 2 * bend * self.thickness)) / bend
             raise InputError(
                 f"the lamellas' circle has a radius of {1 / abs(self.curvature):g} m, too little for a strip "
                 f"{self.height:g} m high with slots {self.slot_width:g} m wide",
-                f"lower the lamella's height below {1 / abs(self.curvature):g} m, and the slot width",
+                f"write lamella.height = {rounded(0.99 * highest, up=False):g} or less, and leave slot_width out"
+                if highest > 2 * self.thickness
+                else f"write lamella.thickness = {rounded(0.1 / bend, up=False):g} or less",
                 "lamella.height",
             )
         nearest = 1.5 * self.slot_width / self.edge_scale
@@ -139,6 +152,6 @@ class Rules:
             raise InputError(
                 f"end_distance is {self.end_distance:g} m, which leaves less than one slot width "
                 f"({self.slot_width:g} m) beyond the last slot",
-                f"raise end_distance to {nearest:.6f} m or more",
+                f"raise end_distance to {rounded(nearest, up=True):g} m or more",
                 "fabrication.end_distance",
             )

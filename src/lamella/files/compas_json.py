@@ -18,8 +18,10 @@ from lamella.errors import InputError
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.unknowns import Floats
 from lamella.surface.imported.raw_mesh import Polygons
+from lamella.wording import cut, shown
 
 DTYPE = "compas.datastructures/Mesh"
+WRITE = "write it with mesh.to_json(...) of COMPAS"
 
 
 def read_compas(data: bytes) -> tuple[Polygons, tuple[str, ...], tuple[str, ...]]:
@@ -33,23 +35,31 @@ def read_compas(data: bytes) -> tuple[Polygons, tuple[str, ...], tuple[str, ...]
     try:
         table = _table(orjson.loads(data))
     except orjson.JSONDecodeError as reason:
-        raise InputError(f"the file is no JSON: {reason}", "write it with mesh.to_json(...) of COMPAS") from None
+        raise InputError(
+            f"the file is no JSON: {cut(str(reason), 120)}", "write it with mesh.to_json(...) of COMPAS"
+        ) from None
     own = table.get("default_vertex_attributes", table.get("dva"))
     default = {"x": 0.0, "y": 0.0, "z": 0.0, **(own if isinstance(own, dict) else {})}
     points = []
     for key, attributes in table["vertex"].items():
+        if not isinstance(attributes, dict | None):
+            raise InputError(
+                f"vertex {cut(key, 40)} has no table of attributes", "write it with mesh.to_json(...) of COMPAS"
+            )
         place = [{**default, **(attributes or {})}[axis] for axis in "xyz"]
         if not all(isinstance(x, int | float) and not isinstance(x, bool) for x in place):
-            raise InputError(f"vertex {key} is at {place}", "three numbers x, y and z are expected")
+            raise InputError(f"vertex {cut(key, 40)} is at {shown(place)}", "three numbers x, y and z are expected")
         points.append(place)
     number = {key: k for k, key in enumerate(table["vertex"])}
     faces = list(table["face"].values())
     if not all(isinstance(face, list) for face in faces):
-        raise InputError("a face is no list of vertices", "write the file with mesh.to_json(...) of COMPAS")
+        raise InputError("a face is no list of vertices", WRITE)
     try:
         corners = [number[str(key)] for key in chain.from_iterable(faces)]
     except KeyError as missing:
-        raise InputError(f"a face names vertex {missing}, which is not there", "write the file anew") from None
+        raise InputError(
+            f"a face names vertex {cut(str(missing), 40)}, which is not there", "write the file anew"
+        ) from None
     polygons = Polygons(
         np.array(points, np.float64).reshape(-1, 3),
         np.array([len(face) for face in faces], np.int64),
@@ -65,8 +75,8 @@ def _table(content: Any) -> dict[str, Any]:
         if isinstance(found.get("vertex"), dict) and isinstance(found.get("face"), dict):
             return found
         found = found.get("data", found.get("value"))
-    kind = f" but {content['dtype']}" if isinstance(content, dict) and "dtype" in content else ""
-    raise InputError(f"the file holds no mesh of COMPAS{kind}", "write it with mesh.to_json(...) of COMPAS")
+    kind = f" but {cut(str(content['dtype']), 40)}" if isinstance(content, dict) and "dtype" in content else ""
+    raise InputError(f"the file holds no mesh of COMPAS{kind}", WRITE)
 
 
 def compas_bytes(

@@ -26,6 +26,9 @@ from lamella.wording import counted
 
 READERS = {".obj": read_obj, ".ply": read_ply, ".3dm": read_3dm}
 FORMATS = (*READERS, ".json")
+LARGEST_JSON = 64_000_000
+"""Bytes; a table of objects takes up to twenty times as much memory."""
+
 FIGURE_UNITS = "star_sphericity star_planarity star_radius moved in m; star_curvature in 1/m; angle in degrees"
 
 
@@ -80,8 +83,9 @@ def _read(path: Path, unit: str | None) -> QuadFile:
         raise InputError(f"unit {unit!r} is not known", f"take one of {', '.join(METRES)}")
     if not path.is_file():
         raise InputError("no such file", "check the path")
-    if path.stat().st_size > LARGEST_FILE:
-        raise InputError(f"the file has {path.stat().st_size / 2**20:,.0f} MB; at most 1024 are read", "reduce it")
+    size, most = path.stat().st_size, LARGEST_JSON if path.suffix.lower() == ".json" else LARGEST_FILE
+    if size > most:
+        raise InputError(f"the file has {size / 1e6:,.0f} MB; at most {most / 1e6:.0f} are read", "reduce it")
     data = path.read_bytes()
     if not data.strip():
         raise InputError("the file is empty", "export it again")

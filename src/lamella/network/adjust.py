@@ -19,8 +19,8 @@ from lamella.errors import InputError
 from lamella.network.adjustable_films import Films, FollowError
 from lamella.network.between_umbilics import between_umbilics, keeps_apart
 from lamella.network.carried_shifts import Carrier
+from lamella.network.closing_steps import CLOSES
 from lamella.network.element_lattice import Lattice, choose_lattice
-from lamella.network.element_network import CLOSES
 from lamella.network.film_net import FilmNet
 from lamella.network.holonomy import around_holes, holonomies
 from lamella.network.pattern import LAMELLAS, Pattern
@@ -113,7 +113,8 @@ def adjust_boundary(
     progress(f"  adjusting {', '.join(freedom.names)}: {freedom.count} parameters")
     first = films.first(COARSE)
     names = tuple(loop.name for loop in table.boundary)
-    lattice = choose_lattice(first.iso, holonomies(first.iso), cells, spacing, pattern=pattern, names=names)
+    around = holonomies(first.iso)
+    lattice = choose_lattice(first.iso, around, cells, spacing, pattern=pattern, names=names, seams=False)
     before = _worst(first.whole.nearest(first.cells(lattice.step))[0] - first.cells(lattice.step))
     search = _Search(films, progress)
     state, step, after = search.closed(first, lattice)

@@ -16,6 +16,7 @@ from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.outline import Ring
 from lamella.surface.umbilic import refuse_umbilic
+from lamella.wording import rounded
 
 LEAST_CELLS = 3
 # nets of up to so many nodes are tried out to meet a spacing; in larger ones the rim weighs little
@@ -159,7 +160,7 @@ def choose_density(
             raise InputError(
                 f"spacing = {spacing:g} m leaves {exact:.2g} cells across the surface, at least {LEAST_CELLS} are "
                 "needed",
-                f"choose a spacing of at most {whole * median / LEAST_CELLS:.3g} m",
+                f"choose a spacing of at most {rounded(whole * median / LEAST_CELLS, up=False):g} m",
                 key,
             )
         area, ends = _estimate(lines)
@@ -170,7 +171,9 @@ def choose_density(
         turn = complex(surface.isothermic(np.array([2j * np.pi]))[0])
         cells = fitting_cells(cells, pattern.multiple(turn), "the axis", given=spacing is None)
     if cells < LEAST_CELLS:
-        raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
+        raise InputError(
+            f"{cells} cells, at least {LEAST_CELLS} are needed", f"write cells = {LEAST_CELLS} or more", key
+        )
     area, ends = _estimate(lines)
     p, q = pattern.every
     area, ends = area / (p * q), ends * (p + q) / (2 * p * q)
@@ -181,7 +184,7 @@ def choose_density(
         if most < LEAST_CELLS:
             remedy = "the surface is too long for its width: shorten or widen it"
         elif spacing is not None:
-            remedy = f"choose a spacing of at least {spacing * cells / most:.3g} m"
+            remedy = f"choose a spacing of at least {rounded(1.01 * spacing * cells / most, up=True):g} m"
         else:
             remedy = f"at most {most} cells fit this surface"
         raise InputError(

@@ -234,7 +234,7 @@ class Band(PlaneDomain):
 
 
 class RectangleDomain(PlaneDomain):
-    """A rectangle whose sides are lamella directions: whole cells across its narrow side, centred along."""
+    """A rectangle with lamella directions as sides: whole cells across its narrow side, node or cell in its middle."""
 
     def __init__(self, surface: ClosedForm, step: float, pattern: Pattern = LAMELLAS) -> None:
         super().__init__(surface, step, 0j, pattern)
@@ -246,11 +246,8 @@ class RectangleDomain(PlaneDomain):
         low = complex(corners.real.min(), corners.imag.min())
         high = complex(corners.real.max(), corners.imag.max())
 
-        def margin(length: float) -> float:
-            return float(length - np.floor(length + RIM_TOLERANCE)) / 2
-
-        span = high - low
-        self.origin = low + complex(margin(span.real), margin(span.imag))
+        # the same in both directions, or the nodes were not those of a net with twice the cells
+        self.origin = (low + high) / 2 + centred(surface.whole_length / step)
         self.low, self.high = low - self.origin, high - self.origin
 
     def extent(self) -> tuple[Floats, Floats]:

@@ -7,16 +7,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.errors import InputError
-from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
+from lamella.network.cell_count import CellCount
+from lamella.network.cell_map import CellMap
+from lamella.network.choose_step import LEAST_CELLS, Better, better_density, near_step
+from lamella.network.closing_steps import CLOSES, ClosingLengths
+from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, MOST_NODES
 from lamella.network.holonomy import Holonomy
-from lamella.network.isothermic import Isothermic
+from lamella.network.isothermic import Integers, Isothermic
 from lamella.network.lattice_origin import lattice_origin
+from lamella.network.median_edge import EdgeSizes
 from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
-from lamella.surface.element.quadrature import triangle_rule
-from lamella.surface.points import Floats
+from lamella.wording import rounded
 
-# of the longest principal line: a shorter period around a hole is none to count cells on
-LEAST_PERIOD = 1e-2
+# share of a spacing; moved by more for a net that closes, the new one is reported
+MOVED = 0.02
+NO_SEAMS = np.zeros(0, np.int64)
 
 
 @dataclass(frozen=True)
@@ -30,9 +35,17 @@ class Lattice:
     step : float
         l0, sqrt(m).
     cells : int
+        See `lamella.network.cell_count`; where a spacing was given, the nearest whole number.
     requested : str
     estimated_nodes : int
         Crossings and ends on the rim.
+    edge : float
+        Expected median cell edge, m, before curves are left out.
+    advice : str
+        What density lets the net close with its umbilics on nodes, or brings it much nearer; empty: this one closes, or
+        none near it does.
+    better_closes : bool
+        Whether all closes with that.
     """
 
     origin: complex
@@ -40,6 +53,9 @@ class Lattice:
     cells: int
     requested: str
     estimated_nodes: int
+    edge: float
+    advice: str
+    better_closes: bool
 
 
 def choose_lattice(
@@ -51,87 +67,104 @@ def choose_lattice(
     step: float | None = None,
     pattern: Pattern = LAMELLAS,
     names: tuple[str, ...] = (),
+    seams: bool = True,
+    correction: float = 1.0,
 ) -> Lattice:
-    """Origin and step: a singular node on the lattice, a whole number of cells around the first hole or across.
+    """Origin and step l0: of a number of cells, or near the step with a given median cell edge.
 
-    With a step, sqrt(m), that is taken, and the number of cells is what follows.
+    With a step, sqrt(m), that is taken, and the number of cells is what follows. `seams` is whether the net is left
+    open where it does not meet itself: that costs nodes.
+
+    Raises
+    ------
+    InputError
+        The surface has no room for three cells, or the net too many nodes.
     """
-    whole, period = _whole_length(iso, around, pattern)
-    points, weights = triangle_rule(8)
-    mu_area, edge = _cell_densities(iso, points, weights, pattern)
-    requested = f"cells = {cells}"
-    key = "network.cells"
-    if cells is None and spacing is None:
-        cells, requested = 24, "cells = 24 (default)"
+    count, closing = CellCount.of(iso, around, pattern), ClosingLengths.of(iso, pattern)
+    sizes = EdgeSizes.of(iso, pattern, NO_SEAMS)
+    requested, key = f"cells = {cells}", "network.cells"
     if spacing is not None:
-        key, requested = "network.spacing", f"spacing = {spacing:g} m"
-        order = np.argsort(edge)
-        running = np.cumsum(mu_area[order])
-        median = float(edge[order][np.searchsorted(running, running[-1] / 2)])
-        cells = max(round(whole * median / spacing), 1)
+        requested, key = f"spacing = {spacing:g} m", "network.spacing"
+    elif cells is None:
+        cells, requested = 24, "cells = 24 (default)"
+    chosen = step
+    if chosen is None and spacing is not None:
+        wanted = sizes.step(spacing / correction)
+        _check_room(count, sizes, wanted, spacing)
+        _check_size(sizes, wanted, pattern, requested, key, spacing)
+        chosen = near_step(count, closing, wanted, pattern)
+        if abs(np.log(chosen / wanted)) > MOVED and closing.miss(chosen) <= CLOSES:
+            requested += f" ({sizes.median(chosen):.3g} m: the net closes with it)"
+    elif chosen is None:
+        assert cells is not None
         if cells < LEAST_CELLS:
             raise InputError(
-                f"spacing = {spacing:g} m leaves {whole * median / spacing:.2g} cells across the surface, at least "
-                f"{LEAST_CELLS} are needed",
-                f"choose a spacing of at most {whole * median / LEAST_CELLS:.3g} m",
-                key,
+                f"{cells} cells, at least {LEAST_CELLS} are needed", f"write cells = {LEAST_CELLS} or more", key
             )
-    assert cells is not None
-    if period:
-        name = repr(names[around[0].loop]) if names else "the first hole"
-        cells = fitting_cells(cells, pattern.multiple(period), name, given=spacing is None)
-    if cells < LEAST_CELLS:
-        raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", key)
-    if step is None:
-        step = whole / cells
-    else:
-        cells = round(whole / step)
-    p, q = pattern.every
-    # a crossing a cell, and two ends a lamella
-    crossings, ends = float(mu_area.sum()) / (step**2 * p * q), _ends(iso, pattern, step)
-    estimate = crossings + ends
-    if estimate > MOST_NODES:
-        memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
-        finer = (np.sqrt(ends**2 + 4 * crossings * MOST_NODES) - ends) / (2 * crossings)
+        if count.follows_period(pattern):
+            name = repr(names[around[0].loop]) if names else "the first hole"
+            cells = fitting_cells(cells, pattern.multiple(count.period), name, given=True)
+        chosen = count.step(cells, pattern)
+        _check_size(sizes, chosen, pattern, requested, key, None, cells)
+    better = better_density(count, closing, chosen, pattern) if step is None else None
+    ended = EdgeSizes.of(iso, pattern, _seams(iso, chosen, pattern)) if seams else sizes
+    return Lattice(
+        lattice_origin(iso, chosen, pattern),
+        chosen,
+        max(round(count.cells(chosen)), 1) if cells is None or step is not None else cells,
+        requested,
+        round(sum(ended.nodes(chosen, pattern))),
+        sizes.median(chosen),
+        _advice(better, sizes),
+        better is not None and better.closes,
+    )
+
+
+def _check_room(count: CellCount, sizes: EdgeSizes, step: float, spacing: float) -> None:
+    """Refuse a spacing with which fewer than three cells have room."""
+    room = max(count.length, count.across)
+    if room / step < LEAST_CELLS:
+        # rounded down: what is written has to do
+        most = rounded(0.99 * sizes.median(room / LEAST_CELLS), up=False)
         raise InputError(
-            f"{requested} would make about {estimate:,.0f} nodes and take about {memory:,.0f} GB of memory (limit "
-            f"{MOST_NODES:,} nodes)",
-            f"at most {int(cells * finer)} cells fit this surface"
-            if spacing is None
-            else f"choose a spacing of at least {spacing / finer:.3g} m",
-            key,
+            f"spacing = {spacing:g} m leaves {room / step:.2g} cells across the surface, at least {LEAST_CELLS} are "
+            "needed",
+            f"choose a spacing of at most {most:g} m",
+            "network.spacing",
         )
-    return Lattice(lattice_origin(iso, step, pattern), step, cells, requested, round(estimate))
 
 
-def _ends(iso: Isothermic, pattern: Pattern, step: float) -> float:
-    """Ends of lamellas on the rim: whole numbers that both parts of chi pass along it."""
-    connectivity = iso.mesh.connectivity
-    nodes = connectivity.basis.edge_nodes[connectivity.rim_edges]
-    along = np.diff(pattern.cells(iso.value[connectivity.rim_elements[:, None], nodes], step), axis=1)
-    return float((np.abs(along.real) + np.abs(along.imag)).sum())
+def _check_size(
+    sizes: EdgeSizes, step: float, pattern: Pattern, requested: str, key: str, spacing: float | None, cells: int = 0
+) -> None:
+    """Refuse a net of too many nodes."""
+    crossings, ends = sizes.nodes(step, pattern)
+    estimate = crossings + ends
+    if estimate <= MOST_NODES:
+        return
+    memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
+    finer = float(np.sqrt(ends**2 + 4 * crossings * MOST_NODES) - ends) / (2 * crossings)
+    raise InputError(
+        f"{requested} would make about {estimate:,.0f} nodes and take about {memory:,.0f} GB of memory (limit "
+        f"{MOST_NODES:,} nodes)",
+        f"at most {int(cells * finer)} cells fit this surface"
+        if spacing is None
+        else f"choose a spacing of at least {rounded(1.01 * spacing / finer, up=True):g} m",
+        key,
+    )
 
 
-def _cell_densities(iso: Isothermic, points: Floats, weights: Floats, pattern: Pattern) -> tuple[Floats, Floats]:
-    """Area of the cell plane, |factor dw|^2, m, and cell edge over l0, 1 / |factor mu|, at integration points."""
-    connectivity = iso.mesh.connectivity
-    basis = connectivity.basis
-    x, y = basis.basis(points, 1, 0), basis.basis(points, 0, 1)
-    w_x, w_y = iso.value @ x.T, iso.value @ y.T
-    area = np.abs(w_x.real * w_y.imag - w_x.imag * w_y.real) * weights
-    corners = iso.mesh.nodes[connectivity.elements]
-    flat = np.linalg.norm(np.cross(np.matmul(x, corners), np.matmul(y, corners)), axis=2) * weights
-    area = area / pattern.edge**2
-    edge = np.sqrt(flat / np.maximum(area, 1e-300))
-    return area.ravel(), edge.ravel()
+def _seams(iso: Isothermic, step: float, pattern: Pattern) -> Integers:
+    """Transitions across which an open net does not go on."""
+    shifts = CellMap.of(iso, lattice_origin(iso, step, pattern), step, pattern).shifts
+    off = shifts - np.rint(shifts)
+    return np.flatnonzero(np.maximum(np.abs(off.real), np.abs(off.imag)) > CLOSES)
 
 
-def _whole_length(iso: Isothermic, around: tuple[Holonomy, ...], pattern: Pattern) -> tuple[float, complex]:
-    """What `cells` divides, sqrt(m), and the period it is: around the first hole, or 0: the longest principal line."""
-    longest = iso.longest
-    if around and around[0].sign == 1:
-        chi = around[0].shift * pattern.factor
-        counted = max(abs(chi.real), abs(chi.imag))
-        if counted > LEAST_PERIOD * longest:
-            return counted, around[0].shift
-    return longest, 0j
+def _advice(better: Better | None, sizes: EdgeSizes) -> str:
+    if better is None:
+        return ""
+    density = f"spacing = {sizes.median(better.step):.4g}" if better.cells is None else f"cells = {better.cells}"
+    if better.closes:
+        return f"{density} closes it with all umbilics on nodes"
+    return f"{density} misses whole cells by {better.miss:.2g} only"

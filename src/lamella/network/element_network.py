@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal, NamedTuple
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lamella.errors import InputError
 from lamella.network.cell_map import CellMap
+from lamella.network.closing_steps import CLOSES
 from lamella.network.element_lattice import Lattice, choose_lattice
 from lamella.network.gluing import FoldedError, integrate, with_shifts
 from lamella.network.holonomy import Holonomy, holonomies
@@ -30,10 +31,10 @@ from lamella.surface.umbilic import refuse_umbilic
 
 Closing = Literal["open", "round"]
 
-# of a cell: a shift nearer to whole numbers closes the net (docs/files.md)
-CLOSES = 1e-3
 # of the curvature scale: a larger error of the normal curvature is told
 ASTRAY = 0.02
+# nets of up to so many nodes are tried out to meet a spacing, so often, until they do to so little
+MOST_TRIED, MOST_TRIALS, NEAR_ENOUGH = 1_200, 3, 0.02
 # rounding: the nearest whole numbers may put two umbilics on one node; then the next ones are tried
 MOST_WAYS = 8
 
@@ -98,10 +99,14 @@ class ElementNetwork:
             "closed": all(joint.closed for joint in self.joints),
         }
 
-    def _even(self) -> str:
-        """Numbers of cells around a hole with two umbilics at opposite sides of it, that may make both nodes."""
-        kept = max(self.network.pattern.every)
-        return "even" if kept == 1 else f"a multiple of {2 * kept}"
+    def _remedy(self) -> str:
+        """What closes an open net, with its umbilics on nodes."""
+        advice = self.lattice.advice
+        if advice and self.lattice.better_closes:
+            return advice
+        return (f"{advice}; " if advice else "no density near this one closes it; ") + (
+            "closing = 'round' or 'adjust' may close it"
+        )
 
     def warnings(self) -> Iterator[str]:
         """Where the net does not meet itself, and umbilics that are no nodes."""
@@ -112,21 +117,20 @@ class ElementNetwork:
         if open_:
             yield (
                 f"the net does not meet itself along {len(open_)} seam{'s' if len(open_) > 1 else ''}: it misses whole "
-                f"cells by up to {max(open_):.3g} (summary: network.joints); another number of cells, "
-                "closing = 'round' or 'adjust' may close it"
+                f"cells by up to {max(open_):.3g} (summary: network.joints); {self._remedy()}"
             )
         if rounded:
             yield (
                 f"the net was closed by rounding {len(rounded)} joint{'s' if len(rounded) > 1 else ''} by up to "
                 f"{max(rounded):.3g} cells: node angles and normal curvatures pay for it"
+                + (f"; {self.lattice.advice}" if self.lattice.advice else "")
             )
         missed = [umbilic for umbilic in self.describe()["umbilics"] if not umbilic["node"] and not umbilic["boundary"]]
         if missed:
             places = "; ".join(", ".join(f"{x:.3g}" for x in umbilic["point"]) for umbilic in missed)
             yield (
                 f"{len(missed)} of {len(self.umbilics.orders)} umbilics are no nodes of the net (at {places} m): "
-                f"lamellas pass around them; another number of cells ({self._even()}, where two lie on one principal "
-                "line) makes them nodes"
+                f"lamellas pass around them; {self._remedy()}"
             )
         if not rounded:
             yield from self._astray()
@@ -187,9 +191,12 @@ class LaidNet:
             near = np.round(raw.shifts)
             off = _largest_part(raw.shifts - near)
             wanted = np.where(off <= CLOSES, near, np.nan)
-            if (off <= CLOSES).any():
+            # lines of one family go on where those of the other one do not
+            off_parts, near_parts = raw.shifts - near, np.stack([near.real, near.imag])
+            closes = np.abs(np.stack([off_parts.real, off_parts.imag])) <= CLOSES
+            if closes.any():
                 try:
-                    iso = with_shifts(iso, _shifts(raw, wanted, lattice))
+                    iso = with_shifts(iso, *_turned(raw, np.where(closes, near_parts, np.nan), lattice))
                 except FoldedError:
                     # coordinates that turn over somewhere stay as they are, with a seam
                     wanted[:] = np.nan
@@ -225,14 +232,18 @@ def lay_net(
     step: float | None = None,
     pattern: Pattern = LAMELLAS,
     loop_names: tuple[str, ...] = (),
+    seams: bool = True,
+    minimum_length: float = 0.5,
     progress: Progress = silent,
 ) -> LaidNet:
     """Umbilics, isothermic coordinates and lattice of a surface: how many cells its net has, and about how many nodes.
 
     Parameters
     ----------
-    surface, cells, spacing, step, pattern, loop_names, progress
+    surface, cells, spacing, step, pattern, loop_names, minimum_length, progress
         See `element_network`.
+    seams : bool
+        Whether the net is left open where it does not meet itself.
 
     Raises
     ------
@@ -250,8 +261,39 @@ def lay_net(
     )
     names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
     around = holonomies(iso)
-    lattice = choose_lattice(iso, around, cells, spacing, step=step, pattern=pattern, names=names)
-    return LaidNet(surface, umbilics, mesh, iso, around, lattice, pattern, names)
+    choose = partial(choose_lattice, iso, around, cells, spacing, step=step, pattern=pattern, names=names, seams=seams)
+    laid = LaidNet(surface, umbilics, mesh, iso, around, choose(), pattern, names)
+    if spacing is None or step is not None:
+        return laid
+    return _tried_out(laid, spacing, choose, "open" if seams else "round", minimum_length)
+
+
+def _tried_out(
+    laid: LaidNet, spacing: float, choose: Callable[..., Lattice], closing: Closing, minimum_length: float
+) -> LaidNet:
+    """A net of few nodes with the density whose median cell edge, measured on the net, comes nearest to a spacing.
+
+    In a net of a few rows the ends of the curves are half of its edges, and where they lie decides.
+    """
+    best, nearest, correction = laid, np.inf, 1.0
+    for _ in range(MOST_TRIALS):
+        if laid.lattice.estimated_nodes > MOST_TRIED:
+            break
+        # a spacing is that of the lattice before curves are left out
+        whole = replace(laid, pattern=replace(laid.pattern, every=(1, 1)))
+        try:
+            edges = whole.traced(closing=closing, minimum_length=minimum_length).network.cell_edges
+            measured = float(np.median(edges))
+            correction *= measured / laid.lattice.edge
+            again = choose(correction=correction)
+        except InputError:
+            break
+        if abs(np.log(measured / spacing)) < nearest:
+            best, nearest = laid, abs(np.log(measured / spacing))
+        if nearest < NEAR_ENOUGH or again.step == laid.lattice.step:
+            break
+        laid = replace(laid, lattice=again)
+    return best
 
 
 def element_network(
@@ -290,7 +332,15 @@ def element_network(
     InputError
     """
     laid = lay_net(
-        surface, cells=cells, spacing=spacing, step=step, pattern=pattern, loop_names=loop_names, progress=progress
+        surface,
+        cells=cells,
+        spacing=spacing,
+        step=step,
+        pattern=pattern,
+        loop_names=loop_names,
+        seams=closing == "open",
+        minimum_length=minimum_length,
+        progress=progress,
     )
     return laid.traced(closing=closing, minimum_length=minimum_length)
 
@@ -300,9 +350,11 @@ def _largest_part(shifts: Complexes) -> Floats:
     return np.maximum(np.abs(shifts.real), np.abs(shifts.imag))
 
 
-def _shifts(raw: CellMap, wanted: Complexes, lattice: Lattice) -> Complexes:
-    """Shifts of w (t,), sqrt(m), of shifts in cells."""
-    return raw.pattern.isothermic(wanted, lattice.step) - (raw.signs - 1) * lattice.origin
+def _turned(raw: CellMap, wanted: Floats, lattice: Lattice) -> tuple[Floats, complex]:
+    """Both parts (2, t) of shifts of w, sqrt(m), turned by a factor as cells are, of shifts in cells; the factor."""
+    turn, every = raw.pattern.factor, np.array(raw.pattern.every[::-1])
+    hung = (raw.signs - 1) * lattice.origin * turn
+    return wanted * (every[:, None] * lattice.step) - np.stack([hung.real, hung.imag]), turn
 
 
 def _rounded(iso: Isothermic, raw: CellMap, lattice: Lattice) -> tuple[Isothermic, Complexes]:
@@ -311,7 +363,8 @@ def _rounded(iso: Isothermic, raw: CellMap, lattice: Lattice) -> tuple[Isothermi
     ways = WholeShifts.of(iso, iso.gram).nearest(raw.shifts, MOST_WAYS)
     for wanted in ways:
         try:
-            return with_shifts(iso, _shifts(raw, wanted, lattice)), wanted
+            parts = np.stack([wanted.real, wanted.imag])
+            return with_shifts(iso, *_turned(raw, parts, lattice)), wanted
         except FoldedError as error:
             folded = folded or error
     assert folded

@@ -52,7 +52,7 @@ def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
     return Isothermic(mesh, odd, sign, cut, value, transitions, across, moves, gram, plain.residual(value), plain)
 
 
-def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
+def with_shifts(iso: Isothermic, parts: Floats, turn: complex = 1.0) -> Isothermic:
     """The coordinates nearest to the given ones whose transitions have exactly these shifts.
 
     What is least is the integral of |change of dw|^2 / |D|^2. After a plain harmonic change, r^(1/2) next to a zero of
@@ -61,28 +61,34 @@ def with_shifts(iso: Isothermic, shifts: Complexes) -> Isothermic:
     Parameters
     ----------
     iso : Isothermic
-    shifts : (t,) complex
-        sqrt(m); nan: any. They must not contradict each other where pieces of the cut meet.
+    parts : (2, t)
+        Real and imaginary parts of turn times the shifts, sqrt(m); nan: any. They must not contradict each other where
+        pieces of the cut meet.
+    turn : complex
+        What makes both parts be chosen one without the other.
 
     Raises
     ------
     FoldedError
         The coordinates would turn over somewhere.
     """
-    mesh, given = iso.mesh, np.flatnonzero(~np.isnan(shifts))
-    before = np.array([piece.shift for piece in iso.transitions], complex)
+    mesh = iso.mesh
+    before = turn * np.array([piece.shift for piece in iso.transitions], complex)
     relations = vertex_relations(mesh, iso.transitions, iso.across, iso.odd)
-    rows = [*relations.values(), *np.eye(len(before), dtype=np.int64)[given]]
-    goal = np.concatenate([np.zeros(len(relations), complex), shifts[given] - before[given]])
-    change = best_shifts(iso.gram, np.zeros(len(before), complex), rows, goal)
-    change[given] = shifts[given] - before[given]
+    found = np.stack([before.real, before.imag])
+    for here, wanted in zip(found, parts, strict=True):
+        given = np.flatnonzero(~np.isnan(wanted))
+        rows = [*relations.values(), *np.eye(len(before), dtype=np.int64)[given]]
+        goal = np.concatenate([np.zeros(len(relations)), wanted[given] - here[given]]).astype(complex)
+        here += best_shifts(iso.gram, np.zeros(len(before), complex), rows, goal).real
+        here[given] = wanted[given]
+    after = (found[0] + 1j * found[1]) / turn
+    change = after - before / turn
     value = iso.value + np.einsum("t,tek->ek", change, iso.moves)
     folds = iso.plain.folds(value) & ~iso.plain.folds(iso.value)
     if folds.any():
         raise FoldedError(mesh.nodes[mesh.connectivity.elements[np.flatnonzero(folds)[0], 0]])
-    found = before + change
-    found[given] = shifts[given]
-    return replace(iso, value=value, transitions=_shifted(iso.transitions, found), residual=iso.plain.residual(value))
+    return replace(iso, value=value, transitions=_shifted(iso.transitions, after), residual=iso.plain.residual(value))
 
 
 def _shifted(pieces: tuple[Transition, ...], shifts: Complexes) -> tuple[Transition, ...]:

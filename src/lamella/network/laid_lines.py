@@ -16,8 +16,12 @@ from lamella.network.pattern import Pattern
 from lamella.network.seeds import RIM_POINTS, Guide, choose_guide
 from lamella.surface.points import Floats
 from lamella.surface.vectors import dots, lengths
+from lamella.wording import rounded
 
 Booleans = NDArray[np.bool_]
+
+# share of the surface that has lines, at least, of the normal curvatures that are offered
+OFFERED = 0.1
 
 
 class Reach(NamedTuple):
@@ -119,15 +123,17 @@ def _refuse_nowhere(reach: Reach, usable: Booleans, mean: Floats, half: Floats, 
         raise InputError(
             "the surface is umbilic everywhere: all directions bend alike", "bend it more one way", "surface"
         )
-    # the range within which some place has lines that cross well enough
+    # the range within which part of the surface has lines that cross well enough
     turn = np.cos(np.radians(LEAST_ANGLE))
-    low, high = float((mean - turn * half).min()), float((mean + turn * half).max())
+    low = float(np.quantile(mean - turn * half, OFFERED))
+    high = float(np.quantile(mean + turn * half, 1 - OFFERED))
     none = reach.unreal >= 1 - 1e-12
     raise InputError(
         f"normal_curvature = {pattern.normal_curvature:g} 1/m: "
         + ("no direction of the surface has it" if none else f"lines of it cross at less than {LEAST_ANGLE:g} deg")
         + f", its normal curvatures run from k2 = {reach.k2_min:.4g} to k1 = {reach.k1_max:.4g} 1/m",
-        f"choose a value from {low:.4g} to {high:.4g} 1/m (the sign is that of the surface's normal)",
+        f"choose a value from {rounded(low, up=True):g} to {rounded(high, up=False):g} 1/m (the sign is that of the "
+        "surface's normal)",
         "network.normal_curvature",
     )
 
@@ -138,13 +144,17 @@ def _wanted(guide: Guide, cells: int | None, spacing: float | None) -> tuple[flo
         requested = f"cells = {cells}" if cells is not None else "cells = 24 (default)"
         cells = 24 if cells is None else cells
         if cells < LEAST_CELLS:
-            raise InputError(f"{cells} cells, at least {LEAST_CELLS} are needed", "raise cells", "network.cells")
+            raise InputError(
+                f"{cells} cells, at least {LEAST_CELLS} are needed",
+                f"write cells = {LEAST_CELLS} or more",
+                "network.cells",
+            )
         return guide.length / cells, requested, "network.cells"
     fit = guide.length * guide.share / spacing
     if fit < LEAST_CELLS:
         raise InputError(
             f"spacing = {spacing:g} m leaves {fit:.2g} cells across the surface, at least {LEAST_CELLS} are needed",
-            f"choose a spacing of at most {guide.length * guide.share / LEAST_CELLS:.3g} m",
+            f"choose a spacing of at most {rounded(guide.length * guide.share / LEAST_CELLS, up=False):g} m",
             "network.spacing",
         )
     return spacing / guide.share, f"spacing = {spacing:g} m", "network.spacing"
@@ -178,7 +188,7 @@ def _refuse_many(estimate: float, guide: Guide, spacing: float, key: str) -> Non
         least = spacing * np.sqrt(estimate / MOST_NODES)
         raise InputError(
             f"about {estimate:,.0f} nodes would take about {memory:,.0f} GB of memory (limit {MOST_NODES:,} nodes)",
-            f"choose a spacing of at least {least:.3g} m"
+            f"choose a spacing of at least {rounded(1.01 * least, up=True):g} m"
             if key == "network.spacing"
             else f"at most {int(guide.length * guide.share / least)} cells fit this surface",
             key,

@@ -2,7 +2,8 @@
 
 On the surface itself: in an umbilic, or in the fixed point that w turns about around a hole; else in the middle of the
 surface's area in the plane of w, which is the same whatever the elements, moves with the surface, and lies on each of
-its axes of symmetry. Where it is not counted in cells, the nodes of a net are nodes of the net with twice the cells.
+its axes of symmetry. The nodes of a net are nodes of the net with twice the cells, but where w turns around a hole:
+there the lattice lies half a cell off the fixed point, which may be on the rim.
 Along a loop around a hole w is an angle and has no mean: there the lowest whole number of waves in which the surface's
 area is uneven along the loop gives the place.
 """

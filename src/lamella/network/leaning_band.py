@@ -24,6 +24,7 @@ from lamella.surface.darboux import Darboux, lamella_darboux
 from lamella.surface.outline import Ring
 from lamella.surface.points import SurfacePoints
 from lamella.surface.revolution import SurfaceOfRevolution
+from lamella.wording import rounded
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -60,7 +61,8 @@ def check_normal_curvature(surface: ClosedForm, wanted: float) -> None:
         raise InputError(
             f"normal_curvature = {wanted:g} 1/m: where the surface is widest normal curvatures run from "
             f"{middle - half:.4g} to {middle + half:.4g} 1/m, and lines have to cross at {LEAST_ANGLE:g} deg or more",
-            f"choose a value from {low:.4g} to {high:.4g} 1/m, or a piece of the surface that is less wide",
+            f"choose a value from {rounded(low, up=True):g} to {rounded(high, up=False):g} 1/m, or a piece of the "
+            "surface that is less wide",
             key,
         )
 

@@ -23,11 +23,12 @@ from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
 
+A, B = 0, 1
 # small triangles reach over at most this many cells; parts of an element's edge at least and at most
 REACH, FEWEST, MOST = 0.4, 3, 24
 # cells; values as near as this to a whole number are moved off it
 NUDGE = 1e-9
-# a shift as near as this to a whole number of cells closes the net
+# lines of a family go on where the shift is as near as this to a whole number of cells
 WHOLE = 1e-6
 # how a chain ends
 CLOSED, RIM, SINGULAR_END, SEAM_END = range(4)
@@ -135,13 +136,16 @@ def small_triangles(cells: CellMap, cut: NDArray[np.bool_], umbilics: Integers) 
     neighbour, other = connectivity.neighbours[element, edge], connectivity.neighbour_edges[element, edge]
     left = point[element[:, None], grid.basis.edge_nodes[edge]]
     right = point[neighbour[:, None], grid.basis.edge_nodes[other][:, ::-1]]
-    whole = whole_shifts(cells)
-    for number in np.flatnonzero(~np.isnan(whole)):
-        mine = piece == number
-        target = right[mine].ravel()
-        wanted = cells.signs[number] * chi[left[mine].ravel()] + whole[number]
-        free = ~singular[target].any(1)
-        chi[target[free]] = wanted[free]
+    pair = np.stack([chi.real, chi.imag], 1)
+    for family, whole in enumerate((whole_shifts(cells, A), whole_shifts(cells, B))):
+        column = 1 - family
+        for number in np.flatnonzero(~np.isnan(whole)):
+            mine = piece == number
+            target = right[mine].ravel()
+            wanted = cells.signs[number] * pair[left[mine].ravel(), column] + whole[number]
+            free = ~singular[target].any(1)
+            pair[target[free], column] = wanted[free]
+    chi = pair[:, 0] + 1j * pair[:, 1]
     faces = local_faces(parts)
     m = len(connectivity.elements)
     return SmallTriangles(
@@ -156,15 +160,16 @@ def small_triangles(cells: CellMap, cut: NDArray[np.bool_], umbilics: Integers) 
     )
 
 
-def whole_shifts(cells: CellMap) -> Complexes:
-    """Shifts of the transitions as whole numbers, nan where the net does not go on, (t,)."""
-    near = np.round(cells.shifts.real) + 1j * np.round(cells.shifts.imag)
-    return np.where(np.abs(cells.shifts - near) < WHOLE, near, np.nan)
+def whole_shifts(cells: CellMap, family: int) -> Floats:
+    """By how many lines of a family the transitions shift them, nan where these do not go on, (t,)."""
+    shifts = cells.shifts.imag if family == A else cells.shifts.real
+    near = np.round(shifts)
+    return np.where(np.abs(shifts - near) < WHOLE, near, np.nan)
 
 
 def level_chains(small: SmallTriangles, cells: CellMap, family: int) -> Chains:
-    """All level lines of a family (0: A, Im chi whole; 1: B, Re chi whole)."""
-    value, other = (small.chi.imag, small.chi.real) if family == 0 else (small.chi.real, small.chi.imag)
+    """All level lines of a family: of A Im chi is whole, of B Re chi."""
+    value, other = (small.chi.imag, small.chi.real) if family == A else (small.chi.real, small.chi.imag)
     at_corners = np.ascontiguousarray(value.take(small.corners).T)
     a, b, c = at_corners
     passed = np.ceil(np.minimum(np.minimum(a, b), c)) <= np.floor(np.maximum(np.maximum(a, b), c))
@@ -313,19 +318,18 @@ def _jumps(
     base: int,
 ) -> tuple[Integers, Integers]:
     """Pairs of crossings that are the same point on both sides of a cut."""
-    whole = whole_shifts(cells)
+    whole = whole_shifts(cells, family)
     goes_on = ~np.isnan(whole[small.cut_piece]) if len(whole) else np.zeros(0, bool)
     left, right, piece = small.cut_left[goes_on], small.cut_right[goes_on], small.cut_piece[goes_on]
     if not len(left):
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
-    value = small.chi.imag if family == 0 else small.chi.real
+    value = small.chi.imag if family == A else small.chi.real
     low, high = value[left].min(1), value[left].max(1)
     first, last = np.ceil(low).astype(np.int64), np.floor(high).astype(np.int64)
     count = np.maximum(last - first + 1, 0)
     edge = np.repeat(np.arange(len(count)), count)
     level = first[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
-    shift = whole[piece].imag if family == 0 else whole[piece].real
-    there = cells.signs[piece[edge]] * level + np.rint(shift[edge]).astype(np.int64)
+    there = cells.signs[piece[edge]] * level + whole[piece[edge]].astype(np.int64)
 
     def crossing(pair: Integers, at: Integers) -> tuple[Integers, NDArray[np.bool_]]:
         name = _edge_keys(pair.T, len(small.chi)) * width + at - base

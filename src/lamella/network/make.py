@@ -40,7 +40,8 @@ def make_network(
         A lamellas crossed once around the axis, or around the first hole; on a simply connected surface, cells along
         its longest principal line. 24 when spacing is not given either.
     spacing : float, optional
-        Wanted median cell edge, m; the nearest whole number of cells is taken.
+        Wanted median cell edge, m; the nearest whole number of cells is taken, or on surfaces of elements a spacing up
+        to a tenth away with which the net closes and its umbilics are nodes.
     minimum_length : float
         Lamellas shorter than this many median cell edges are left out.
     kind : "lamellas" or "principal"

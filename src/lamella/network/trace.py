@@ -18,7 +18,7 @@ from lamella.network.lattice import Lattice, build_lattice, ragged_ranges
 from lamella.network.leaning_band import LeaningBand, line_darboux
 from lamella.network.network import BOUNDARY, Network
 from lamella.surface.closed_form import ClosedForm
-from lamella.surface.darboux import Darboux, lamella_darboux, sideways_slope
+from lamella.surface.darboux import Darboux, lamella_darboux
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -26,8 +26,6 @@ Integers = NDArray[np.int64]
 
 # samples a cell (docs/files.md)
 FINE, COARSE, FINE_LIMIT = 16, 8, 20_000
-# of a ray's first cell: where a limit at the singular node is taken
-BESIDE_ZERO = 1e-6
 
 
 def _ids(families: Integers) -> tuple[str, ...]:
@@ -54,7 +52,6 @@ class _Samples(NamedTuple):
     normals: Floats
     tangents: Floats
     darboux: Floats
-    slopes: Floats
     where: Complexes
 
 
@@ -66,7 +63,6 @@ def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, segment: 
         np.empty((count, 3)),
         np.empty((count, 3)),
         np.empty((3, count)),
-        np.empty(count),
         np.empty(count, np.complex128),
     )
     leaning = isinstance(segments.domain, LeaningBand)
@@ -77,13 +73,6 @@ def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, segment: 
         samples.points[block], samples.normals[block] = at.position, at.normal
         samples.tangents[block] = at.vector(heading)
         samples.darboux[:, block] = line_darboux(at, heading) if leaning else lamella_darboux(at, heading)
-        samples.slopes[block] = sideways_slope(at, heading)
-        # at a singular node, where rays begin, the gradient of ln mu has no bound, and its product with mu^2 a limit
-        zero = np.flatnonzero(at.deviator == 0)
-        if len(zero):
-            zeta_beside, derivative = segments.where(segment[block][zero], np.full(len(zero), BESIDE_ZERO))
-            beside = surface.at(zeta_beside)
-            samples.slopes[block.start + zero] = sideways_slope(beside, derivative / np.abs(derivative))
         samples.where[block] = zeta
     return samples
 
@@ -124,7 +113,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
                 raise InputError(
                     f"no two lamellas cross once the {left_out} shorter than minimum_length = {minimum_length:g} cell "
                     "edges are left out",
-                    "lower network.minimum_length",
+                    "write minimum_length = 0, with which none is left out",
                     "network.minimum_length",
                 )
             reach = float((lines.end - lines.start).max(initial=0.0))
@@ -142,7 +131,7 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         if short.all():
             raise InputError(
                 f"all {len(short)} lamellas are shorter than minimum_length = {minimum_length:g} cell edges",
-                "lower network.minimum_length",
+                "write minimum_length = 0, with which none is left out",
                 "network.minimum_length",
             )
         left_out += int(short.sum())
@@ -199,8 +188,6 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         sample_normals=normals,
         sample_tangents=tangents,
         sample_darboux=Darboux(*samples.darboux),
-        sample_mean_curvature=np.full(len(samples.points), surface.mean_curvature),
-        sample_slopes=samples.slopes,
         sample_where=samples.where,
         sample_arclengths=arclengths,
         stop_offsets=lattice.offsets,

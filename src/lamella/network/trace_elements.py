@@ -29,7 +29,7 @@ from lamella.network.numbering import numbered, rim_places
 from lamella.network.rim_ends import Ends, along_rim, settled_ends, within_tips
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
 from lamella.network.tracks import A, B, Tracks, make_tracks, rim_tips, singular_ends
-from lamella.network.turning import derivative, turning
+from lamella.network.turning import turning
 from lamella.sparse import counted
 from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
@@ -145,13 +145,13 @@ def trace_elements(
             raise InputError(
                 f"no two lamellas cross: {short.sum()} of {len(short)} are shorter than minimum_length = "
                 f"{minimum_length:g} median cell edges of {median:.3g} m, the longest has {length.max() / median:.2g}",
-                "lower network.minimum_length, or raise network.cells",
+                "write minimum_length = 0, with which none is left out, or raise network.cells",
                 "network.minimum_length",
             )
+        longest = float(np.bincount(found.owner, found.span, len(short)).max(initial=0.0))
         raise InputError(
-            f"no two lamellas cross: with {count} cells the longest one runs over "
-            f"{np.bincount(found.owner, found.span, len(short)).max(initial=0.0):.2g} cells",
-            "raise network.cells, or lower network.spacing",
+            f"no two lamellas cross: with {count} cells the longest one runs over {longest:.2g} cells",
+            f"raise network.cells to about {np.ceil(2 * count / max(longest, 1e-3)):.0f}, or lower network.spacing",
             "network.cells",
         )
     pair = np.flatnonzero(stops.chain[1:] == stops.chain[:-1])
@@ -238,10 +238,6 @@ def trace_elements(
         sample_normals=normals,
         sample_tangents=tangents,
         sample_darboux=darboux,
-        sample_mean_curvature=np.full(len(bend), mean_curvature),
-        # kn is H on a lamella but for errors; along principal lines tg is 0 but for them
-        sample_slopes=derivative(twist[:, None], arclengths, offsets, closed)[:, 0]
-        + 2 * darboux.kg * (bend - mean_curvature),
         sample_where=np.column_stack([places.element, places.local]),
         sample_arclengths=arclengths,
         stop_offsets=np.r_[0, np.cumsum(np.bincount(stop_chain, minlength=len(used)))],

@@ -11,6 +11,7 @@ from lamella.errors import InputError, require_positive
 from lamella.surface.elliptic import epsilon, first_kind, jacobi, quarter_period
 from lamella.surface.points import Floats
 from lamella.surface.revolution import Profile, SurfaceOfRevolution
+from lamella.wording import rounded
 
 # below this ratio of radii the elliptic functions, whose parameter 1 - ratio^2 is rounded, lose too many digits
 LEAST_RATIO = 1e-4
@@ -29,7 +30,8 @@ class Delaunay(SurfaceOfRevolution):
                 f"neck_radius = {neck_radius:g} m is too little for bulge_radius = {bulge_radius:g} m (at least "
                 f"{LEAST_RATIO:g} of it): the surface is a row of spheres, on which every point is umbilic, joined by "
                 "tiny catenoids",
-                "choose a wider neck; for a piece near the neck alone, a catenoid",
+                f"write neck_radius = {rounded(LEAST_RATIO * bulge_radius, up=True):g} or more; for a piece near the "
+                "neck alone, a catenoid",
                 "surface.neck_radius",
             )
         self.neck_radius, self.bulge_radius = neck_radius, bulge_radius
@@ -114,7 +116,8 @@ class Nodoid(Delaunay):
             if abs(z) >= fold:
                 raise InputError(
                     f"z = {z:g} m lies at or beyond the nodoid's fold: |z| < {fold:.6g} m for these radii",
-                    "only the branch around the neck is offered: shorten the range or widen the radii",
+                    "only the branch around the neck is offered: keep height within "
+                    f"[{-rounded(0.99 * fold, up=False):g}, {rounded(0.99 * fold, up=False):g}], or widen the radii",
                     "surface.height",
                 )
         self.outline = self.between(*height)

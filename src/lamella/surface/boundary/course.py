@@ -15,6 +15,8 @@ _NODES, _WEIGHTS = (1 + _NODES) / 2, _WEIGHTS / 2
 _AGREEMENT = 2e-14
 # halvings of a piece; a curve that needs more stands still somewhere, which the caller refuses
 _MOST_HALVINGS = 24
+# cells that do not agree yet, beside four a piece
+_MOST_CELLS = 50_000
 # of the whole length: nearer than this to the end of a piece is on it, else a corner's own t, rounded, could lie
 # on the wrong side of the corner
 _SNAP = 6e-15
@@ -81,7 +83,8 @@ class Course:
             middle = (start + stop) / 2
             left, right = self._integral(piece, start, middle), self._integral(piece, middle, stop)
             good = np.abs(left + right - whole) <= _AGREEMENT * total
-            if halving == _MOST_HALVINGS:
+            # numbers of extreme sizes never agree; halving them further would only fill the memory
+            if halving == _MOST_HALVINGS or np.count_nonzero(~good) > _MOST_CELLS + 4 * m:
                 good[:] = True
             done.append((piece[good], start[good], stop[good], (left + right)[good]))
             bad = ~good

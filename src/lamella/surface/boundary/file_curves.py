@@ -11,6 +11,11 @@ import numpy as np
 
 from lamella.surface.boundary.pieces import Pieces
 
+MOST_NESTED, MOST_INSTANCES, MOST_CURVES = 16, 20_000, 100_000
+"""Blocks within blocks, block instances and curves of a file: more are a mistake, and would take for ever."""
+
+UNSOUND = "curve with impossible numbers"
+
 
 @dataclass(frozen=True, eq=False)
 class FileCurve:

@@ -21,6 +21,13 @@ _ROUNDING = 1e-9
 """Of a curve's size: ends further apart have a gap."""
 
 
+MOST_COORDINATE = 1e12
+"""In the unit of a file; beyond it a model in millimetres is not even known to a tenth of one."""
+
+LEAST_WEIGHT = 1e-9
+"""Of the largest weight; CAD writes those of arcs, 0.1 to 10. Others pull the curve to a point."""
+
+
 @dataclass(frozen=True, eq=False)
 class Pieces:
     """Consecutive rational Bezier pieces of one degree, each with its parameter s from 0 to 1.
@@ -63,6 +70,16 @@ class Pieces:
     def extent(self) -> float:
         """Diagonal of the control points' bounding box, m."""
         return float(np.linalg.norm(np.ptp(self.hull, axis=0)))
+
+    @property
+    def sound(self) -> bool:
+        """Whether its numbers make a curve: there are pieces, points within `MOST_COORDINATE`, weights of like size."""
+        weights = self.controls[..., 3]
+        if not self.count or not np.isfinite(self.controls).all():
+            return False
+        if not weights.min() > LEAST_WEIGHT * weights.max():
+            return False
+        return bool((np.abs(self.controls[..., :3]) <= MOST_COORDINATE * self.controls[..., 3:]).all())
 
     def evaluate(self, piece: Integers, s: Floats) -> tuple[Floats, Floats, Floats]:
         """Position and its first two derivatives by s.

@@ -12,7 +12,14 @@ import numpy as np
 from lamella.errors import InputError
 from lamella.files.rhino_model import RhinoCurve, RhinoModel, RhinoObject, read_rhino
 from lamella.surface.boundary.course import Course
-from lamella.surface.boundary.file_curves import CurveFile, FileCurve
+from lamella.surface.boundary.file_curves import (
+    MOST_CURVES,
+    MOST_INSTANCES,
+    MOST_NESTED,
+    UNSOUND,
+    CurveFile,
+    FileCurve,
+)
 from lamella.surface.boundary.joining import find_chains
 from lamella.surface.boundary.pieces import Floats, Pieces
 from lamella.surface.boundary.splines import bezier
@@ -30,9 +37,6 @@ _METRES = {
     "Microns": 1e-6,
 }
 
-
-_MOST_NESTED, _MOST_CURVES = 16, 100_000
-"""Blocks within blocks, and curves of a model: more are a mistake, and would take for ever."""
 
 _OTHERS = {
     "Mesh": "mesh",
@@ -87,6 +91,7 @@ class _Reading:
         self._objects = {item.id: item for item in model.objects}
         self.curves: list[FileCurve] = []
         self.others: Counter[str] = Counter()
+        self._instances = 0
 
     def add(self, item: RhinoObject, matrix: Floats, instance: _Instance | None, depth: int) -> None:
         """Add an object of the model, or of a block that is put by a matrix (4, 4)."""
@@ -108,15 +113,22 @@ class _Reading:
             self.others[_OTHERS.get(item.kind, item.kind or "unknown object")] += 1
 
     def _append(self, curve: FileCurve) -> None:
-        if len(self.curves) >= _MOST_CURVES:
-            limit = f"{self._path} holds more than {_MOST_CURVES:,} curves"
+        if not curve.pieces.sound:
+            self.others[UNSOUND] += 1
+            return
+        if len(self.curves) >= MOST_CURVES:
+            limit = f"{self._path} holds more than {MOST_CURVES:,} curves"
             raise InputError(limit, "save the boundary alone", self._where)
         self.curves.append(curve)
 
     def _instance(self, reference: RhinoObject, matrix: Floats, instance: _Instance, depth: int) -> None:
+        self._instances += 1
+        if self._instances > MOST_INSTANCES:
+            limit = f"{self._path} holds more than {MOST_INSTANCES:,} block instances"
+            raise InputError(limit, "save the boundary alone", self._where)
         block = self._blocks.get(reference.block)
         before = len(self.curves)
-        if block is not None and depth < _MOST_NESTED:
+        if block is not None and depth < MOST_NESTED:
             inside = instance._replace(ids=(*instance.ids, *filter(None, (block.name,))))
             for ident in block.members:
                 if ident in self._objects:
@@ -129,6 +141,7 @@ class _Reading:
         kind = "polysurface" if item.faces > 1 else "surface"
         self.others["extrusion" if item.kind == "Extrusion" else kind] += 1
         edges = [edge.mapped(matrix) for edge in filter(None, map(_pieces, item.curves))]
+        edges = [edge for edge in edges if edge.sound]
         if not edges:
             return
         size = float(np.linalg.norm(np.ptp(np.concatenate([edge.hull for edge in edges]), axis=0)))

@@ -15,7 +15,14 @@ import numpy as np
 from lamella.errors import InputError
 from lamella.surface.boundary.arcs import bulge_arc, ellipse_arc
 from lamella.surface.boundary.dxf_document import dxf_damage, open_dxf
-from lamella.surface.boundary.file_curves import CurveFile, FileCurve
+from lamella.surface.boundary.file_curves import (
+    MOST_CURVES,
+    MOST_INSTANCES,
+    MOST_NESTED,
+    UNSOUND,
+    CurveFile,
+    FileCurve,
+)
 from lamella.surface.boundary.pieces import Floats, Pieces, lines, stack
 from lamella.surface.boundary.splines import bezier, closed_spline, open_spline
 from lamella.wording import cut
@@ -27,9 +34,6 @@ _METRES |= {13: 1e-6, 14: 0.1, 15: 10.0, 16: 100.0, 21: 1200 / 3937}
 _SPLINE_FRAME = 16
 """Flag of a vertex that is a control point, which the polyline does not run through."""
 
-
-_MOST_NESTED, _MOST_CURVES = 16, 100_000
-"""Blocks within blocks, and curves of a drawing: more are a mistake, and would take for ever."""
 
 # what a drawing holds that is no curve, as the trade calls it
 _OTHERS = {
@@ -84,6 +88,7 @@ class _Reading:
         self._drawing, self._path, self._where = drawing, path, where
         self.curves: list[FileCurve] = []
         self.others: Counter[str] = Counter()
+        self._instances = 0
 
     def read(self, entities: Iterable[Any], matrix: Floats, inherited: str | None, ids: str, depth: int) -> None:
         """Add what is drawn in model space or in a block.
@@ -114,11 +119,14 @@ class _Reading:
                     raise InputError(f"{about}: {error.message}", error.remedy, self._where) from None
             if pieces is None:
                 self.others[_OTHERS.get(entity.dxftype(), entity.dxftype())] += 1
-            elif np.isfinite(pieces.controls).all():
-                if len(self.curves) >= _MOST_CURVES:
-                    limit = f"{self._path} holds more than {_MOST_CURVES:,} curves"
+                continue
+            pieces = pieces.mapped(matrix) if depth else pieces
+            if not pieces.sound:
+                self.others[UNSOUND] += 1
+            else:
+                if len(self.curves) >= MOST_CURVES:
+                    limit = f"{self._path} holds more than {MOST_CURVES:,} curves"
                     raise InputError(limit, "save the boundary alone", self._where)
-                pieces = pieces.mapped(matrix) if depth else pieces
                 handle = str(entity.dxf.handle)
                 names = (ids + handle, handle, *ids.split("/")[:-1]) if depth else (handle,)
                 hidden = self._hidden(entity, layer)
@@ -126,7 +134,7 @@ class _Reading:
 
     def _instance(self, instance: Any, matrix: Floats, layer: str, ids: str, depth: int) -> None:
         block = self._drawing.blocks.get(instance.dxf.get("name", ""))
-        if block is None or depth >= _MOST_NESTED:
+        if block is None or depth >= MOST_NESTED:
             self.others["block instance"] += 1
             return
         if block.block is not None and block.block.is_xref:
@@ -134,6 +142,10 @@ class _Reading:
             return
         before = len(self.curves)
         for number, one in enumerate(instance.multi_insert() if instance.mcount > 1 else [instance]):
+            self._instances += 1
+            if self._instances > MOST_INSTANCES:
+                limit = f"{self._path} holds more than {MOST_INSTANCES:,} block instances"
+                raise InputError(limit, "save the boundary alone", self._where)
             # the library's points are rows
             put = one.matrix44()
             here = matrix @ np.array([put.get_row(row) for row in range(4)], float).T

@@ -14,12 +14,13 @@ from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.film import Film, Loop
 from lamella.surface.found.first_film import FirstFilm
 from lamella.surface.found.found_film import Found
-from lamella.surface.found.limits import refuse_afloat, refuse_impossible, refuse_single
+from lamella.surface.found.limits import ImpossibleError, refuse_afloat, refuse_impossible, refuse_single
 from lamella.surface.found.newton import Equilibrium, find_equilibrium
 from lamella.surface.found.no_film import SearchError
-from lamella.surface.found.not_found import not_found
+from lamella.surface.found.not_found import impossible, not_found
 from lamella.surface.found.refinement import adapted
 from lamella.surface.found.self_crossing import self_crossing
+from lamella.surface.found.way_out import Tries
 
 if TYPE_CHECKING:
     from lamella.project import FormFoundTable
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 # of the film's size: a film of the same mean curvature this near is told
 BESIDE = 0.02
+# tolerance of the elements on which other films than the one asked for are tried
+COARSE = 2e-2
 
 __all__ = ["Found", "adapted", "find_film", "notes_on", "remarks_on", "surface_of_table"]
 
@@ -141,16 +144,46 @@ def find_film(
     """
     progress = patient(progress)
     unstable = branch == "unstable"
+    coarse = max(tolerance, COARSE)
+
+    def finds(others: tuple[Loop, ...], value: float) -> bool:
+        progress(f"  trying mean_curvature = {value:g} 1/m")
+        try:
+            _found(others, value, None, order, coarse, False, most_nodes, silent)
+        except (InputError, SearchError):
+            return False
+        return True
+
     refuse_afloat(loops)
+    tries = Tries(loops, order, finds)
     if volume is None and not any(loop.slides for loop in loops):
-        refuse_impossible(loops, mean_curvature)
+        try:
+            refuse_impossible(loops, mean_curvature)
+        except ImpossibleError as error:
+            raise impossible(error, tries, mean_curvature, unstable) from None
         if unstable:
             refuse_single(loops, mean_curvature)
     search = FirstFilm(loops, order, progress)
     try:
-        first = search.of_curvature(mean_curvature, unstable=unstable) if volume is None else search.of_volume(volume)
+        return _found(loops, mean_curvature, volume, order, tolerance, unstable, most_nodes, progress, search)
     except SearchError as error:
-        raise not_found(search, error, mean_curvature, volume, unstable) from None
+        raise not_found(search, error, mean_curvature, volume, unstable, tries) from None
+
+
+def _found(
+    loops: tuple[Loop, ...],
+    mean_curvature: float,
+    volume: float | None,
+    order: int,
+    tolerance: float,
+    unstable: bool,
+    most_nodes: int,
+    progress: Progress,
+    search: FirstFilm | None = None,
+) -> Found:
+    """See `find_film`; a search that ends without a film is a SearchError, and no bound is asked."""
+    search = search or FirstFilm(loops, order, progress)
+    first = search.of_curvature(mean_curvature, unstable=unstable) if volume is None else search.of_volume(volume)
     told = f"  {'path' if first.followed else 'Newton'}: {first.steps} steps"
     progress(told + (" on the whole path" if first.followed else " from the harmonic start"))
 
@@ -163,6 +196,7 @@ def find_film(
 
     found = adapted(first.equilibrium, settled, tolerance, most_nodes, first.steps, first.followed, progress)
     verdict = found.stability
+    branch = "unstable" if unstable else "stable"
     if volume is None and verdict.verdict != "fold" and (verdict.negative > 0) != unstable:
         raise InputError(
             f"the surface found is {verdict.verdict} ({verdict.negative} negative eigenvalues), not {branch} as asked",

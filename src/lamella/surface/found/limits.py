@@ -23,8 +23,22 @@ FLAT = 1e-6
 STRAIGHT = 1e-7
 
 
+class ImpossibleError(InputError):
+    """A bound says that there is no such film.
+
+    Attributes
+    ----------
+    limit : float or None
+        The bound: of |H|, 1/m, or of the distance of two coaxial rings, m.
+    """
+
+    def __init__(self, message: str, where: str, limit: float | None = None) -> None:
+        super().__init__(message, "", where)
+        self.limit = limit
+
+
 def refuse_impossible(loops: Sequence[Curve], mean_curvature: float) -> None:
-    """Raise an `InputError` where a bound says that no surface exists.
+    """Raise an `ImpossibleError` where a bound says that no surface exists.
 
     Parameters
     ----------
@@ -108,11 +122,11 @@ def refuse_flux(loops: Sequence[Curve], mean_curvature: float) -> None:
     length = loops[0].length
     limit = length / (2 * max(enclosed, 1e-300))
     if abs(mean_curvature) > limit * (1 + 1e-9):
-        raise InputError(
+        raise ImpossibleError(
             f"mean_curvature = {mean_curvature:.6g} 1/m: no surface in this boundary bends that much. Its length is "
             f"{length:.5g} m and its vector area {enclosed:.5g} m2, so that |H| <= length / (2 area) = {limit:.6g} 1/m",
-            f"choose a mean_curvature up to {limit:.4g} 1/m, or a smaller boundary",
             "surface.mean_curvature",
+            limit,
         )
 
 
@@ -143,12 +157,12 @@ def refuse_apart(loops: Sequence[Curve]) -> None:
                 if same
                 else f"a film between rings of radius {most0:.5g} and {most1:.5g} m exists up to {limit:.6g} m"
             )
-            raise InputError(
+            raise ImpossibleError(
                 f"the two rings are {distance:.6g} m apart, which is {told}"
                 if same
                 else f"the two rings are {distance:.6g} m apart; {told}",
-                f"move them closer than {limit:.5g} m, or make them larger",
                 "surface.boundary",
+                limit,
             )
         return
     # apex between the loops, on the line through their middles
@@ -162,11 +176,10 @@ def refuse_apart(loops: Sequence[Curve]) -> None:
             sign = -1 if points is first else 1
             ratios.append((across / np.maximum(sign * height, 1e-12)).max())
         if max(ratios) < CONE:
-            raise InputError(
+            raise ImpossibleError(
                 f"the two loops are too far apart ({distance:.5g} m between their middles) for one film: seen from a "
                 f"point between them both lie in a double cone of half opening "
                 f"{np.degrees(np.arctan(max(ratios))):.3g} deg (limit {np.degrees(np.arctan(CONE)):.4g} deg)",
-                "move the loops closer together, or make them larger",
                 "surface.boundary",
             )
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 from lamella.errors import InputError
 from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.first_film import FirstFilm
+from lamella.surface.found.limits import ImpossibleError
 from lamella.surface.found.no_film import SearchError
+from lamella.surface.found.way_out import Tries
+from lamella.wording import rounded
 
 # no bound says that there is no such surface: the search alone ended
 MAY_EXIST = "no bound is broken, so that there may be one"
@@ -17,6 +20,7 @@ def not_found(
     mean_curvature: float,
     volume: float | None,
     unstable: bool,
+    tries: Tries,
 ) -> InputError:
     """The error of a search for a mean curvature (1/m), or for a volume (m^3), that ended without a film."""
     how = "; ".join(error.reasons) or "Newton's method did not arrive from any start"
@@ -43,7 +47,7 @@ def not_found(
             f"the search did not arrive at a surface in this boundary; {MAY_EXIST}. {went}",
             "bring the held parts closer together, or give a mean_curvature or a volume"
             if any(loop.slides for loop in search.loops)
-            else "bring the loops closer together, or make them less bent",
+            else _of_tube(tries, None) or "bring the loops closer together, or make them less bent",
             "surface.boundary",
         )
     if _again(search).exists(-mean_curvature):
@@ -54,17 +58,45 @@ def not_found(
             f"write mean_curvature = {-mean_curvature:.6g}, or reverse the first loop",
             "surface.mean_curvature",
         )
-    if error.fold is not None and abs(error.fold) < abs(mean_curvature):
+    near = tries.nearest_curvature(mean_curvature, error.fold)
+    if near is not None:
         return InputError(
             f"{wanted}: the search did not arrive at a stable surface that bends that much; {MAY_EXIST}. {went}",
-            f"choose a mean_curvature below {abs(error.fold):.4g} 1/m in size, or give a volume instead",
+            _smaller(near, mean_curvature),
             "surface.mean_curvature",
         )
     return InputError(
         f"{wanted}: the search did not arrive at a surface; {MAY_EXIST}. {went}",
-        "choose another mean_curvature, or give a volume instead: more films can be followed by their volume",
+        _of_tube(tries, None) or "give a volume instead: more films can be followed by their volume",
         "surface.mean_curvature",
     )
+
+
+def impossible(error: ImpossibleError, tries: Tries, mean_curvature: float, unstable: bool) -> InputError:
+    """The error of a bound that is broken, with what exists instead."""
+    if not mean_curvature:
+        remedy = _of_tube(tries, error.limit) or "move the loops closer together, or make them larger"
+        return InputError(error.message, remedy, error.where)
+    largest = abs(error.limit or mean_curvature)
+    wanted = min(abs(mean_curvature), largest) * (1 if mean_curvature > 0 else -1)
+    near = None if unstable else tries.nearest_curvature(wanted)
+    remedy = _smaller(near, mean_curvature) if near else "choose a mean_curvature nearer to 0, or a smaller boundary"
+    return InputError(error.message, remedy, error.where)
+
+
+def _smaller(near: float, wanted: float) -> str:
+    """Less H, or by similarity a smaller boundary."""
+    scale = rounded(abs(near / wanted), up=False)
+    return f"write mean_curvature = {near:g}, the largest of which a film was found, or a boundary {scale:g} x as large"
+
+
+def _of_tube(tries: Tries, limit: float | None) -> str:
+    """A tube under pressure, or shorter; empty: neither was found."""
+    value, distance = tries.curvature_of_tube(), tries.closer(limit)
+    ways = [f"write mean_curvature = {value:g}: a tube under pressure"] if value is not None else []
+    if distance is not None:
+        ways.append(f"move the loops along the line between their middles until these are {distance:g} m apart")
+    return ", or ".join(ways)
 
 
 def _again(search: FirstFilm) -> FirstFilm:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,10 @@ FILE_KEY = "surface.file"
 
 MAXIMUM_FACES = 2_000_000
 """Curvature needs a few thousand faces; beyond this reading takes minutes and gigabytes."""
+
+
+BLOCK = 1_000_000
+"""Bytes of a text that are taken apart at a time."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,29 @@ class RawMesh:
 def mesh_error(message: str, remedy: str = "") -> InputError:
     """Return the error about the project's mesh file, to be raised."""
     return InputError(message, remedy, where=FILE_KEY)
+
+
+def blocks(text: bytes, ends: bytes) -> Iterator[bytes]:
+    """Pieces of a text of some `BLOCK` bytes, cut behind one of the bytes `ends`.
+
+    Words of a text as objects take ten to fifty times its memory: a block of them at a time does not matter.
+
+    Raises
+    ------
+    InputError
+        No such byte within `BLOCK` bytes: it is no text of numbers.
+    """
+    start = 0
+    while start < len(text):
+        end = start + BLOCK
+        if end < len(text):
+            end = max(text.rfind(bytes([one]), start, end) for one in ends) + 1
+            if end <= start:
+                raise mesh_error(
+                    f"the file has a line of more than {BLOCK / 1e6:g} million characters", "export the mesh again"
+                )
+        yield text[start:end]
+        start = end
 
 
 def place(point: Floats) -> str:

@@ -17,7 +17,9 @@ from lamella.surface.imported.units import METRES, metres_of, name_of
 from lamella.wording import counted
 
 READERS = {".obj": read_obj, ".ply": read_ply, ".stl": read_stl, ".3dm": read_3dm}
-LARGEST_FILE = 2**30
+LARGEST_FILE = 250_000_000
+"""Bytes; text of `MAXIMUM_FACES` triangles with normals has 160 million, and takes some twenty seconds."""
+
 LARGEST_SIZE = 5000.0
 """m; a larger "gridshell" was drawn in millimetres."""
 
@@ -76,7 +78,7 @@ def _bytes(path: Path) -> bytes:
         length = path.stat().st_size
         if length > LARGEST_FILE:
             raise mesh_error(
-                f"{path.name} has {length / 2**20:.0f} MB; at most {LARGEST_FILE / 2**20:.0f} MB are read",
+                f"{path.name} has {length / 1e6:,.0f} MB; at most {LARGEST_FILE / 1e6:.0f} MB are read",
                 "reduce the mesh: a few thousand faces are enough",
             )
         data = path.read_bytes()

@@ -7,7 +7,7 @@ from itertools import chain
 
 import numpy as np
 
-from lamella.surface.imported.raw_mesh import Floats, Integers, Polygons, mesh_error
+from lamella.surface.imported.raw_mesh import MAXIMUM_FACES, Floats, Integers, Polygons, blocks, mesh_error
 
 FREE_FORM = (b"curv", b"surf", b"curv2", b"bzp", b"bsp", b"cstype")
 
@@ -19,21 +19,44 @@ def read_obj(data: bytes) -> Polygons:
     last vertex, and go on in the next line after a backslash. All groups and objects together are one mesh.
     """
     text = data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n").replace(b"\\\n", b" ")
-    if b"#" in text:
-        text = b"\n".join(line.partition(b"#")[0] for line in text.split(b"\n"))
-    lines = [words for line in text.split(b"\n") if (words := line.split())]
-    keywords = [words[0] for words in lines]
-    counts = Counter(keywords)
-    vertices = [words for words in lines if words[0] == b"v"]
-    faces = [words for words in lines if words[0] == b"f"]
+    counts: Counter[bytes] = Counter()
+    points: list[Floats] = []
+    faces: list[tuple[Integers, Integers]] = []
+    for block in blocks(text, b"\n"):
+        _read_block(block, counts, points, faces)
     if not faces:
         raise mesh_error(*_no_faces(counts))
-    before = np.cumsum([word == b"v" for word in keywords])[[word == b"f" for word in keywords]]
-    sizes = np.array([len(words) - 1 for words in faces], dtype=np.int64)
+    sizes, corners = (np.concatenate(parts) for parts in zip(*faces, strict=True))
+    return Polygons(np.concatenate([np.zeros((0, 3)), *points]), sizes, corners)
+
+
+def _read_block(
+    block: bytes, counts: Counter[bytes], points: list[Floats], faces: list[tuple[Integers, Integers]]
+) -> None:
+    """Add the vertices of some lines, and sizes and corners of their faces, to those of the lines before."""
+    if b"#" in block:
+        block = b"\n".join(line.partition(b"#")[0] for line in block.split(b"\n"))
+    lines = [words for line in block.split(b"\n") if (words := line.split())]
+    keywords = [words[0] for words in lines]
+    vertices = [words for words in lines if words[0] == b"v"]
+    named = [words for words in lines if words[0] == b"f"]
+    first = counts[b"v"]
+    counts.update(keywords)
+    if counts[b"f"] > MAXIMUM_FACES:
+        raise mesh_error(
+            f"the .obj has more than {MAXIMUM_FACES} faces; at most {MAXIMUM_FACES} are read",
+            "reduce it: curvature needs a few thousand",
+        )
+    if vertices:
+        points.append(_points(vertices, first))
+    if not named:
+        return
+    before = first + np.cumsum([word == b"v" for word in keywords])[[word == b"f" for word in keywords]]
+    sizes = np.array([len(words) - 1 for words in named], dtype=np.int64)
     if sizes.min() < 3:
-        short = b" ".join(faces[int(sizes.argmin())]).decode("latin-1")[:60]
+        short = b" ".join(named[int(sizes.argmin())]).decode("latin-1")[:60]
         raise mesh_error(f"a face has fewer than 3 corners: {short!r}", "is the file cut off? Export it again")
-    return Polygons(_points(vertices), sizes, _corners(faces, sizes, before))
+    faces.append((sizes, _corners(named, sizes, before)))
 
 
 def _no_faces(counts: Counter[bytes]) -> tuple[str, str]:
@@ -47,19 +70,19 @@ def _no_faces(counts: Counter[bytes]) -> tuple[str, str]:
     return f"the .obj has no faces ({counts[b'v']} vertices)", "export a mesh with faces"
 
 
-def _points(vertices: list[list[bytes]]) -> Floats:
-    """Coordinates (n, 3); a weight or colours behind them are not read."""
+def _points(vertices: list[list[bytes]], first: int) -> Floats:
+    """Coordinates (n, 3) of vertices from number `first` on; a weight or colours behind them are not read."""
     try:
         flat = list(map(float, chain.from_iterable([words[1:4] for words in vertices])))
     except ValueError:
-        raise mesh_error(_bad_vertex(vertices), "is the file damaged? Export it again") from None
+        raise mesh_error(_bad_vertex(vertices, first), "is the file damaged? Export it again") from None
     if len(flat) != 3 * len(vertices):
-        raise mesh_error(_bad_vertex(vertices), "is the file cut off? Export it again")
+        raise mesh_error(_bad_vertex(vertices, first), "is the file cut off? Export it again")
     return np.array(flat, dtype=np.float64).reshape(-1, 3)
 
 
-def _bad_vertex(vertices: list[list[bytes]]) -> str:
-    for number, words in enumerate(vertices, 1):
+def _bad_vertex(vertices: list[list[bytes]], first: int) -> str:
+    for number, words in enumerate(vertices, first + 1):
         try:
             good = len(list(map(float, words[1:4]))) == 3
         except ValueError:

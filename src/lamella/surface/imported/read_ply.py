@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.surface.imported.raw_mesh import Floats, Integers, Polygons, mesh_error
+from lamella.surface.imported.raw_mesh import MAXIMUM_FACES, Floats, Integers, Polygons, blocks, mesh_error
 
 TYPES = {
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -21,6 +21,9 @@ TYPES = {
     **dict.fromkeys(("double", "float64"), "f8"),
 }
 FORMATS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+MOST_WALKED = 4_000_000
+"""Rows of an element whose lists differ in length; a second for each million."""
+
 FACE_LISTS = ("vertex_indices", "vertex_index")
 BROKEN = "is the file cut off or damaged? Export it again"
 
@@ -129,6 +132,15 @@ def _header(data: bytes) -> tuple[str, list[Element], int]:
     return order, elements, ending.end()
 
 
+def _require_few(element: Element) -> None:
+    most = {"vertex": 3 * MAXIMUM_FACES, "face": MAXIMUM_FACES}.get(element.name, 10 * MAXIMUM_FACES)
+    if element.count > most:
+        raise mesh_error(
+            f"the .ply has {element.count} rows of the element {element.name[:40]}; at most {most} are read",
+            "reduce the mesh: curvature needs a few thousand faces",
+        )
+
+
 class Body:
     """What follows the header, as a sequence of items: numbers of a text, bytes of a binary file."""
 
@@ -152,6 +164,7 @@ class Body:
         narrowest = sum(self.width(p.counter or p.kind) for p in element.properties)
         if element.count * narrowest > self.length - self.position:
             raise _cut_off(element)
+        _require_few(element)
         if not element.count or not narrowest:
             return {
                 p.name: Lists(np.zeros(0, np.int64), np.zeros(0)) if p.counter else np.zeros(0)
@@ -193,6 +206,12 @@ class Body:
 
     def _walked(self, element: Element, wanted: tuple[str, ...]) -> dict[str, Column]:
         """Columns row by row: where a row begins is known only at the end of the one before."""
+        if element.count > MOST_WALKED:
+            raise mesh_error(
+                f"the element {element.name} of the .ply has {element.count:,} rows of different lengths; at most "
+                f"{MOST_WALKED:,} are read",
+                "export vertices and faces alone",
+            )
         here, length = self.position, self.length
         steps = [(p.counter, self.width(p.kind), self.width(p.counter) if p.counter else 0) for p in element.properties]
         starts: list[list[int]] = [[] for _ in steps]
@@ -232,9 +251,10 @@ class Text(Body):
 
     def __init__(self, data: bytes) -> None:
         try:
-            self.numbers = np.array(list(map(float, data.split())), dtype=np.float64)
+            parts = [np.array(list(map(float, block.split())), np.float64) for block in blocks(data, b" \n\r\t")]
         except ValueError as bad:
             raise mesh_error(f"the .ply has something that is not a number ({str(bad)[:80]})", BROKEN) from None
+        self.numbers = np.concatenate([np.zeros(0), *parts])
         self.length = len(self.numbers)
 
     def width(self, kind: str) -> int:

@@ -6,7 +6,8 @@ import re
 
 import numpy as np
 
-from lamella.surface.imported.raw_mesh import MAXIMUM_FACES, Floats, Polygons, mesh_error
+from lamella.errors import InputError
+from lamella.surface.imported.raw_mesh import MAXIMUM_FACES, Floats, Polygons, blocks, mesh_error
 
 HEADER = 84
 """Bytes before the first facet of a binary file: 80 of comment, 4 of count."""
@@ -15,7 +16,6 @@ FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribu
 VERTEX = re.compile(rb"^[ \t]*vertex[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)[ \t]*$", re.MULTILINE | re.IGNORECASE)
 BEGIN = re.compile(rb"^[ \t]*facet\b", re.MULTILINE | re.IGNORECASE)
 END = re.compile(rb"^[ \t]*endfacet\b", re.MULTILINE | re.IGNORECASE)
-LAST = re.compile(rb"^[ \t]*endsolid\b[^\n]*\s*\Z", re.MULTILINE | re.IGNORECASE)
 
 
 def read_stl(data: bytes) -> Polygons:
@@ -47,18 +47,27 @@ def _binary_corners(data: bytes) -> Floats:
 
 def _text_corners(data: bytes) -> Floats:
     text = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    found = VERTEX.findall(text)
     begun, ended = len(BEGIN.findall(text)), len(END.findall(text))
-    if not LAST.search(text) or begun != ended:
+    last = re.match(rb"endsolid\b", text.rstrip().rpartition(b"\n")[2].lstrip(), re.IGNORECASE)
+    if not last or begun != ended:
         raise mesh_error(
-            f"the .stl breaks off: {begun} facets begun, {ended} ended, "
-            f"{'an' if LAST.search(text) else 'no'} endsolid at the end",
+            f"the .stl breaks off: {begun} facets begun, {ended} ended, {'an' if last else 'no'} endsolid at the end",
             "export the file again",
         )
-    if len(found) != 3 * ended:
-        raise mesh_error(f"the .stl has {ended} facets but {len(found)} vertices, not three each", "export it again")
+    if ended > MAXIMUM_FACES:
+        raise mesh_error(f"the .stl has {ended} facets; at most {MAXIMUM_FACES} are read", "reduce the mesh")
     try:
-        flat = [float(word) for vertex in found for word in vertex]
+        parts = [_vertices(block) for block in blocks(text, b"\n")]
     except ValueError as bad:
+        if isinstance(bad, InputError):
+            raise
         raise mesh_error(f"the .stl has a vertex that is not three numbers ({bad})", "export the file again") from None
+    corners = np.concatenate([np.zeros((0, 3)), *parts])
+    if len(corners) != 3 * ended:
+        raise mesh_error(f"the .stl has {ended} facets but {len(corners)} vertices, not three each", "export it again")
+    return corners
+
+
+def _vertices(block: bytes) -> Floats:
+    flat = [float(word) for vertex in VERTEX.findall(block) for word in vertex]
     return np.array(flat, dtype=np.float64).reshape(-1, 3)

@@ -1,0 +1,55 @@
+"""Sections that are not overstressed: how thin, how low, how strong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Literal
+
+from lamella.strip.lamellas import Section
+from lamella.wording import rounded
+
+# of the measure found, what is offered: utilisations are compared with 1
+MARGIN = 0.995
+# of the present measure, below which it is no remedy
+LEAST = 0.2
+HALVINGS = 6
+
+
+def bearable(
+    section: Section, measure: Literal["thickness", "height"], utilisation: Callable[[Section], float]
+) -> float | None:
+    """The largest thickness or height with which no lamella is overstressed, m, to three digits.
+
+    Bending grows with the thickness, torsion too, the helix stress with the square of the height; what more is counted
+    is the caller's: utilisations are computed anew.
+
+    Parameters
+    ----------
+    section : Section
+        Overstressed.
+    measure : "thickness" or "height"
+    utilisation : callable
+        Largest utilisation of a section.
+
+    Returns
+    -------
+    float or None
+        None: a fifth of the present one would not do, or the strip would no more stand on edge.
+    """
+    present = float(getattr(section, measure))
+    low = present * LEAST
+    if measure == "height":
+        low = max(low, 2.5 * section.thickness)
+    high = present
+
+    def fits(value: float) -> bool:
+        thin = replace(section, thickness=value) if measure == "thickness" else replace(section, height=value)
+        return utilisation(thin) <= 1
+
+    if low >= high or not fits(low):
+        return None
+    for _ in range(HALVINGS):
+        middle = (low * high) ** 0.5
+        low, high = (middle, high) if fits(middle) else (low, middle)
+    return rounded(MARGIN * low, up=False)

@@ -1,0 +1,96 @@
+"""What is offered where there is no film: followed to the letter, a film is found."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lamella import InputError, make_surface, parse_project
+from lamella.check import check_project
+from lamella.wording import rounded
+
+TURNS = 2 * np.pi * np.arange(14) / 14
+LAKE = np.stack(
+    [
+        (3 + 0.3 * np.cos(3 * TURNS)) * np.cos(TURNS),
+        (2 + 0.2 * np.sin(2 * TURNS)) * np.sin(TURNS),
+        0.4 * np.cos(2 * TURNS + 1) + 0.1 * np.sin(5 * TURNS),
+    ],
+    1,
+)
+
+
+def film(boundary: list[dict[str, Any]], **surface: Any) -> dict[str, Any]:
+    return {"surface": {"kind": "form-found", "tolerance": 2e-2, "boundary": boundary, **surface}}
+
+
+def ring(z: float, radius: float, lean: float = 0.0) -> dict[str, Any]:
+    return {"circle": {"center": [0, 0, z], "radius": radius, "normal": [lean, 0, 1]}}
+
+
+def refused(tables: dict[str, Any]) -> InputError:
+    with pytest.raises(InputError) as error:
+        check_project(parse_project(tables))
+    return error.value
+
+
+def number(pattern: str, text: str) -> float:
+    found = re.search(pattern.replace("#", r"(-?[\d.]+)"), text)
+    assert found, text
+    return float(found[1])
+
+
+@pytest.mark.parametrize("wanted", [5.0, pytest.param(-0.5, marks=pytest.mark.slow)])
+def test_less_curvature_or_a_smaller_boundary(wanted: float) -> None:
+    """Whether a bound is broken or the stable films turn back before: both ways of the remedy are gone."""
+    error = refused(film([{"points": LAKE.tolist()}], mean_curvature=wanted))
+    assert error.where == "surface.mean_curvature"
+    value = number("mean_curvature = #", error.remedy)
+    assert 0 < value / wanted < 1
+    assert make_surface(parse_project(film([{"points": LAKE.tolist()}], mean_curvature=value))).mean_curvature == value
+    scale = number("a boundary # x", error.remedy)
+    assert scale * abs(wanted) <= abs(value) * (1 + 1e-9)
+    smaller = [{"points": (scale * LAKE).tolist()}]
+    assert make_surface(parse_project(film(smaller, mean_curvature=wanted))).mean_curvature == wanted
+
+
+@pytest.mark.parametrize(
+    "boundary",
+    [
+        [ring(0, 2.0), ring(3.2, 2.0)],
+        [ring(4.0, 1.5), ring(0, 2.0)],
+        pytest.param([ring(0, 2.0, 0.1), ring(5.5, 1.6, -0.1)], marks=pytest.mark.slow),
+    ],
+    ids=["equal", "upside down", "leaning"],
+)
+def test_a_tube_too_long_without_pressure(boundary: list[dict[str, Any]]) -> None:
+    """A tube of the H that is offered exists, and one without pressure at the distance that is offered.
+
+    The sign: the film lies to the left of the first loop, so over the lower ring its normal points outwards and a
+    tube has H < 0; seen from the upper ring it has H > 0.
+    """
+    error = refused(film(boundary))
+    assert error.where == "surface.boundary"
+    value = number("mean_curvature = #:", error.remedy)
+    lower_first = boundary[0]["circle"]["center"][2] < boundary[1]["circle"]["center"][2]
+    assert (value < 0) == lower_first
+    tube = make_surface(parse_project(film(boundary, mean_curvature=value)))
+    assert tube.describe()["stability"] == "stable"
+    apart = number("are # m apart", error.remedy)
+    first, second = (loop["circle"] for loop in boundary)
+    sense = np.sign(second["center"][2] - first["center"][2])
+    nearer = [boundary[0], {"circle": second | {"center": [0, 0, first["center"][2] + sense * apart]}}]
+    assert make_surface(parse_project(film(nearer))).mean_curvature == 0
+
+
+@pytest.mark.parametrize("value", [0.43167, 1.0, 2.0, 999.9, 1.005, 3e-7, 12345.6])
+def test_rounding_to_the_safe_side(value: float) -> None:
+    low, high = rounded(value, up=False), rounded(value, up=True)
+    assert low <= value * (1 + 1e-12)
+    assert high >= value * (1 - 1e-12)
+    assert high - low <= 0.011 * value
+    assert float(f"{low:.3g}") == low
+    assert rounded(low, up=True) == rounded(low, up=False) == low

@@ -1,0 +1,224 @@
+"""Remedies followed to the letter: a project that is refused or warned of, the remedy applied, and it is accepted."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from copy import deepcopy
+from typing import Any
+
+import pytest
+
+from lamella import InputError, compute, parse_project
+from lamella.check import check_project
+
+Tables = dict[str, Any]
+UNDULOID = {"kind": "unduloid", "neck_radius": 1.6, "bulge_radius": 2.8, "height": [-1.0, 1.0]}
+CATENOID = {"kind": "catenoid", "neck_radius": 1.0, "height": [-1.0, 1.0]}
+SCHERK = {"kind": "scherk", "extent": 1.2, "scale": 3.0}
+NODOID = {"kind": "nodoid", "neck_radius": 3.0, "bulge_radius": 9.0}
+RIM = [[0, 0, 0], [2, 0, 0.35], [4, 0, 1.2], [4, 2, 0.35], [4, 4, 0], [2, 4, 0.35], [0, 4, 1.2], [0, 2, 0.35]]
+SADDLE = {"kind": "form-found", "tolerance": 2e-2, "boundary": [{"points": RIM}]}
+ONE = {"layers": 1}
+
+
+def numbers(text: str) -> list[float]:
+    return [float(x) for x in re.findall(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?", text)]
+
+
+def put(key: str, *picks: int) -> Callable[[Tables, str], Tables]:
+    """Writing a number of the remedy under a key; several: a list of them."""
+
+    def apply(tables: Tables, remedy: str) -> Tables:
+        table, name = key.split(".")
+        there = deepcopy(tables)
+        found = [numbers(remedy)[k] for k in picks]
+        value: Any = found if len(found) > 1 else found[0]
+        if name == "cells":
+            value = int(value)
+        there.setdefault(table, {})[name] = value
+        if name in ("cells", "spacing"):
+            there[table].pop({"cells": "spacing", "spacing": "cells"}[name], None)
+        return there
+
+    return apply
+
+
+def without(key: str) -> Callable[[Tables, str], Tables]:
+    """Leaving a key out."""
+
+    def apply(tables: Tables, remedy: str) -> Tables:
+        assert "leave" in remedy
+        table, name = key.split(".")
+        there = deepcopy(tables)
+        del there[table][name]
+        return there
+
+    return apply
+
+
+def accepted(tables: Tables) -> None:
+    check_project(parse_project(tables))
+
+
+REFUSED: list[tuple[str, Tables, str, list[Callable[[Tables, str], Tables]]]] = [
+    (
+        "wide spacing",
+        {"surface": UNDULOID, "network": {"spacing": 9.0}},
+        "network.spacing",
+        [put("network.spacing", 0)],
+    ),
+    ("many cells", {"surface": UNDULOID, "network": {"cells": 3000}}, "network.cells", [put("network.cells", 0)]),
+    (
+        "narrow spacing",
+        {"surface": CATENOID, "network": {"spacing": 1e-3}},
+        "network.spacing",
+        [put("network.spacing", 0)],
+    ),
+    (
+        "wide spacing on a film",
+        {"surface": SADDLE, "network": {"spacing": 4.0}},
+        "network.spacing",
+        [put("network.spacing", 0)],
+    ),
+    (
+        "many cells on a film",
+        {"surface": SADDLE, "network": {"cells": 4000}},
+        "network.cells",
+        [put("network.cells", 0)],
+    ),
+    (
+        "all too short",
+        {"surface": SCHERK, "network": {"minimum_length": 99.0}},
+        "network.minimum_length",
+        [put("network.minimum_length", 0)],
+    ),
+    (
+        "all too short on a film",
+        {"surface": SADDLE, "network": {"cells": 8, "minimum_length": 99.0}},
+        "network.minimum_length",
+        [put("network.minimum_length", 0)],
+    ),
+    (
+        "cells of every third",
+        {"surface": UNDULOID, "network": {"cells": 25, "every": 3}},
+        "network.cells",
+        [put("network.cells", 0), put("network.cells", 1)],
+    ),
+    (
+        "curvature of lines",
+        {"surface": CATENOID, "network": {"normal_curvature": 0.9}},
+        "network.normal_curvature",
+        [put("network.normal_curvature", 0), put("network.normal_curvature", 1)],
+    ),
+    (
+        "curvature of lines from seeds",
+        {"surface": SADDLE, "network": {"normal_curvature": 3.0}, "lamella": ONE},
+        "network.normal_curvature",
+        [put("network.normal_curvature", 0), put("network.normal_curvature", 1)],
+    ),
+    (
+        "higher than round",
+        {"surface": UNDULOID | {"neck_radius": 0.2, "bulge_radius": 0.3, "height": [-0.1, 0.1]}}
+        | {"lamella": ONE | {"height": 0.6}},
+        "lamella.height",
+        [put("lamella.height", 0)],
+    ),
+    (
+        "slots wider than high",
+        {"surface": UNDULOID, "lamella": ONE | {"height": 0.01, "thickness": 0.006}},
+        "fabrication.slot_width",
+        [put("fabrication.slot_width", 0)],
+    ),
+    (
+        "ends too short",
+        {"surface": UNDULOID, "lamella": ONE, "fabrication": {"end_distance": 1e-3}},
+        "fabrication.end_distance",
+        [put("fabrication.end_distance", 0)],
+    ),
+    (
+        "beyond the fold",
+        {"surface": NODOID | {"height": [-9.0, 9.0]}, "lamella": ONE},
+        "surface.height",
+        [put("surface.height", 0, 1)],
+    ),
+    (
+        "too thin a neck",
+        {"surface": UNDULOID | {"neck_radius": 1e-4}, "lamella": ONE | {"height": 0.001, "thickness": 1e-5}},
+        "surface.neck_radius",
+        [put("surface.neck_radius", 0)],
+    ),
+    (
+        "slots",
+        {"surface": UNDULOID, "lamella": ONE, "fabrication": {"slot_width": 1e-3}},
+        "fabrication.slot_width",
+        [without("fabrication.slot_width")],
+    ),
+]
+
+
+# lines from seeds are traced twice
+SLOW = ("curvature of lines from seeds",)
+
+
+@pytest.mark.parametrize(
+    ("tables", "key", "ways"),
+    [pytest.param(*case[1:], id=case[0], marks=pytest.mark.slow if case[0] in SLOW else ()) for case in REFUSED],
+)
+def test_what_is_refused(tables: Tables, key: str, ways: list[Callable[[Tables, str], Tables]]) -> None:
+    with pytest.raises(InputError) as refused:
+        check_project(parse_project(tables))
+    assert key in refused.value.where
+    for way in ways:
+        accepted(way(tables, refused.value.remedy))
+
+
+def warned(tables: Tables, word: str) -> str:
+    """The warning with a word; "" where there is none."""
+    told = compute(parse_project(tables)).summary["warnings"]
+    return next((message for message in told if word in message), "")
+
+
+@pytest.mark.parametrize(
+    "tables",
+    [
+        {"surface": UNDULOID, "lamella": ONE | {"thickness": 0.008}},
+        {"surface": CATENOID | {"neck_radius": 0.9}, "lamella": ONE | {"height": 0.12, "marks": "relaxed"}},
+        {"surface": SADDLE, "network": {"cells": 10}, "lamella": ONE | {"thickness": 0.004, "material": "S235"}},
+    ],
+    ids=["thick", "twisted", "film"],
+)
+def test_strips_that_are_overstressed(tables: Tables) -> None:
+    """As thin, as low or of a material as strong as is said: no warning is left, and not needlessly far below 1."""
+    message = warned(tables, "utilisation reaches")
+    ways = message.partition("over 1): ")[2]
+    assert ways.endswith("brings it to 1")
+    project = parse_project(tables)
+    changed: list[Tables] = []
+    for measure in ("thickness", "height"):
+        if found := re.search(rf"{measure} of ([\d.]+) mm", ways):
+            value = float(found[1]) / 1000
+            changed.append(tables | {"lamella": tables["lamella"] | {measure: value}})
+    material = project.material()
+    strength = re.search(r"strength of ([\d.]+) MPa", ways)
+    assert strength
+    own = {
+        "density": material.density,
+        "youngs_modulus": material.youngs_modulus,
+        "shear_modulus": material.shear_modulus,
+        "strength": 1e6 * float(strength[1]),
+    }
+    changed.append(tables | {"materials": {"own": own}, "lamella": tables["lamella"] | {"material": "own"}})
+    assert len(changed) > 1
+    for there in changed:
+        results = compute(parse_project(there))
+        assert 0.9 < results.summary["lamellas"]["utilisation_max"] <= 1
+        assert not any("utilisation reaches" in message for message in results.summary["warnings"])
+
+
+def test_cells_smaller_than_the_strip() -> None:
+    tables = {"surface": UNDULOID, "network": {"cells": 120}, "lamella": ONE | {"height": 0.15, "thickness": 0.001}}
+    told = warned(tables, "cell edges")
+    cells, height = re.search(r"at most (\d+) cells, or a strip up to ([\d.]+) mm", told).groups()  # type: ignore[union-attr]
+    assert not warned(tables | {"network": {"cells": int(cells)}}, "cell edges")
+    assert not warned(tables | {"lamella": tables["lamella"] | {"height": float(height) / 1000}}, "cell edges")
