@@ -7,6 +7,7 @@ from collections.abc import Callable
 from copy import deepcopy
 from typing import Any
 
+import numpy as np
 import pytest
 
 from lamella import InputError, compute, parse_project
@@ -222,3 +223,39 @@ def test_cells_smaller_than_the_strip() -> None:
     cells, height = re.search(r"at most (\d+) cells, or a strip up to ([\d.]+) mm", told).groups()  # type: ignore[union-attr]
     assert not warned(tables | {"network": {"cells": int(cells)}}, "cell edges")
     assert not warned(tables | {"lamella": tables["lamella"] | {"height": float(height) / 1000}}, "cell edges")
+
+
+def sail(rounding: float) -> list[list[float]]:
+    """A loop of four arching edges with corners of about 60 degrees, or rounded over so many metres."""
+    corners = np.array([[0, 0, 0], [3.5, 0, 0], [3.5, 3.0, 0], [0, 3.0, 0]])
+    rises = np.array([[0, -0.2, 1.1], [0.2, 0, -0.25], [0, 0.2, 1.1], [-0.2, 0, -0.25]])
+
+    def edge(k: int, s: float) -> Any:
+        return (1 - s) * corners[k] + s * corners[(k + 1) % 4] + 4 * s * (1 - s) * rises[k]
+
+    points = []
+    for k in range(4):
+        if not rounding:
+            points += [edge(k, s) for s in np.linspace(0, 1, 17)[:-1]]
+            continue
+        share = rounding / np.linalg.norm(corners[(k + 1) % 4] - corners[k])
+        one, other = edge(k - 1, 1 - share), edge(k, share)
+        points += [(1 - s) ** 2 * one + 2 * s * (1 - s) * corners[k] + s**2 * other for s in (0, 0.25, 0.5, 0.75, 1)]
+        points += [edge(k, s) for s in np.linspace(share, 1 - share, 8)[1:-1]]
+    return [[round(float(x), 5) for x in point] for point in points]
+
+
+@pytest.mark.slow
+def test_a_corner_that_no_tolerance_follows() -> None:
+    surface = {"kind": "form-found", "tolerance": 1e-2}
+    tables = {"network": {"spacing": 0.3}, "lamella": ONE | {"height": 0.05, "thickness": 0.001}}
+    sharp = sail(0.0)
+    parts = [{"points": [*sharp[16 * k : 16 * k + 16], sharp[(16 * k + 16) % 64]]} for k in range(4)]
+    message = warned(
+        tables | {"surface": surface | {"boundary": [{"part": parts}]}}, "normal curvature of lamellas is off"
+    )
+    assert "corner" in message
+    over = re.search(r"over about ([\d.]+) m", message)
+    assert over
+    rounded = surface | {"boundary": [{"points": sail(float(over[1]))}]}
+    assert not warned(tables | {"surface": rounded}, "normal curvature of lamellas is off")

@@ -24,15 +24,19 @@ from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.network.trace_elements import trace_elements
 from lamella.network.whole_shifts import WholeShifts
 from lamella.progress import Progress, silent
+from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.points import Complexes, Floats
 from lamella.surface.umbilic import refuse_umbilic
+from lamella.surface.vectors import lengths
 
 Closing = Literal["open", "round"]
 
 # of the curvature scale: a larger error of the normal curvature is told
 ASTRAY = 0.02
+# cell edges from a corner of the boundary within which the corner is the reason for it
+AT_CORNER = 1.5
 # nets of up to so many nodes are tried out to meet a spacing, so often, until they do to so little
 MOST_TRIED, MOST_TRIALS, NEAR_ENOUGH = 1_200, 3, 0.02
 # rounding: the nearest whole numbers may put two umbilics on one node; then the next ones are tried
@@ -61,6 +65,8 @@ class ElementNetwork:
     residual : float
         Distance of the surface from constant mean curvature, see `Isothermic.residual`.
     joints : tuple of Joint
+    corners : (c, 3)
+        Of the boundary, m.
     """
 
     network: Network
@@ -69,6 +75,7 @@ class ElementNetwork:
     lattice: Lattice
     residual: float
     joints: tuple[Joint, ...]
+    corners: Floats
 
     @property
     def requested(self) -> str:
@@ -144,13 +151,23 @@ class ElementNetwork:
         off = np.abs(there.kn - wanted) / np.sqrt(np.mean(there.kn**2 + there.tg**2))
         far = off > ASTRAY
         if far.any():
-            x, y, z = network.sample_points[off.argmax()]
+            worst = network.sample_points[off.argmax()]
+            x, y, z = worst
             yield (
                 f"the normal curvature of lamellas is off by up to {off.max():.2g} of the curvature scale near "
-                f"({x:.3g}, {y:.3g}, {z:.3g}) m (by more than {ASTRAY:g} at {far.mean():.2%} of the samples): the "
-                "surface's directions are not told well enough there; round the corners of its boundary, or write a "
-                "smaller surface.tolerance"
+                f"({x:.3g}, {y:.3g}, {z:.3g}) m (by more than {ASTRAY:g} at {far.mean():.2%} of the samples): "
+                + self._why_astray(worst)
             )
+
+    def _why_astray(self, worst: Floats) -> str:
+        """What makes directions wrong at a place, and what helps."""
+        edge = float(np.median(self.network.cell_edges))
+        if len(self.corners) and lengths(self.corners - worst).min() < AT_CORNER * edge:
+            return (
+                "the boundary has a corner there, at which a film's curvature has no bound: no tolerance follows it; "
+                f"round it over about {edge:.2g} m to either side (points of a spline, or an arc as a part of the loop)"
+            )
+        return "the surface's directions are not told well enough there; write a smaller surface.tolerance"
 
 
 @dataclass(frozen=True)
@@ -221,7 +238,10 @@ class LaidNet:
             Joint(_named(piece, mesh, self.names), float(miss), not np.isnan(whole))
             for piece, miss, whole in zip(iso.transitions, off, wanted, strict=True)
         )
-        return ElementNetwork(network, self.umbilics, mesh.umbilics < 0, lattice, iso.residual, joints)
+        surface = self.surface
+        rims = element_rims(surface.connectivity, surface.nodes, surface.rim_loop)
+        corners = np.vstack([rim.at(rim.corners) for rim in rims])
+        return ElementNetwork(network, self.umbilics, mesh.umbilics < 0, lattice, iso.residual, joints, corners)
 
 
 def lay_net(
