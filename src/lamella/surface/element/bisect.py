@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.places import Places
+from lamella.surface.element.ties import shortened
 from lamella.surface.points import Floats
 from lamella.surface.vectors import lengths
 
@@ -98,7 +99,7 @@ def _cut(parts: Parts, connectivity: Connectivity, nodes: Floats, long: Floats, 
     length = np.zeros(len(keys))
     length[edge] = long
     rank = np.empty(len(keys), np.int64)
-    rank[np.lexsort((keys, length))] = np.arange(len(keys))
+    rank[np.lexsort((keys, shortened(length)))] = np.arange(len(keys))
     longest = rank[edge].argmax(1)
     rows = np.arange(len(faces))
     chosen = np.zeros(len(keys), bool)

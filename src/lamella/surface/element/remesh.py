@@ -21,6 +21,8 @@ from lamella.surface.element.remesh_rim import Plan, Rim
 from lamella.surface.element.remesh_smooth import round_off, smooth
 from lamella.surface.element.remesh_split import split_long
 from lamella.surface.element.remesh_topology import Floats, Integers, Topology, connect, shape
+from lamella.surface.element.ties import VERTEX_BITS, grid_of, rounded
+from lamella.surface.vectors import crosses, lengths
 
 __all__ = ["Rim", "TriangleMesh", "remesh"]
 
@@ -146,7 +148,7 @@ def remesh(
 def _expected(draft: Draft) -> float:
     """Number of equilateral triangles of the wanted sizes that cover the surface."""
     a, b, c = (draft.points[draft.faces[:, k]] for k in range(3))
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    area = lengths(crosses(b - a, c - a)) / 2
     size = draft.size[draft.faces].mean(1)
     return float((area / (np.sqrt(3) / 4 * size**2)).sum()) + len(draft.faces)
 
@@ -190,13 +192,18 @@ def _start(
         mine = np.flatnonzero(loop == which)
         if mine.size == 0:
             raise ValueError(f"no vertex of the mesh lies on boundary loop {which}")
-        one = remesh_rim.plan(rim, float(mesh.parameter[mine].min()), size)
+        # rounded, 0 and a last bit less than 1 are the same place
+        first = (rounded(mesh.parameter[mine], remesh_rim.SAME) % 1.0).argmin()
+        one = remesh_rim.plan(rim, float(mesh.parameter[mine][first]), size)
         station[mine] = one.station(mesh.parameter[mine])
         points[mine] = rim.at(mesh.parameter[mine])
         plans.append(one)
     fixed = np.zeros(loop.size, dtype=bool)
     # A copy: the draft changes its sizes, and the field may hand out an array of its own.
-    draft = Draft(points, topology.faces.copy(), loop, station, fixed, np.array(size(points)), size, project)
+    sizes = np.array(size(points))
+    grid = grid_of(float(sizes.min()), VERTEX_BITS)
+    points = rounded(points, grid)
+    draft = Draft(points, topology.faces.copy(), loop, station, fixed, sizes, size, project, grid)
     _require_loops(draft, topology, plans)
     return draft, plans
 
@@ -222,7 +229,7 @@ def _require_loops(draft: Draft, topology: Topology, plans: Sequence[Plan]) -> N
 def _result(draft: Draft, plans: Sequence[Plan]) -> TriangleMesh:
     rim = np.flatnonzero(draft.boundary)
     parameter = np.full(len(draft.points), np.nan)
-    points = draft.points.copy()
+    points = np.asarray(draft.nearest(draft.points))
     for which, one in enumerate(plans):
         mine = rim[draft.loop[rim] == which]
         parameter[mine] = one.parameter(draft.station[mine])

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.surface.element.remesh_draft import GOOD, LONGEST, SHORTEST, Draft, edge_lengths, narrow
-from lamella.surface.element.remesh_topology import Flags, Floats, Integers, Topology, area_vectors, dot, ragged, shape
+from lamella.surface.element.remesh_topology import Flags, Floats, Integers, Topology, area_vectors, ragged, shape
+from lamella.surface.element.ties import MARGIN, nearest_whole
+from lamella.surface.vectors import lengths
 
 
 def collapse_short(draft: Draft) -> int:
@@ -25,10 +27,10 @@ def collapse_short(draft: Draft) -> int:
     allowed = link_condition(draft, topology, edges, removed, kept)
     edges, removed, kept, target = edges[allowed], removed[allowed], kept[allowed], target[allowed]
     new, old, longest = star_after(draft, topology, removed, kept, target)
-    allowed = (new >= np.minimum(GOOD, old)) & (new > 0) & (longest <= LONGEST)
+    allowed = (new >= np.minimum(GOOD, old) - MARGIN) & (new > 0) & (longest <= LONGEST)
     edges, removed, kept, target = edges[allowed], removed[allowed], kept[allowed], target[allowed]
     # Ranks in steps, or only a few of the many short edges of a graded mesh would be local extremes.
-    rank = np.round(4 * np.log2(np.maximum(ratio[edges], 1e-9)))
+    rank = nearest_whole(4 * np.log2(np.maximum(ratio[edges], 1e-9)))
     chosen = apart(draft, topology, removed, kept, rank)
     removed, kept, target = removed[chosen], kept[chosen], target[chosen]
     if removed.size:
@@ -70,7 +72,7 @@ def collapse_thin(draft: Draft, limit: float) -> int:
     new, old, longest = star_after(draft, topology, removed, kept, draft.points[kept])
     allowed = (new > np.maximum(old, 0.0) + 0.02) & (longest <= 1.1 * LONGEST)
     removed, kept, new = removed[allowed], kept[allowed], new[allowed]
-    chosen = apart(draft, topology, removed, kept, -new)
+    chosen = apart(draft, topology, removed, kept, -nearest_whole(new / MARGIN))
     if chosen.any():
         draft.merge(removed[chosen], kept[chosen])
     return int(chosen.sum())
@@ -114,7 +116,7 @@ def star_after(
     new = np.full(removed.size, np.inf)
     np.minimum.at(new, owner, shape(corners, area_vectors(corners), normals[face]))
     spoke = corners - target[owner][:, None]
-    reach = np.sqrt(dot(spoke, spoke)) / (0.5 * (draft.size[triangle] + draft.size[kept[owner]][:, None]))
+    reach = lengths(spoke) / (0.5 * (draft.size[triangle] + draft.size[kept[owner]][:, None]))
     longest = np.zeros(removed.size)
     np.maximum.at(longest, owner, reach.max(axis=1))
     return new, old, longest

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lamella.surface.element.remesh_topology import Flags, Floats, Integers, Topology, area_vectors, connect, dot, unit
+from lamella.surface.element.remesh_topology import Flags, Floats, Integers, Topology, area_vectors, connect, unit
+from lamella.surface.element.ties import rounded
+from lamella.surface.vectors import dots, lengths
 
 LONGEST, SHORTEST = 4.0 / 3.0, 4.0 / 5.0  # in units of the wanted length; the half of a split edge is not collapsed
 GOOD = 0.35  # shape above which an operation may make a triangle worse
 BEND = 0.5  # cosine of the angle between two faces above which they count as one piece of surface
-EAR = np.deg2rad(75.0)  # a corner sharper than this is one triangle with two boundary edges
+EAR = np.deg2rad(75.01)  # a corner sharper than this, which no design draws, is one triangle with two boundary edges
 BRIDGE = 0.7  # an inner edge between boundary vertices longer than this many sizes gets a vertex in its middle
 
 
@@ -34,8 +36,10 @@ class Draft:
         Boundary vertices that neither move nor vanish.
     size : (n,)
         Wanted edge length (m).
-    size_at, project : callable
+    size_at, nearest : callable
         Size field and closest point of the surface.
+    grid : float
+        That points are rounded to (m), so that the same start gives the same mesh on every machine.
     """
 
     points: Floats
@@ -45,7 +49,8 @@ class Draft:
     fixed: Flags
     size: Floats
     size_at: Callable[[Floats], Floats]
-    project: Callable[[Floats], Floats]
+    nearest: Callable[[Floats], Floats]
+    grid: float
 
     def topology(self) -> Topology:
         return connect(self.faces, len(self.points))
@@ -53,6 +58,10 @@ class Draft:
     @property
     def boundary(self) -> Flags:
         return self.loop >= 0
+
+    def project(self, points: Floats) -> Floats:
+        """Points (k, 3) brought back to the surface, on the grid."""
+        return rounded(self.nearest(points), self.grid)
 
     def append(self, points: Floats, loop: Integers, station: Floats) -> None:
         """More vertices, which no face uses yet."""
@@ -80,7 +89,7 @@ class Draft:
         at_vertices = self.vertex_normals(area)
         around = unit(at_vertices[self.faces].sum(axis=1))
         own = unit(area)
-        return area, np.where((dot(own, around) > BEND)[:, None], own, around)
+        return area, np.where((dots(own, around) > BEND)[:, None], own, around)
 
     def vertex_normals(self, area: Floats) -> Floats:
         """Unit normals at the vertices from the area vectors of the faces, (n, 3)."""
@@ -93,10 +102,9 @@ class Draft:
 def narrow(draft: Draft, one: Integers, other: Integers) -> Flags:
     """Pairs of boundary vertices so close that an edge between them is better than a vertex, (k,)."""
     across = draft.points[one] - draft.points[other]
-    near: Flags = np.sqrt(dot(across, across)) < BRIDGE * 0.5 * (draft.size[one] + draft.size[other])
+    near: Flags = lengths(across) < BRIDGE * 0.5 * (draft.size[one] + draft.size[other])
     return near
 
 
 def edge_lengths(points: Floats, ends: Integers) -> Floats:
-    along = points[ends[:, 1]] - points[ends[:, 0]]
-    return np.sqrt(dot(along, along))
+    return lengths(points[ends[:, 1]] - points[ends[:, 0]])

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.surface.element.remesh_draft import BEND, EAR, GOOD, Draft, narrow
-from lamella.surface.element.remesh_topology import area_vectors, corner_angles, disjoint, dot, shape, unit
+from lamella.surface.element.remesh_topology import area_vectors, corner_angles, disjoint, shape, unit
+from lamella.surface.element.ties import MARGIN, nearest_whole
+from lamella.surface.vectors import dots
 
 
 def flip(draft: Draft, by_valence: bool, bridges: bool = False) -> int:
@@ -36,19 +38,19 @@ def flip(draft: Draft, by_valence: bool, bridges: bool = False) -> int:
     worst = shape(draft.points[draft.faces], area, normals)
     before = np.minimum(worst[first], worst[second])
     if by_valence:
-        goal = np.where(boundary, np.maximum(np.round(turn / (np.pi / 3)), 1) + 1, 6)
+        goal = np.where(boundary, np.maximum(nearest_whole(turn / (np.pi / 3)), 1) + 1, 6)
         off = valence - goal
         gain = 2.0 * (off[a] + off[b] - off[c] - off[d] - 2)
         wanted = gain > 0
     else:
         opposite = angles.ravel()[half - half % 3 + (half + 2) % 3].sum(axis=1)
         gain = opposite - np.pi
-        wanted = (gain > 1e-6) | (before < 0.05)
+        wanted = (gain > MARGIN) | (before < 0.05)
     wanted |= makes_ear
     wanted &= ~spoils_ear
     bridge = wanted & boundary[c] & boundary[d] & ~makes_ear
     wanted[bridge] = bridges | narrow(draft, c[bridge], d[bridge])
-    wanted &= (dot(normals[first], normals[second]) > BEND) | (before < 0)
+    wanted &= (dots(normals[first], normals[second]) > BEND) | (before < 0)
     some = np.flatnonzero(wanted)
     some = some[topology.find(c[some], d[some]) < 0]
     normal = unit(np.where((before[some] < 0)[:, None], (normals[first] + normals[second])[some], flat[some]))
@@ -57,14 +59,14 @@ def flip(draft: Draft, by_valence: bool, bridges: bool = False) -> int:
         corners = draft.points[np.column_stack([v[some] for v in triangle])]
         after = np.minimum(after, shape(corners, area_vectors(corners), normal))
     if by_valence:
-        keep = after > np.minimum(GOOD, before[some])
+        keep = after > np.minimum(GOOD, before[some]) + MARGIN
     else:
-        keep = (after > 0.05 * np.maximum(before[some], 0)) & ((gain[some] > 1e-6) | (after > before[some]))
-        keep = np.where(before[some] < 0.05, after > before[some] + 1e-12, keep)
+        keep = (after > 0.05 * np.maximum(before[some], 0)) & ((gain[some] > MARGIN) | (after > before[some] + MARGIN))
+        keep = np.where(before[some] < 0.05, after > before[some] + MARGIN, keep)
     keep = np.where(makes_ear[some], after > 0.1, keep)
     some = some[keep]
     touched = np.column_stack([a, b, c, d] if by_valence else [first, second])[some]
-    some = some[disjoint(touched, -np.round(gain[some], 1), max(len(draft.faces), len(draft.points)))]
+    some = some[disjoint(touched, -nearest_whole(10 * gain[some]), max(len(draft.faces), len(draft.points)))]
     # Two flips far apart in faces can still ask for the same new edge.
     key = np.minimum(c[some], d[some]) * topology.vertices + np.maximum(c[some], d[some])
     some = some[np.sort(np.unique(key, return_index=True)[1])]

@@ -20,9 +20,11 @@ from lamella.surface.element.remesh_topology import (
     disjoint,
     shape,
 )
+from lamella.surface.element.ties import MARGIN, grid_of, nearest_whole, rounded
 
 SAME = 1e-9  # difference of boundary parameters below which a vertex sits in a corner
 LEAST = 3  # edges of a loop
+STATIONS = grid_of(1.0)  # to which stations are rounded, in edges
 
 
 class Rim(Protocol):
@@ -83,6 +85,8 @@ class Plan:
         whole = np.concatenate([[0], np.cumsum(self.counts)])
         gap = np.abs(np.mod(parameter[:, None] - self.knots + 0.5, 1.0) - 0.5)
         near = gap.argmin(axis=1)
+        # a vertex half-way between two stations goes to the same one on every machine
+        station = rounded(station, STATIONS)
         exact: Floats = np.mod(np.where(gap.min(axis=1) < SAME, whole[near], station), self.total)
         return exact
 
@@ -117,16 +121,17 @@ def plan(rim: Rim, start: float, size: Callable[[Floats], Floats]) -> Plan:
             t = np.linspace(low, high, samples)
             density = rim.length / size(rim.at(np.mod(t, 1.0)))
             steps = 0.5 * (density[1:] + density[:-1]) * np.diff(t)
-            # Several samples to an edge, or a small size between two samples is missed.
-            if steps.max() < 0.125 or samples > 100_000:
+            # Several samples to an edge, or a small size between two samples is missed. Even steps along a whole number
+            # of edges are never near the limit.
+            if steps.max() < 0.13 or samples > 100_000:
                 break
             samples = 2 * samples - 1
         pieces.append(t)
         spans.append(np.concatenate([[0.0], np.cumsum(steps)]))
     ideal = np.array([span[-1] for span in spans])
-    counts = np.maximum(np.round(ideal), 1).astype(np.int64)
+    counts = np.maximum(nearest_whole(ideal), 1).astype(np.int64)
     while counts.sum() < LEAST:
-        counts[np.argmax(ideal / counts)] += 1
+        counts[np.argmax(nearest_whole(ideal / counts / MARGIN))] += 1
     first = np.cumsum(counts) - counts
     fine = np.concatenate([t[:-1] for t in pieces] + [stops[-1:]])
     scaled = [f + s[:-1] * (c / s[-1]) for f, s, c in zip(first, spans, counts, strict=True)]
@@ -210,19 +215,19 @@ def _split(
     loop, edge, station = loop[one_each], edge[one_each], station[one_each]
     if edge.size:
         first = len(draft.points)
-        draft.append(curve_points(plans, loop, station), loop, station)
+        draft.append(curve_points(draft, plans, loop, station), loop, station)
         apply_splits(draft, topology, edge, first)
     return int(edge.size)
 
 
-def curve_points(plans: Sequence[Plan], loop: Integers, station: Floats) -> Floats:
-    """Points of the curves at stations, (k, 3)."""
+def curve_points(draft: Draft, plans: Sequence[Plan], loop: Integers, station: Floats) -> Floats:
+    """Points of the curves at stations, (k, 3), on the draft's grid."""
     points = np.empty((loop.size, 3))
     for which, one in enumerate(plans):
         mine = loop == which
         if mine.any():
             points[mine] = one.rim.at(one.parameter(station[mine]))
-    return points
+    return rounded(points, draft.grid)
 
 
 def collapse(draft: Draft, plans: Sequence[Plan], careful: bool) -> int:
@@ -249,9 +254,9 @@ def collapse(draft: Draft, plans: Sequence[Plan], careful: bool) -> int:
     allowed = link_condition(draft, topology, topology.find(removed, kept), removed, kept)
     removed, kept = removed[allowed], kept[allowed]
     new, old, _ = star_after(draft, topology, removed, kept, draft.points[kept])
-    rank: Floats = -np.rint(10.0 * np.clip(new, -1.0, 0.5))
+    rank: Floats = -nearest_whole(10.0 * np.clip(new, -1.0, 0.5))
     if careful:
-        allowed = new >= np.minimum(0.1, old)
+        allowed = new >= np.minimum(0.1, old) - MARGIN
         removed, kept, rank = removed[allowed], kept[allowed], rank[allowed]
     chosen = apart(draft, topology, removed, kept, rank)
     draft.merge(removed[chosen], kept[chosen])
@@ -282,14 +287,14 @@ def spread(draft: Draft, plans: Sequence[Plan], careful: bool, step: float = 0.6
     rim = np.flatnonzero(draft.boundary & (station != draft.station))
     if rim.size == 0:
         return
-    goal[rim] = curve_points(plans, draft.loop[rim], station[rim])
+    goal[rim] = curve_points(draft, plans, draft.loop[rim], station[rim])
     if careful:
         area, normals = draft.face_normals()
         before = shape(draft.points[draft.faces], area, normals)
         while True:
             corners = goal[draft.faces]
             after = shape(corners, area_vectors(corners), normals)
-            back = np.unique(draft.faces[after < np.minimum(0.1, before) - 1e-12])
+            back = np.unique(draft.faces[after < np.minimum(0.1, before) - MARGIN])
             back = back[station[back] != draft.station[back]]
             if back.size == 0:
                 break

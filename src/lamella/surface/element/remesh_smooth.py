@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.surface.element.remesh_draft import GOOD, Draft
-from lamella.surface.element.remesh_topology import Floats, area_vectors, cross, dot, shape
+from lamella.surface.element.remesh_topology import Floats, area_vectors, shape
+from lamella.surface.element.ties import MARGIN
+from lamella.surface.vectors import crosses, dots, lengths
 
 
 def smooth(draft: Draft, step: float = 0.8) -> None:
@@ -13,7 +15,7 @@ def smooth(draft: Draft, step: float = 0.8) -> None:
     corners = draft.points[draft.faces]
     area, normals = draft.face_normals()
     # Area over size cubed: in balance the spacing of a row of points is then proportional to the size.
-    weight = np.sqrt(dot(area, area)) / draft.size[draft.faces].mean(axis=1) ** 3
+    weight = lengths(area) / draft.size[draft.faces].mean(axis=1) ** 3
     goals = np.repeat(corners.mean(axis=1)[:, None], 3, axis=1)
     _move(draft, goals, weight, area, normals, step, GOOD)
 
@@ -23,7 +25,7 @@ def round_off(draft: Draft, limit: float, step: float = 0.5) -> None:
     corners = draft.points[draft.faces]
     area, normals = draft.face_normals()
     start, end = corners[:, [1, 2, 0]], corners[:, [2, 0, 1]]
-    inward = cross(np.broadcast_to(normals[:, None], start.shape), end - start)
+    inward = crosses(np.broadcast_to(normals[:, None], start.shape), end - start)
     goals = 0.5 * (start + end) + 0.5 * np.sqrt(3.0) * inward
     present = shape(corners, area, normals)
     poor = np.zeros(len(draft.points), dtype=bool)
@@ -43,7 +45,7 @@ def _move(
     sums = [np.bincount(corner, weighted[:, i], count) for i in range(3)]
     way = np.column_stack(sums) / np.where(total > 0, total, 1.0)[:, None] - draft.points
     normal = draft.vertex_normals(area)
-    way -= dot(way, normal)[:, None] * normal
+    way -= dots(way, normal)[:, None] * normal
     way *= np.broadcast_to(step, count)[:, None]
     inside = np.flatnonzero(~draft.boundary & way.any(axis=1))
     goal = draft.points.copy()
@@ -59,7 +61,7 @@ def guarded(draft: Draft, goal: Floats, before: Floats, normals: Floats, good: f
     while True:
         corners = points[draft.faces]
         after = shape(corners, area_vectors(corners), normals)
-        back = np.unique(draft.faces[after < np.minimum(good, before) - 1e-12])
+        back = np.unique(draft.faces[after < np.minimum(good, before) - MARGIN])
         back = back[away[back]]
         if back.size == 0:
             return points

@@ -6,6 +6,7 @@ import numpy as np
 
 from lamella.surface.element.remesh_draft import BRIDGE, EAR, LONGEST, Draft, edge_lengths
 from lamella.surface.element.remesh_topology import Flags, Integers, Topology, corner_angles, disjoint
+from lamella.surface.element.ties import nearest_whole
 
 
 def apply_splits(draft: Draft, topology: Topology, edges: Integers, first_new: int) -> None:
@@ -51,7 +52,7 @@ def split_long(draft: Draft, look_inside: bool) -> int:
     # A bridge is too long whatever its length; the offset keeps the order among bridges.
     ratio = np.where(bridges, ratio + LONGEST, ratio)
     edges = np.flatnonzero(topology.inner & (ratio > LONGEST))
-    edges = edges[disjoint(topology.sides[edges], -np.round(ratio[edges], 2), len(draft.faces), passes=1)]
+    edges = edges[disjoint(topology.sides[edges], -nearest_whole(100 * ratio[edges]), len(draft.faces), passes=1)]
     if edges.size:
         middle = draft.project(draft.points[ends[edges]].mean(axis=1))
         first = len(draft.points)

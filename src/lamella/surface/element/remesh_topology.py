@@ -8,6 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.surface.vectors import crosses, dots, lengths
+
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -176,27 +178,12 @@ def scattered(count: int) -> Integers:
 
 def area_vectors(corners: Floats) -> Floats:
     """Normal times area (m^2) of triangles with corners (k, 3, 3)."""
-    return 0.5 * cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-
-
-def cross(a: Floats, b: Floats) -> Floats:
-    """Vector product of rows, (k, 3); numpy's own takes several times as long."""
-    out = np.empty(np.broadcast_shapes(a.shape, b.shape))
-    out[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
-    out[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
-    out[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return out
-
-
-def dot(a: Floats, b: Floats) -> Floats:
-    """Scalar product of rows."""
-    product: Floats = np.einsum("...i,...i->...", a, b)
-    return product
+    return 0.5 * crosses(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
 def unit(vectors: Floats) -> Floats:
     """Rows of length 1; a row of zeros stays."""
-    length = np.sqrt(dot(vectors, vectors))[..., None]
+    length = lengths(vectors)[..., None]
     return vectors / np.where(length > 0, length, 1.0)
 
 
@@ -213,9 +200,9 @@ def shape(corners: Floats, area: Floats, normal: Floats) -> Floats:
         Unit normals the triangles should have. One that leans by more than 60 degrees counts as turned away.
     """
     side = corners - corners[:, [1, 2, 0]]
-    squares = np.einsum("kij,kij->k", side, side)
-    facing = dot(area, normal)
-    size = np.sqrt(dot(area, area))
+    squares = dots(side, side).sum(1)
+    facing = dots(area, normal)
+    size = lengths(area)
     value: Floats = 4.0 * np.sqrt(3.0) * np.where(facing > 0.5 * size, size, np.minimum(facing, 0.0) - 0.01 * size)
     return value / np.where(squares > 0, squares, 1.0)
 
@@ -224,5 +211,4 @@ def corner_angles(corners: Floats) -> Floats:
     """Angles (rad) of triangles with corners (k, 3, 3), (k, 3)."""
     forward = corners[:, [1, 2, 0]] - corners
     backward = corners[:, [2, 0, 1]] - corners
-    sine = np.sqrt(dot(c := cross(forward, backward), c))
-    return np.arctan2(sine, dot(forward, backward))
+    return np.arctan2(lengths(crosses(forward, backward)), dots(forward, backward))

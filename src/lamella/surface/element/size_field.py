@@ -7,7 +7,9 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
+from lamella.surface.element.ties import SIZE_BITS, grid_of, rounded, shortened
 from lamella.surface.points import Floats
+from lamella.surface.vectors import diagonal
 
 # growth of the wanted size with the distance; steeper grading costs the elements' shape
 GRADING = 0.3
@@ -29,6 +31,8 @@ class SizeField:
     """
 
     def __init__(self, points: Floats, sizes: Floats, most: float = np.inf) -> None:
+        self._grid = grid_of(max(diagonal(points), float(sizes.max())))
+        points, sizes = rounded(points, self._grid), shortened(sizes, SIZE_BITS)
         self._tree = cKDTree(points)
         n = len(points)
         distance, near = self._tree.query(points, k=min(NEIGHBOURS, n))
@@ -44,7 +48,7 @@ class SizeField:
 
     def __call__(self, points: Floats) -> Floats:
         """Wanted edge length at points (k, 3), m, (k,)."""
-        distance, near = self._tree.query(points)
+        distance, near = self._tree.query(rounded(points, self._grid))
         size = self._sizes[near]
         # a size holds for the whole element it was asked for
         return np.asarray(np.minimum(size + GRADING * np.maximum(distance - 0.6 * size, 0), self._most))

@@ -8,7 +8,9 @@ from scipy.spatial import cKDTree
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.geometry import normal_and_area, tangents
 from lamella.surface.element.lagrange import subdivision
+from lamella.surface.element.ties import grid_of, rounded
 from lamella.surface.points import Floats
+from lamella.surface.vectors import diagonal, dots
 
 # samples along an element's edge that the remesher's vertices are brought back to
 SAMPLES = 8
@@ -30,13 +32,14 @@ class TangentPlanes:
         basis = connectivity.basis
         local, _ = subdivision(SAMPLES)
         corners = nodes[connectivity.elements]
+        self._grid = grid_of(diagonal(nodes))
         self._points = np.matmul(basis.basis(local), corners).reshape(-1, 3)
         normals, _ = normal_and_area(*tangents(basis.basis(local, 1, 0), basis.basis(local, 0, 1), corners))
         self._normals = normals.reshape(-1, 3)
-        self._tree = cKDTree(self._points)
+        self._tree = cKDTree(rounded(self._points, self._grid))
 
     def __call__(self, points: Floats) -> Floats:
         """Points (n, 3) brought to the nearest sample's tangent plane, m."""
-        _, near = self._tree.query(points)
+        _, near = self._tree.query(rounded(points, self._grid))
         normal = self._normals[near]
-        return np.asarray(points - ((points - self._points[near]) * normal).sum(1)[:, None] * normal)
+        return np.asarray(points - dots(points - self._points[near], normal)[:, None] * normal)

@@ -24,7 +24,7 @@ LEAST_WEIGHED = 0.1
 # of the tolerance that a new mesh aims at, and the rings of neighbours that share their largest error
 AIM, RINGS = 0.6, 2
 # most an element's edge shrinks or grows at once; once the sizes have settled none grows
-SHRINK, GROW = 0.3, 1.6
+SHRINK, GROW = 0.3, 1.3
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,8 @@ import pythoncdt
 from numpy.typing import NDArray
 
 from lamella.errors import InputError
+from lamella.surface.element.remesh_topology import scattered
+from lamella.surface.element.ties import MARGIN, grid_of, least_axis, nearest_whole, rounded
 from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
@@ -27,6 +29,8 @@ LEAST_ANGLE = 20.0
 MOST_VERTICES = 20_000
 # a plan serves where its curves keep this far apart, over its size, and run at least this much of their length in it
 LEAST_GAP, LEAST_RUN = 0.02, 0.2
+# of the distance to its neighbours, by which a vertex on a rim of the chart is moved
+UNEVEN = 1e-3
 # Fourier modes of a loop that place a hole in the abstract disc
 MODES = 24
 
@@ -81,7 +85,7 @@ def samples_of(curve: Curve, count: int) -> Floats:
     if not len(curve.corners):
         return np.asarray(even)
     off = np.abs((even[:, None] - curve.corners + 0.5) % 1 - 0.5).min(1)
-    return np.sort(np.concatenate([even[off > 0.5 / count], curve.corners]))
+    return np.sort(np.concatenate([even[off > 0.501 / count], curve.corners]))
 
 
 def make_chart(loops: Sequence[Curve], count: int = 64) -> Chart:
@@ -99,7 +103,8 @@ def make_chart(loops: Sequence[Curve], count: int = 64) -> Chart:
         No chart could be triangulated.
     """
     longest = max(loop.length for loop in loops)
-    parameters = [samples_of(loop, max(12, round(count * np.sqrt(loop.length / longest)))) for loop in loops]
+    counts = [max(12, int(nearest_whole(count * np.sqrt(loop.length / longest)))) for loop in loops]
+    parameters = [samples_of(loop, number) for loop, number in zip(loops, counts, strict=True)]
     rims = _plan(loops, parameters)
     kind = "plan"
     if rims is None:
@@ -115,7 +120,7 @@ def _plan(loops: Sequence[Curve], parameters: Sequence[Floats]) -> list[Complexe
     if np.linalg.norm(axis) < 0.01 * length**2:
         return None
     axis /= np.linalg.norm(axis)
-    first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    first = np.cross(axis, np.eye(3)[least_axis(axis)])
     first /= np.linalg.norm(first)
     frame = np.stack([first, np.cross(axis, first)], 1) @ np.array([1, 1j])
     flat = [points @ frame for points in fine]
@@ -153,8 +158,12 @@ def _crosses(polygon: Complexes, gap: float) -> bool:
     n = len(polygon)
     a, b = polygon, np.roll(polygon, -1)
 
+    size = np.abs(polygon - polygon[0]).max()
+
     def side(p: Complexes, q: Complexes, r: Complexes) -> Floats:
-        return np.asarray(((q - p).conj() * (r - p)).imag)
+        # a point on the line through two others lies to neither side
+        area = ((q - p).conj() * (r - p)).imag
+        return np.asarray(np.where(np.abs(area) > MARGIN * size * np.abs(q - p), area, 0))
 
     a1, b1, a2, b2 = a[:, None], b[:, None], a[None, :], b[None, :]
     cross = (side(a1, b1, a2) * side(a1, b1, b2) < 0) & (side(a2, b2, a1) * side(a2, b2, b1) < 0)
@@ -236,14 +245,30 @@ def _turned(outer: Complexes, centre: complex, radius: float, points: Floats) ->
         mine = np.fft.fft(points[::1] if sense == 1 else np.roll(points[::-1], 1, 0), axis=0)
         # sum over modes of |k| Re(there conj(mine e^{-ik turn})), for all turns at once
         match = np.fft.ifft((k[:, None] * there * mine.conj()).sum(1)).real
-        at = int(match.argmax())
-        if match[at] > best[0]:
-            best = (float(match[at]), 2 * np.pi * at / n, sense)
+        # the first of equal ones; the given sense unless the other is better
+        size = np.abs(k[:, None] * there * mine).sum()
+        at = int(nearest_whole(match * len(match) / max(size * MARGIN, 1e-300)).argmax())
+        if match[at] * len(match) > best[0] + MARGIN * size:
+            best = (float(match[at]) * len(match), 2 * np.pi * at / n, sense)
     return best[1], best[2]
 
 
+def _uneven(rim: Complexes, size: float) -> Complexes:
+    """A rim (n,) of the chart with its vertices moved a little, the same way on every machine.
+
+    Even ones lie on circles and lines, where four in a circle or an angle of just so many degrees are decided by
+    rounding.
+    """
+    grid = grid_of(size)
+    rim = rounded(rim.real, grid) + 1j * rounded(rim.imag, grid)
+    step = np.minimum(np.abs(rim - np.roll(rim, 1)), np.abs(rim - np.roll(rim, -1)))
+    share = np.stack([scattered(len(rim)), scattered(2 * len(rim))[len(rim) :]], 1) / 2.0**32 - 0.5
+    return np.asarray(rim + UNEVEN * step * (share @ np.array([1, 1j])))
+
+
 def _triangulated(kind: str, rims: Sequence[Complexes], parameters: Sequence[Floats]) -> Chart:
-    corners = np.concatenate(rims)
+    size = max(float(np.abs(rim - rim[0]).max()) for rim in rims)
+    corners = np.concatenate([_uneven(rim, size) for rim in rims])
     starts = np.cumsum([0, *map(len, rims)])
     edges = np.concatenate(
         [np.column_stack([np.arange(a, b), np.r_[np.arange(a + 1, b), a]]) for a, b in pairwise(starts)]

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from lamella.errors import InputError
+from lamella.surface.element.ties import least_axis
 from lamella.surface.found.chart import Curve, samples_of, vector_area
 from lamella.surface.found.film import Loop
 from lamella.surface.points import Floats
@@ -99,7 +100,7 @@ def is_convex_along(points: Floats, axis: Floats) -> bool:
     if length <= 1e-9 * float((step**2).sum()):
         return False
     axis = axis / length
-    across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    across = np.cross(axis, np.eye(3)[least_axis(axis)])
     across /= np.linalg.norm(across)
     seen = step @ across + 1j * (step @ np.cross(axis, across))
     # seen end on, a part of the curve would be one point

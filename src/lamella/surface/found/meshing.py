@@ -26,7 +26,8 @@ from lamella.surface.points import Floats
 # coarsest elements, as parts of a loop, as turns of its tangent or of the normal, and as parts of a narrow place
 EDGES_OF_A_LOOP, TURN_OF_AN_EDGE, EDGES_ACROSS = 12, 0.7, 2
 MOST_EDGES_OF_A_LOOP, SAMPLES_OF_A_LOOP = 100, 240
-ARC_OVER_CHORD = 3
+# a strip between parallel edges has chords of which just a third of the arc is left at its ends: off any such tie
+ARC_OVER_CHORD = 3.01
 # elements of a first film at most
 MOST_COARSE = 1500
 

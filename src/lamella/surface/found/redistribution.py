@@ -20,6 +20,7 @@ from lamella.surface.element.conjugate_gradients import conjugate_gradients
 from lamella.surface.element.geometry import smooth_normals
 from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.quadrature import triangle_rule
+from lamella.surface.element.ties import least_axis
 from lamella.surface.found.adapting import away_from_corners
 from lamella.surface.found.film import Film
 from lamella.surface.points import Floats
@@ -86,7 +87,7 @@ def redistributed(film: Film, mean_curvature: float) -> Film:
 
 def tangent_frames(film: Film, normals: Floats) -> Floats:
     """Two unit vectors across the normal at each node (n, 3, 2), in columns; 0 where the node has to stay."""
-    first = crosses(normals, np.eye(3)[np.abs(normals).argmin(1)])
+    first = crosses(normals, np.eye(3)[least_axis(normals)])
     first /= lengths(first)[:, None]
     frames = np.stack([first, crosses(normals, first)], 2)
     frames[: len(film.mesh.points)] = frames[film.connectivity.rim_nodes] = 0

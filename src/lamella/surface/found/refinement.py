@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from lamella.errors import InputError
 from lamella.surface.found.adapting import Deviation, deviation_of, refined_sizes
 from lamella.surface.found.film import Film
 from lamella.surface.found.found_film import Found
-from lamella.surface.found.meshing import renewed, straightened, with_sizes
+from lamella.surface.found.meshing import is_worn, renewed, straightened, with_sizes
 from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError
 from lamella.surface.found.redistribution import redistributed
 from lamella.surface.found.stability import stability_of
@@ -57,7 +58,7 @@ def adapted(
         The surface is not there on finer elements.
     """
     try:
-        here = settled(straightened(first.film))
+        here = settled(_on_sound_elements(first.film))
     except NoFilmError as error:
         raise InputError(
             f"the surface found on coarse elements breaks on finer ones: {error}",
@@ -78,7 +79,7 @@ def adapted(
         if deviation.weighted <= MARGIN * tolerance:
             shortfall = ""
             break
-        size, allowed = refined_sizes(here.film, deviation, tolerance, most_nodes, coarsen=round_ < 3)
+        size, allowed = refined_sizes(here.film, deviation, tolerance, most_nodes, coarsen=round_ < 2)
         if not allowed and here.film.connectivity.node_count > 0.7 * most_nodes and gain > SLOW:
             shortfall = f"elements as small as that asks for would need more than most_nodes = {most_nodes:,} nodes"
             break
@@ -114,6 +115,18 @@ def adapted(
         steps,
         followed,
     )
+
+
+def _on_sound_elements(film: Film) -> Film:
+    """A film ready to be refined.
+
+    Elements that a path has drawn out tell nothing of where smaller ones are needed, and magnify rounding.
+    """
+    if is_worn(film):
+        # what cannot be made anew may still do as it is
+        with suppress(NoFilmError):
+            return renewed(film)
+    return straightened(film)
 
 
 def _at_rest(

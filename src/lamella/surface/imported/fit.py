@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array, eye_array
 
+from lamella.surface.element.ties import least_axis
 from lamella.surface.imported.edges import Booleans, find_edges, vertex_areas, vertex_normals
 from lamella.surface.imported.raw_mesh import Floats, Integers, mesh_error
 
@@ -156,7 +157,7 @@ def _monomials(x: Floats, y: Floats) -> Floats:
 
 def _tangents(normals: Floats) -> tuple[Floats, Floats]:
     """Two unit vectors at right angles to each normal and to one another, (n, 3) each."""
-    helper = np.eye(3)[np.abs(normals).argmin(axis=1)]
+    helper = np.eye(3)[least_axis(normals)]
     first = np.cross(helper, normals)
     first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), np.finfo(float).tiny)
     return first, np.cross(normals, first)
