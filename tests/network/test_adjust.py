@@ -120,7 +120,8 @@ def test_rates_are_those_of_films_found_anew(held: str) -> None:
         rising = curvature_rates_of_volume(film, h, films.rim_shifts(film, net.shares))
 
     def matched(shifts: np.ndarray) -> np.ndarray:
-        """In the order of the first film's: the cut may be told piece by piece in another one."""
+        """In the first film's order, with its sign: the cut may come piece by piece in another one, and w as -w."""
+        shifts = min((shifts, -shifts), key=lambda one: np.abs(here[:, None] - one).min(1).sum())
         order = np.abs(here[:, None] - shifts).argmin(1)
         assert len(set(order.tolist())) == len(here)
         return shifts[order]

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from lamella.network.net_mesh import NetMesh
+from lamella.surface.element.ties import shortened
 
 Integers = NDArray[np.int64]
 
@@ -41,7 +42,8 @@ def cut_edges(mesh: NetMesh, odd: Integers) -> NDArray[np.bool_]:
     # an edge from rim to rim would cut off what hangs on one edge; so would the rim itself
     on_rim = mesh.loop >= 0
     free = ~on_rim[ends].all(1) | (mesh.loop[ends[:, 0]] != mesh.loop[ends[:, 1]])
-    graph = coo_matrix((cost[free], tuple(ends[free].T)), (vertices, vertices)).tocsr()
+    # ways that cost the same do so on every machine
+    graph = coo_matrix((shortened(cost[free]), tuple(ends[free].T)), (vertices, vertices)).tocsr()
     reached = mesh.loop == 0
     holes = [np.flatnonzero(mesh.loop == hole) for hole in range(1, int(mesh.loop.max()) + 1)]
     zeros = [odd[number : number + 1] for number in range(len(odd))]

@@ -20,6 +20,10 @@ from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
 
+# w + a constant is as good as w: it changes the shifts of pieces where w comes back as -w, and costs nothing. A change
+# that costs less than this part of the dearest one is that, and rounding: it stays as small as it can
+FREE = 1e-6
+
 
 class FoldedError(ValueError):
     """Shifts that fold the net; `place` (3,), m, says where."""
@@ -105,8 +109,11 @@ def best_shifts(gram: Floats, right: Complexes, rows: list[Integers], goal: Comp
     rank = int((singular > 1e-9).sum())
     fixed = np.linalg.lstsq(conditions, goal, rcond=None)[0] if rank else np.zeros(count, complex)
     loose = directions[rank:]
-    rest = np.linalg.solve(loose @ gram @ loose.T, loose @ (right - gram @ fixed))
-    return np.asarray(fixed + loose.T @ rest, np.complex128)
+    energy, along = np.linalg.eigh(loose @ gram @ loose.T)
+    rest = along.T @ (loose @ (right - gram @ fixed))
+    costs = energy > FREE * energy.max(initial=0.0)
+    rest = np.where(costs, rest / np.where(costs, energy, 1.0), 0.0)
+    return np.asarray(fixed + loose.T @ (along @ rest), np.complex128)
 
 
 def links(

@@ -20,6 +20,7 @@ from lamella.network.net_mesh import NetMesh
 from lamella.network.poisson import Poisson, deviator_root
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.edge_basis import edge_values
+from lamella.surface.element.ties import MARGIN
 from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
@@ -138,7 +139,10 @@ def root_signs(mesh: NetMesh, cut: NDArray[np.bool_]) -> tuple[Integers, NDArray
     # signs are handed on where the root is large, away from umbilics
     cost = 1 / np.maximum(np.abs(root[element, edge]), 1e-300)
     tree = minimum_spanning_tree(coo_matrix((cost, (element, neighbour)), (m, m)).tocsr())
-    order, parent = breadth_first_order(tree, int(np.abs(root).mean(1).argmax()), directed=False)
+    # of equal ones the first
+    size = np.abs(root).mean(1)
+    start = int(np.rint(size / (MARGIN * size.max())).argmax())
+    order, parent = breadth_first_order(tree, start, directed=False)
     relation = coo_matrix((same, (element, neighbour)), (m, m)).tocsr()
     to_parent = np.asarray(relation[order[1:], parent[order[1:]]]).ravel()
     sign = np.ones(m, np.int64)
