@@ -4,7 +4,10 @@ BIN := .venv/bin
 # a process a core: threads of their own would only wait for each other
 ONE := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1
 
-.PHONY: demo test slow lint types bench docs clean
+# what can differ between processors: elements, films, examples and their page in the docs
+NUMERICS := tests/surface/element tests/surface/found tests/projection tests/test_sparse.py tests/test_examples.py tests/test_docs.py
+
+.PHONY: demo test slow kernels lint types bench docs clean
 
 demo: .venv/ready
 	$(BIN)/lamella run examples/01_unduloid.toml
@@ -15,6 +18,9 @@ test: .venv/ready
 
 slow: .venv/ready
 	$(ONE) $(BIN)/python -m pytest -m slow -n auto
+
+kernels: .venv/ready
+	$(BIN)/python tests/kernels.py --pytest -m "not slow" -n auto --dist loadfile $(NUMERICS)
 
 lint: .venv/ready
 	$(BIN)/ruff check .
