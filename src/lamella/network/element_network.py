@@ -210,7 +210,7 @@ class LaidNet:
             wanted = np.where(off <= CLOSES, near, np.nan)
             # lines of one family go on where those of the other one do not
             off_parts, near_parts = raw.shifts - near, np.stack([near.real, near.imag])
-            closes = np.abs(np.stack([off_parts.real, off_parts.imag])) <= CLOSES
+            closes = (np.abs(np.stack([off_parts.real, off_parts.imag])) <= CLOSES) & ~_stubs(iso)
             if closes.any():
                 try:
                     iso = with_shifts(iso, *_turned(raw, np.where(closes, near_parts, np.nan), lattice))
@@ -237,6 +237,7 @@ class LaidNet:
         joints = tuple(
             Joint(_named(piece, mesh, self.names), float(miss), not np.isnan(whole))
             for piece, miss, whole in zip(iso.transitions, off, wanted, strict=True)
+            if not piece.stub
         )
         surface = self.surface
         rims = element_rims(surface.connectivity, surface.nodes, surface.rim_loop)
@@ -370,6 +371,11 @@ def _largest_part(shifts: Complexes) -> Floats:
     return np.maximum(np.abs(shifts.real), np.abs(shifts.imag))
 
 
+def _stubs(iso: Isothermic) -> NDArray[np.bool_]:
+    """Which pieces of the cut are no joints, (t,)."""
+    return np.array([piece.stub for piece in iso.transitions], bool)
+
+
 def _turned(raw: CellMap, wanted: Floats, lattice: Lattice) -> tuple[Floats, complex]:
     """Both parts (2, t) of shifts of w, sqrt(m), turned by a factor as cells are, of shifts in cells; the factor."""
     turn, every = raw.pattern.factor, np.array(raw.pattern.every[::-1])
@@ -383,7 +389,7 @@ def _rounded(iso: Isothermic, raw: CellMap, lattice: Lattice) -> tuple[Isothermi
     ways = WholeShifts.of(iso, iso.gram).nearest(raw.shifts, MOST_WAYS)
     for wanted in ways:
         try:
-            parts = np.stack([wanted.real, wanted.imag])
+            parts = np.where(_stubs(iso), np.nan, np.stack([wanted.real, wanted.imag]))
             return with_shifts(iso, *_turned(raw, parts, lattice)), wanted
         except FoldedError as error:
             folded = folded or error

@@ -111,7 +111,7 @@ def fixed_point_factors(iso: Isothermic) -> Floats:
     the fixed point of the first piece of the cut that does so: loops of that kind have to agree with each other alone.
     """
     factors = np.zeros(len(iso.transitions))
-    turning = [number for number, piece in enumerate(iso.transitions) if piece.sign < 0]
+    turning = [number for number, piece in enumerate(iso.transitions) if piece.sign < 0 and not piece.stub]
     if len(iso.odd):
         _, twice = around_vertex(iso.mesh, iso.transitions, iso.across, int(iso.odd[0]))
         factors += twice / 2

@@ -8,7 +8,8 @@ Across a cut w = u + i v goes over into +-w + c; these c are the periods.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -41,6 +42,8 @@ class Transition:
         sqrt(m).
     ends : (2,) int
         Where the piece ends: boundary loop k as -1 - k, or a vertex.
+    stub : bool
+        Whether it leads from a corner of the rim into nothing: there w goes like a power that turns it by itself.
     """
 
     left: Integers
@@ -50,6 +53,7 @@ class Transition:
     sign: int
     shift: complex
     ends: tuple[int, int]
+    stub: bool = False
 
 
 @dataclass(frozen=True)
@@ -223,7 +227,14 @@ def cut_pieces(
         first, last = ends[index[0]][0 if forward[0] else 1], ends[index[-1]][1 if forward[-1] else 0]
         where = (_end(mesh, int(first)), _end(mesh, int(last)))
         result.append(Transition(left, right, left_edge, right_edge, sign, 0j, where))
-    return tuple(result), across
+    met = Counter(end for piece in result for end in piece.ends)
+    return tuple(replace(piece, stub=_is_stub(mesh, piece, odd, met)) for piece in result), across
+
+
+def _is_stub(mesh: NetMesh, piece: Transition, odd: Integers, met: Counter[int]) -> bool:
+    """Whether a piece ends in no umbilic and on no other piece, next to a corner of the rim."""
+    tips = [end for end in piece.ends if end >= 0 and met[end] == 1 and end not in odd]
+    return bool(mesh.at_corner(mesh.nodes[tips]).any())
 
 
 def _end(mesh: NetMesh, vertex: int) -> int:

@@ -23,7 +23,7 @@ from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.places import Places
 from lamella.surface.element.placing import edge_blends
-from lamella.surface.element.rim import element_rims
+from lamella.surface.element.rim import ElementRim, element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.points import Complexes, Floats, SurfacePoints, shape_entries
@@ -36,6 +36,8 @@ Flags = NDArray[np.bool_]
 ORDER = 4
 # an umbilic this near to the boundary, over the surface's size, is on it: no loop runs around it
 ON_RIM, RIM_SAMPLES = 2e-3, 4000
+# the same of a corner of it: there Q goes like a power that is not whole, and elements put a zero next to it
+AT_CORNER = 0.015
 # radius of a rosette over the distance to the boundary and to the next umbilic
 TO_RIM, TO_NEXT = 0.5, 0.28
 # longest edge of the elements around over the distance from the umbilic
@@ -71,6 +73,8 @@ class NetMesh:
         Umbilic in whose rosette, or next to it, each element is; -1: it is the surface's own, or a part of one.
     rim_starts : (loops, 3)
         Where each boundary loop begins, m.
+    corners : (c,) int
+        Vertices at which the rim has a corner.
     """
 
     connectivity: Connectivity
@@ -83,6 +87,11 @@ class NetMesh:
     radii: Floats
     patch: Integers
     rim_starts: Floats
+    corners: Integers
+
+    def at_corner(self, points: Floats) -> Flags:
+        """Whether points (n, 3) are next to a corner of the rim."""
+        return _near(points, self.nodes[self.corners], AT_CORNER * diagonal(self.nodes))
 
 
 @dataclass(frozen=True)
@@ -133,7 +142,7 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     along = np.concatenate([rim.at(np.arange(RIM_SAMPLES) / RIM_SAMPLES) for rim in rims])
     zeros = umbilics.position.reshape(-1, 3)
     to_rim, _ = cKDTree(along).query(zeros)
-    inside = to_rim > ON_RIM * size
+    inside = (to_rim > ON_RIM * size) & ~_near(zeros, surface.nodes[_corners(rims)], AT_CORNER * size)
     radii = np.where(inside, _radii(surface, umbilics, to_rim), ON_RIM * size)
 
     def too_large(corners: Floats, longest: Floats) -> Flags:
@@ -197,7 +206,20 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     frames, mean, deviator = surface.shape_at(every)
     shape = shape_entries(frames.e_u, frames.e_v, mean, deviator)
     normals = surface.smooth_normal(every)
-    return NetMesh(new, positions, every, shape, normals, loop, at, radii, patch, surface.rim_starts)
+    corners = _corners(element_rims(new, positions, loop[new.rim_nodes[:, 0]]))
+    return NetMesh(new, positions, every, shape, normals, loop, at, radii, patch, surface.rim_starts, corners)
+
+
+def _corners(rims: tuple[ElementRim, ...]) -> Integers:
+    """Vertices at which the rim has a corner, (c,)."""
+    return np.concatenate([rim.vertices[np.isin(rim.starts, rim.corners)] for rim in rims])
+
+
+def _near(points: Floats, others: Floats, reach: float) -> Flags:
+    """Which points (n, 3) are nearer than a reach, m, to any of others (k, 3)."""
+    if not len(points) or not len(others):
+        return np.zeros(len(points), bool)
+    return np.asarray(cKDTree(others).query(points)[0] < reach)
 
 
 def onto_surface(

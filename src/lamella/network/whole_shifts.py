@@ -59,11 +59,14 @@ class WholeShifts:
         origin = fixed_point_factors(iso)
         if origin.any():
             conditions.append(np.rint(2 * origin).astype(np.int64))
+        # what turns w at a corner of the rim is no joint
+        stubs = np.array([piece.stub for piece in iso.transitions], bool)
+        conditions += list(np.eye(len(stubs), dtype=np.int64)[stubs])
         basis = _kernel(len(iso.transitions), conditions)
         for vertex in iso.odd.tolist():
             _, factors = around_vertex(iso.mesh, iso.transitions, iso.across, vertex)
             basis = _even(basis, factors)
-        turning = np.array([piece.sign < 0 for piece in iso.transitions], bool)
+        turning = np.array([piece.sign < 0 for piece in iso.transitions], bool) & ~stubs
         # twice the middle of a cell, where w turns around no umbilic of the net
         offset = np.where(turning, 0 if len(iso.odd) else 2 * MIDDLE, 0)
         return cls(offset.astype(complex), *_reduced(basis, gram))
