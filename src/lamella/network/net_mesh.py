@@ -36,8 +36,9 @@ Flags = NDArray[np.bool_]
 ORDER = 4
 # an umbilic this near to the boundary, over the surface's size, is on it: no loop runs around it
 ON_RIM, RIM_SAMPLES = 2e-3, 4000
-# the same of a corner of it: there Q goes like a power that is not whole, and elements put a zero next to it
-AT_CORNER = 0.015
+# the same of a corner of it that turns by this angle, radians: there Q goes like a power that is not whole (that of
+# pi / angle - 2 between straight beams, above 0 below a right angle), and elements put a zero next to it
+AT_CORNER, SHARP = 0.015, 1.2
 # radius of a rosette over the distance to the boundary and to the next umbilic
 TO_RIM, TO_NEXT = 0.5, 0.28
 # longest edge of the elements around over the distance from the umbilic
@@ -74,7 +75,7 @@ class NetMesh:
     rim_starts : (loops, 3)
         Where each boundary loop begins, m.
     corners : (c,) int
-        Vertices at which the rim has a corner.
+        Vertices at which the rim has a sharp corner.
     """
 
     connectivity: Connectivity
@@ -90,7 +91,7 @@ class NetMesh:
     corners: Integers
 
     def at_corner(self, points: Floats) -> Flags:
-        """Whether points (n, 3) are next to a corner of the rim."""
+        """Whether points (n, 3) are next to a sharp corner of the rim."""
         return _near(points, self.nodes[self.corners], AT_CORNER * diagonal(self.nodes))
 
 
@@ -211,8 +212,8 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
 
 
 def _corners(rims: tuple[ElementRim, ...]) -> Integers:
-    """Vertices at which the rim has a corner, (c,)."""
-    return np.concatenate([rim.vertices[np.isin(rim.starts, rim.corners)] for rim in rims])
+    """Vertices at which the rim has a sharp corner, (c,)."""
+    return np.concatenate([rim.vertices[rim.turns > SHARP] for rim in rims])
 
 
 def _near(points: Floats, others: Floats, reach: float) -> Flags:

@@ -33,12 +33,15 @@ class ElementRim:
         Vertices along the loop.
     starts : (b,)
         Their parameters; the first is 0.
+    turns : (b,)
+        Angle between the edges before and after each, radians.
     """
 
     length: float
     corners: Floats
     vertices: Integers
     starts: Floats
+    turns: Floats
     _spans: Floats
     _nodes: Floats
 
@@ -78,8 +81,9 @@ def element_rims(connectivity: Connectivity, nodes: Floats, rim_loop: Integers) 
         leaving = np.einsum("k,bkc->bc", ends[0], along)
         arriving = np.roll(np.einsum("k,bkc->bc", ends[1], along), 1, 0)
         cosine = (leaving * arriving).sum(1) / (np.linalg.norm(leaving, axis=1) * np.linalg.norm(arriving, axis=1))
-        corners = starts[cosine < np.cos(CORNER)]
-        rims.append(ElementRim(float(lengths.sum()), corners, edges[:, 0], starts, spans, along))
+        turns = np.arccos(np.clip(cosine, -1, 1))
+        corners = starts[turns > CORNER]
+        rims.append(ElementRim(float(lengths.sum()), corners, edges[:, 0], starts, turns, spans, along))
     return tuple(rims)
 
 
