@@ -58,7 +58,8 @@ def test_library_example_of_the_readme_runs(capsys: pytest.CaptureFixture[str]) 
     # layers of 60 x 1 mm at 7850 kg/m3 weigh 0.471 kg a metre; slots take off and ends add a little
     assert int(mass) == pytest.approx(0.471 * 2 * 89.05, rel=0.02)
     assert int(pieces) == 68
-    assert float(utilisation) == pytest.approx(0.339, abs=0.01)
+    # with the strong-axis stress of two layers, 12.5 mm beside the centre line
+    assert float(utilisation) == pytest.approx(0.399, abs=0.01)
 
 
 def test_library_example_of_getting_started_runs(capsys: pytest.CaptureFixture[str]) -> None:
@@ -68,7 +69,9 @@ def test_library_example_of_getting_started_runs(capsys: pytest.CaptureFixture[s
     # R = c cosh(d / 2 c) for R = 3, d = 3.6
     assert said.startswith("62.997 m2, stable, neck 2.2")
     exec(computed, {})
-    assert capsys.readouterr().out.startswith("48 0.39")
+    lamellas, utilisation, *_ = capsys.readouterr().out.split()
+    assert lamellas == "48"
+    assert float(utilisation) == pytest.approx(0.400, abs=0.005)
 
 
 def test_examples_of_guided_projection_run(capsys: pytest.CaptureFixture[str]) -> None:

@@ -28,7 +28,8 @@ KEYS = {
     "network": "nodes lamellas singular_nodes node_angle_deviation_max_deg node_angle_deviation_mean_deg "
     "normal_curvature_deviation_max cell_edge_min cell_edge_median cell_edge_max periods closed",
     "lamellas": "total_length geodesic_curvature_max geodesic_torsion_max planarity_score development_deviation_max "
-    "stress_bending_max stress_torsion_max stress_helix_max stress_restraint_max von_mises_max utilisation_max",
+    "stress_bending_max stress_torsion_max stress_helix_max stress_restraint_max stress_layer_max von_mises_max "
+    "utilisation_max utilisation_net_section_max layer_distances",
     "fabrication": "mass surface_weight parts sheets",
 }
 # of surfaces of curved elements besides

@@ -11,6 +11,7 @@ from lamella.network.cell_sizes import MOST_RATIO, large_cells
 from lamella.network.density import LEAST_CELLS
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas, Section, layer_drift
+from lamella.strip.material import Material
 from lamella.strip.sections import bearable
 from lamella.surface.element.surface import SMOOTHED_ORDER, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
@@ -23,6 +24,10 @@ LARGE = 250.0
 SLENDER = 2500.0
 # share of the radius of curvature beyond which half the strip's height is no small strip any more
 DEEP = 0.5
+# share of the strength beyond which the stress of layers beside the centre line matters
+LAYER_SHARE = 0.2
+# of the mean distance of layers on lamella curves: farther off than by this factor they are worth a look
+UNEVEN = 1.5
 
 
 def size_cautions(mesh: SurfaceMesh, height: float) -> Iterator[str]:
@@ -156,7 +161,7 @@ def lamella_cautions(
             f"curvature ({1 / curvature:.3g} m): the strips' edges are far from their centre lines"
         )
     section = lamellas.section
-    if section.layers > 1 and section.layer_lengths == "alike":
+    if section.layers > 1 and not section.own_parts:
         drift = layer_drift(network) * section.offset * (section.layers - 1)
         # a lamella's layers sit in the crossing ones' slots and these in its own
         play = 2 * (slot_width - section.thickness)
@@ -178,3 +183,35 @@ def _bearable(lamellas: Lamellas, strength: float, utilisation: Callable[[Sectio
     needed = rounded(strength * float(lamellas.utilisation.max()) / 1e6, up=True)
     ways.append(f"a material as stiff with a strength of {needed:g} MPa")
     return f"{' or '.join(ways)} brings it to 1"
+
+
+def _nearer(section: Section, share: float) -> str:
+    """The offset with which layers have a stress that does not matter: it goes with their distance."""
+    offset = rounded(section.offset * LAYER_SHARE / share, up=False)
+    return f"lamella.offset = {offset:g} m, or " if offset > section.thickness else ""
+
+
+def layer_cautions(network: Network, lamellas: Lamellas, material: Material) -> Iterator[str]:
+    """Layers that are bent about their strong axis, or whose distances vary much."""
+    section, starts = lamellas.section, network.sample_offsets[:-1]
+    share = lamellas.layer / material.strength
+    worst = int(np.argmax(share))
+    if share[worst] > LAYER_SHARE:
+        over = int((np.maximum.reduceat(share, starts) > LAYER_SHARE).sum())
+        point = ", ".join(f"{x:.3g}" for x in network.sample_points[worst])
+        yield (
+            f"layers {np.abs(section.layer_offsets).max() * 1000:.3g} mm beside the centre line are bent about their "
+            f"strong axis, up to {lamellas.layer[worst] / 1e6:.3g} MPa at ({point}) m, by more than {LAYER_SHARE:.0%} "
+            f"of the strength in {over} of {len(network.ids)} lamellas: cut them to their own outlines "
+            f"(lamella.layer_curves = 'cut'), or choose {_nearer(section, float(share[worst]))}one layer"
+        )
+    if section.layer_curves != "lamella" or section.layers == 1:
+        return
+    apart = np.diff(lamellas.layers.distances, axis=0)[:, lamellas.layers.followed]
+    least, most = float(apart.min()), float(apart.max())
+    if least < section.offset / UNEVEN or most > UNEVEN * section.offset:
+        close = f"; strips {section.thickness * 1000:g} mm thick touch" if least <= section.thickness else ""
+        yield (
+            f"on lamella curves of their own layers are {least * 1000:.3g} to {most * 1000:.3g} mm apart, where offset "
+            f"= {section.offset * 1000:g} mm is the mean{close}: lamella.layer_curves = 'cut' keeps them parallel"
+        )

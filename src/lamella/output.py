@@ -180,13 +180,20 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
             ("stress_torsion_max", "Torsion stress, largest"),
             ("stress_helix_max", "Helix stress, largest"),
             ("stress_restraint_max", "Restraint stress, largest"),
+            ("stress_layer_max", "Strong-axis stress of layers, largest"),
             ("von_mises_max", "Von Mises stress, largest"),
         ):
             add("Lamellas", label, m[key], "MPa", 1e-6)
         add("Lamellas", "Utilisation, largest", m["utilisation_max"], form=".2f")
+        add("Lamellas", "Utilisation at slots, largest", m["utilisation_net_section_max"], form=".2f")
+        if m["layer_distances"]:
+            low, high = (f"{1e3 * x:.3g}" for x in m["layer_distances"])
+            figures.append(("Lamellas", "Layers apart", low if low == high else f"{low} … {high}", "mm"))
     if f:
         add("Fabrication", "Parts", f["parts"], form=",")
         add("Fabrication", "Sheets", f["sheets"], form="d")
+        if f["bow_max"]:
+            add("Fabrication", "Cut outlines bowed by, at most", f["bow_max"], "mm", 1e3, ".2g")
         add("Fabrication", "Mass", f["mass"], "kg")
         add("Fabrication", "Mass per area of surface", f["surface_weight"], "kg/m²")
     return figures

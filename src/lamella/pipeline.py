@@ -22,6 +22,7 @@ from lamella.progress import Progress, silent
 from lamella.project import FormFoundTable, Project
 from lamella.project_file import located, read_project
 from lamella.strip.lamellas import Lamellas, Section, make_lamellas
+from lamella.strip.layer_curves import check_layer_curves
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.closed_forms import CLOSED_FORMS
 from lamella.surface.mesh import SurfaceMesh
@@ -156,6 +157,7 @@ def plan(
     if depth:
         _refuse_adjusting(project)
     surface = make_surface(project, folder, progress)
+    _check_layers(project, surface, depth)
     if depth >= STAGES.index("fabrication"):
         _check_fabrication(fill_in(project, surface), _normal_curvature(project, surface))
     table = project.network
@@ -201,6 +203,7 @@ def _planned(project: Project, until: str | None, folder: Path, progress: Progre
         progress=progress,
     )
     surface = adjusted.surface
+    _check_layers(project, surface, depth)
     if depth >= STAGES.index("fabrication"):
         _check_fabrication(fill_in(project, surface), _normal_curvature(project, surface))
     return surface, None, adjusted
@@ -214,12 +217,20 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
     if end_distance is None:
         end_distance = max(LEAST_END, 2 * slot_width / edge_scale(_normal_curvature(project, surface), strip.height))
     hub_radius = cut.hub_radius
-    if hub_radius is None:
+    # how far apart layers on lamella curves are next to a singular node, the net decides
+    if hub_radius is None and (strip.layers == 1 or strip.layer_curves != "lamella"):
         rays = max((2 * (order + 2) for order in surface.singular_orders()), default=0)
         hub_radius = max(LEAST_HUB, clear_hub(rays, strip.layers, strip.offset, strip.thickness))
     measures = {"slot_width": slot_width, "end_distance": float(end_distance), "hub_radius": hub_radius}
     filled = cut.model_copy(update=measures)
     return project.model_copy(update={"fabrication": filled})
+
+
+def _check_layers(project: Project, surface: Surface[Any], depth: int) -> None:
+    """Refuse layers that the net's lamellas cannot have."""
+    strip = project.lamella
+    if depth >= STAGES.index("lamellas") and strip.layers > 1 and strip.layer_curves == "lamella":
+        check_layer_curves(surface, project.network.pattern)
 
 
 def _normal_curvature(project: Project, surface: Surface[Any]) -> float:
@@ -238,7 +249,7 @@ def _check_fabrication(project: Project, curvature: float) -> None:
         thickness=strip.thickness,
         curvature=float(curvature),
         density=project.material().density,
-        **cut.model_dump(),
+        **cut.model_copy(update={"hub_radius": cut.hub_radius or 0.0}).model_dump(),
     )
     rules.check()
 
@@ -328,8 +339,8 @@ def complete(project: Project, planned: Planned, clock: Clock, *, until: str | N
     if network and depth >= STAGES.index("lamellas"):
         strip = project.lamella
         clock.start(f"lamellas: {strip.height * 1000:g} x {strip.thickness * 1000:g} mm, {strip.material}")
-        section = Section(strip.height, strip.thickness, strip.layers, strip.offset, strip.marks, strip.layer_lengths)
-        make = partial(make_lamellas, network, material=project.material())
+        section = Section(**strip.model_dump(exclude={"material"}))
+        make = partial(make_lamellas, network, material=project.material(), surface=surface)
         lamellas = make(section)
         figures["lamellas"] = f = summary.lamella_summary(network, lamellas, strip.material, project.material())
         clock.stop("lamellas", f"{f['total_length']:.4g} m of lamella, utilisation up to {f['utilisation_max']:.2f}")
@@ -341,6 +352,7 @@ def complete(project: Project, planned: Planned, clock: Clock, *, until: str | N
             project.material().strength,
             lambda other: float(make(other).utilisation.max()),
         )
+        warnings += cautions.layer_cautions(network, lamellas, project.material())
     if network and lamellas and depth >= STAGES.index("fabrication"):
         cut = project.fabrication
         clock.start("fabrication: parts and sheets")

@@ -180,6 +180,15 @@ class LamellaTable(Table):
         description='"alike": every layer is marked at the node distances of the centre line; "own": each at those of '
         "its own curve to the side, as a part of its own.",
     )
+    layer_curves: Literal["offset", "cut", "lamella"] = Field(
+        default="offset",
+        description='Where layers run, and how they are cut. "offset": at equal distances, all straight or of one '
+        "radius; beside the centre line they are bent about their strong axis, which is counted as a stress. "
+        '"cut": at equal distances, each with an outline of its own, some millimetres off, free of that stress. '
+        '"lamella": on lamella curves of their own, straight or of one radius and free of that stress; offset is then '
+        "their mean distance, which goes with the cell edge. The last two make every layer a part of its own length. "
+        "With one layer nothing changes.",
+    )
 
     @model_validator(mode="after")
     def _possible(self) -> LamellaTable:

@@ -141,6 +141,7 @@ def lamella_summary(network: Network, lamellas: Lamellas, name: str, material: M
     deviation = development_deviation(
         network.sample_points, network.sample_normals, network.sample_offsets, network.normal_curvature
     )
+    apart = np.diff(lamellas.layers.distances, axis=0)[:, lamellas.layers.followed]
     return {
         "total_length": float(network.lengths.sum()),
         "section": asdict(lamellas.section),
@@ -159,8 +160,11 @@ def lamella_summary(network: Network, lamellas: Lamellas, name: str, material: M
         "stress_torsion_max": float(lamellas.torsion.max()),
         "stress_helix_max": float(lamellas.helix_edge.max()),
         "stress_restraint_max": float(lamellas.restraint.max()),
+        "stress_layer_max": float(lamellas.layer.max()),
         "von_mises_max": float(lamellas.von_mises.max()),
         "utilisation_max": float(lamellas.utilisation.max()),
+        "utilisation_net_section_max": float(lamellas.net_utilisation.max(initial=0.0)),
+        "layer_distances": [float(apart.min()), float(apart.max())] if apart.size else [],
     }
 
 
@@ -171,6 +175,7 @@ def fabrication_summary(parts: Parts, nesting: Nesting, surface_area: float) -> 
         "surface_weight": parts.mass / surface_area,
         "parts": parts.pieces,
         "sheets": nesting.sheet_count,
+        "bow_max": max((part.bow for part in parts.parts), default=0.0),
         "sheet_use": sum(part.quantity * part.area for part in parts.parts)
         / float(np.prod(nesting.sizes, axis=1).sum()),
     }

@@ -9,7 +9,8 @@ from test_fabrication_strips import Strip, build, random_strips, sampled
 
 from lamella.errors import InputError
 from lamella.fabrication import make_parts
-from lamella.fabrication.flat import develop, extents, longest_fitting, outline_area
+from lamella.fabrication.axis import Axis
+from lamella.fabrication.flat import extents, longest_fitting, outline_area
 from lamella.fabrication.splitting import cut_stations
 
 STEEL = 7900.0
@@ -37,11 +38,11 @@ def test_develop_is_the_circle_of_the_definition(curvature):
     k = curvature
     expected = np.stack(((1 / k - z) * np.sin(k * s), 1 / k - (1 / k - z) * np.cos(k * s)), axis=-1)
     # the definition itself cancels: 1/k times rounding
-    np.testing.assert_allclose(develop(s, z, k, 0.0), expected, atol=4e-16 / abs(k) + 1e-15)
+    np.testing.assert_allclose(Axis.arc(-1.0, 1.0, k).develop(s, z), expected, atol=4e-16 / abs(k) + 1e-15)
 
 
 def test_develop_of_a_straight_strip_is_the_identity():
-    np.testing.assert_array_equal(develop([1.0, 3.0], [0.1, -0.2], 0.0, 1.0), [[0.0, 0.1], [2.0, -0.2]])
+    np.testing.assert_array_equal(Axis.arc(0.0, 2.0, 0.0).develop([1.0, 3.0], [0.1, -0.2]), [[0.0, 0.1], [2.0, -0.2]])
 
 
 @pytest.mark.parametrize("curvature", [0.0, 0.9, -0.9, 1e-5])

@@ -11,6 +11,7 @@ import pytest
 from lamella.network.network import BOUNDARY, REGULAR, SINGULAR, Network
 from lamella.network.pattern import LAMELLAS
 from lamella.strip.lamellas import Lamellas, Section
+from lamella.strip.layers import Layers
 from lamella.surface.darboux import Darboux
 
 KINDS = {"o": REGULAR, "|": BOUNDARY, "+": BOUNDARY, "*": SINGULAR}
@@ -100,7 +101,17 @@ def build(strips, curvature=0.0, *, layers=2, height=0.1, thickness=0.0015, offs
         utilisation=0.01 * ramp,
         planarity=np.zeros(samples),
         stop_stations=np.concatenate(arcs) * relax,
-        layer_stations=np.tile(np.concatenate(arcs) * relax, (layers, 1)),
+        layer=6e6 * ramp,
+        net_utilisation=np.zeros(len(stops)),
+        layers=Layers(
+            np.zeros((layers, samples)),
+            np.tile(np.concatenate(sample_arcs) * relax, (layers, 1)),
+            np.tile(np.concatenate(arcs) * relax, (layers, 1)),
+            np.zeros((layers, samples)),
+            None,
+            *np.zeros((2, layers, samples, 3)),
+            np.ones(samples, bool),
+        ),
         developed_lengths=np.array([arc[-1] * relax for arc in arcs]),
     )
     return network, lamellas

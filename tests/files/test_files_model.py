@@ -17,7 +17,7 @@ import pytest
 import rhino3dm
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
-from test_files_samples import cylinder_mesh, cylinder_net, helix, inward
+from test_files_samples import RADIUS, cylinder_mesh, cylinder_net, helix, inward
 
 from lamella.files import model_3dm
 from lamella.files.model_3dm import model_bytes, write_model
@@ -61,7 +61,8 @@ def test_layers_units_and_names() -> None:
     network, _ = cylinder_net()
     file, objects = read(model())
     assert file.Settings.ModelUnitSystem == rhino3dm.UnitSystem.Meters
-    assert list(objects) == ["surface", "lamellas A", "lamellas B", "strips A", "strips B", *NODE_LAYERS]
+    drawn = ["surface", "lamellas A", "lamellas B", "strips A", "strips B", "layers A", "layers B"]
+    assert list(objects) == [*drawn, *NODE_LAYERS]
     assert len({layer.Color for layer in file.Layers}) == len(objects)
     assert file.ApplicationName == "lamella"
     assert "1.2.3" in file.ApplicationDetails
@@ -133,6 +134,31 @@ def test_strips_are_ruled_along_the_normals() -> None:
             assert np.linalg.norm(points - wanted, axis=1).max() <= 2 * RELATIVE_TOLERANCE * length
 
 
+def test_layers_stand_beside_the_centre_lines() -> None:
+    """Ruled along the surface's normals there, and at their distance; the first one lies right, the last one left."""
+    network, strips = cylinder_net(per_cell=16)
+    _, objects = read(model())
+    items = objects["layers A"] + objects["layers B"]
+    assert [item.Attributes.Name for item in items[:3]] == ["A1-1", "A1-2", "A2-1"]
+    assert len(items) == 2 * len(network.ids)
+    height, section = strips.section.height, strips.section
+    for number, item in enumerate(items):
+        k, row = divmod(number, 2)
+        strip = item.Geometry
+        strip = strip.Surfaces[0].ToNurbsSurface() if hasattr(strip, "Surfaces") else strip
+        assert dict(item.Attributes.GetUserStrings())["side"] == "RL"[row]
+        d = section.layer_offsets[row]
+        line = slice(*network.sample_offsets[k : k + 2])
+        at = network.sample_arclengths[line]
+        normals, tangents = network.sample_normals[line], network.sample_tangents[line]
+        middle, upper = (np.array([xyz(strip.PointAt(s, across)) for s in at]) for across in (0.0, height / 2))
+        off = middle - network.sample_points[line]
+        np.testing.assert_allclose((off * np.cross(normals, tangents)).sum(1), d, rtol=1e-3)
+        # on the cylinder to second order of d
+        assert np.abs(np.hypot(*middle.T[:2]) - RADIUS).max() < 10 * abs(d) ** 3 / RADIUS**2 + 1e-6
+        assert np.abs((upper - middle) / (height / 2) - inward(middle)).max() < 3 * d**2 / RADIUS**2 + 1e-5
+
+
 def test_nodes_are_named_points_on_the_layer_of_their_kind() -> None:
     network, _ = cylinder_net()
     kinds = network.node_kinds.copy()
@@ -187,7 +213,7 @@ def test_a_failed_write_raises_and_leaves_the_older_file(tmp_path: Path) -> None
     program = """
 import resource, sys
 from pathlib import Path
-from test_files_samples import cylinder_mesh, cylinder_net
+from test_files_samples import RADIUS, cylinder_mesh, cylinder_net
 from lamella.files.model_3dm import write_model
 network, lamellas = cylinder_net()
 resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))

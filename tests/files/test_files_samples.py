@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from lamella.network.network import BOUNDARY, REGULAR, Network
 from lamella.strip.lamellas import Lamellas, Section
+from lamella.strip.layers import parallel_layers
 from lamella.surface.darboux import Darboux
 from lamella.surface.mesh import SurfaceMesh
 
@@ -65,6 +66,8 @@ def cylinder_net(cells: int = 6, rows: int = 4, per_cell: int = 8) -> tuple[Netw
         sample_normals=normals,
         sample_tangents=tangents,
         sample_darboux=Darboux(zero + 0.5 / RADIUS, zero, twist),
+        sample_mean_curvature=zero + 0.5 / RADIUS,
+        sample_slopes=zero,
         sample_where=points,
         sample_arclengths=np.tile(arclengths, count),
         stop_offsets=np.arange(count + 1) * stopping,
@@ -78,7 +81,9 @@ def cylinder_net(cells: int = 6, rows: int = 4, per_cell: int = 8) -> tuple[Netw
     lamellas = Lamellas(
         section=Section(height=0.1, thickness=0.0015),
         stop_stations=network.stop_arclengths,
-        layer_stations=np.tile(network.stop_arclengths, (2, 1)),
+        layers=parallel_layers(network, Section().layer_offsets, zero, own_lengths=False, cut=False),
+        layer=zero,
+        net_utilisation=np.zeros(len(network.stop_nodes)),
         developed_lengths=network.lengths,
         bending=zero,
         torsion=zero,

@@ -173,6 +173,7 @@ def test_quantities_come_back_to_a_65534th_of_their_range(full):
         ("helixEdge", strips.helix_edge),
         ("helixCentre", strips.helix_centre),
         ("restraint", strips.restraint),
+        ("layer", strips.layer),
         ("vonMises", strips.von_mises),
     ):
         megapascal = values * 1e-6

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.fabrication.flat import edge_station
 from lamella.fabrication.part import Part
 from lamella.fabrication.stroke_font import text_strokes, text_width
 
@@ -28,7 +27,7 @@ class Engraving:
     arrow : (3, 2)
         Closed triangle near the start, in the +n half, that points to the end.
     strokes : tuple of (k, 2)
-        Polylines of the id.
+        Polylines of the part's label.
     """
 
     nodes: Floats
@@ -40,8 +39,10 @@ def engrave(part: Part) -> Engraving:
     """Lay out the engraving of a part so that none of it lies where material is removed."""
     stations = part.nodes[(part.nodes > part.start + NEAR_END) & (part.nodes < part.end - NEAR_END)]
     side = 0.5 * part.height if part.from_above else -0.5 * part.height
-    reach = edge_station(0.5 * part.slot_width, side, part.curvature)
-    reach = max(reach, 0.5 * part.slot_width)
+    reach = 0.5 * part.slot_width
+    if len(part.slots):
+        edge = part.axis.edge_stations(part.slots, side, reach) - part.slots
+        reach = max(reach, float(edge.max()))
     marks = (stations, stations)
     cuts = (part.slots - reach, part.slots + reach)
     upper = _gaps(part, (marks, cuts) if part.from_above else (marks,), part.start)
@@ -61,7 +62,7 @@ def _node_lines(part: Part, stations: Floats, side: float, reach: float) -> Floa
         after = np.minimum(after, len(part.slots) - 1)
         ahead, behind = part.slots[after] - stations, part.slots[np.maximum(after - 1, 0)] - stations
         nearest = np.where(np.abs(ahead) < np.abs(behind), ahead, behind)
-        k = part.curvature
+        k = part.axis.curvatures[part.axis.piece(stations)]
         # the foot is straight: off the slot's axis it leaves the circle of the centre line
         sagitta = nearest * np.sinc(0.5 * k * nearest / np.pi) * np.sin(0.5 * k * nearest)
         foot = -sagitta / np.cos(k * nearest)
@@ -90,9 +91,9 @@ def _room(gaps: Floats, margin: float, wanted: float) -> tuple[float, float]:
 
 
 def _id_strokes(part: Part, gaps: Floats, begin: float) -> tuple[Floats, ...]:
-    """The id along the middle of the half without slots."""
+    """The label along the middle of the half without slots."""
     full, least = 0.3 * part.height, 0.08 * part.height
-    ratio = text_width(part.id)
+    ratio = text_width(part.label)
     margin = 0.05 * part.height
     at, room = _room(gaps, margin, full * ratio)
     if room < least * ratio:
@@ -101,5 +102,6 @@ def _id_strokes(part: Part, gaps: Floats, begin: float) -> tuple[Floats, ...]:
     size = min(full, room / ratio)
     middle = -0.25 * part.height if part.from_above else 0.25 * part.height
     return tuple(
-        part.place(at + size * stroke[:, 0], middle + size * (stroke[:, 1] - 0.5)) for stroke in text_strokes(part.id)
+        part.place(at + size * stroke[:, 0], middle + size * (stroke[:, 1] - 0.5))
+        for stroke in text_strokes(part.label)
     )

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.fabrication.askew import Askew
+from lamella.fabrication.axis import Axis, outline
 from lamella.fabrication.collisions import end_collisions
-from lamella.fabrication.flat import outline, outline_area
+from lamella.fabrication.flat import outline_area
+from lamella.fabrication.layer_strips import LayerStrip, LayerStrips
 from lamella.fabrication.notes import Notes
 from lamella.fabrication.part import Part, Parts
-from lamella.fabrication.rules import LEAST_END, LEAST_HUB, ROUNDING, Rules, clear_hub, edge_scale
+from lamella.fabrication.rules import LEAST_END, LEAST_HUB, ROUNDING, Rules, edge_scale
 from lamella.fabrication.splitting import cut_stations
 from lamella.network.network import SINGULAR, Network
-from lamella.strip.lamellas import Lamellas
+from lamella.strip.lamellas import Lamellas, crossings
 
 Floats = NDArray[np.float64]
 
@@ -73,13 +72,13 @@ def make_parts(
         end_distance = max(LEAST_END, 2 * slot_width / edge_scale(network.normal_curvature, section.height))
     degree_a, degree_b = network.node_degrees()
     singular = network.node_kinds == SINGULAR
-    crossing = (degree_a > 0) & (degree_b > 0) & ~singular
+    crossing = crossings(network)
     rays = int((degree_a + degree_b)[singular].max(initial=0))
-    clear = clear_hub(rays, section.layers, section.offset, section.thickness)
+    strips = LayerStrips.of(network, lamellas, slot_width)
+    clear = strips.clear_hub(rays)
     wanted_hub = max(LEAST_HUB, clear) if hub_radius is None else hub_radius
-    spread = 0.5 * (section.layers - 1) * section.offset
     # the first slot of a ray stays on it
-    hub_radius = min(wanted_hub, max(_first_cell(network, lamellas, crossing) - spread - 1.5 * slot_width, 0.0))
+    hub_radius = min(wanted_hub, max(strips.first_slot(crossing) - 1.5 * slot_width, 0.0))
     rules = Rules(
         layers=section.layers,
         offset=section.offset,
@@ -93,6 +92,7 @@ def make_parts(
         slot_width=slot_width,
         sheet=sheet,
         gap=gap,
+        bow=strips.bow,
     )
     rules.check()
     longest = rules.longest_on_sheet
@@ -103,28 +103,16 @@ def make_parts(
         notes.hub_needed = clear
     parts: list[Part] = []
     before, after = np.full((2, len(network.ids)), -np.inf)
-    # layers that are alike are one part, cut as often as there are layers
-    askew = Askew.of(network)
-    own = (section.layer_lengths == "own" or not askew.right) and section.layers > 1
-    layers = [(-1, lamellas.stop_stations)]
-    if own:
-        shifts = [np.where(crossing[network.stop_nodes], askew.shift(d), 0.0) for d in section.layer_offsets.tolist()]
-        layers = list(enumerate(lamellas.layer_stations + np.stack(shifts)))
-    slots = Slots(askew.stretch, askew.width(slot_width, section.thickness))
     for index in range(len(network.ids)):
         stops = slice(int(network.stop_offsets[index]), int(network.stop_offsets[index + 1]))
         nodes = network.stop_nodes[stops]
-        for layer, all_stations in layers:
-            stations = all_stations[stops]
+        for strip in strips.of_lamella(index):
             pieces = list(
                 _lamella_parts(
-                    network.ids[index] + (f"-{layer + 1}" if own else ""),
-                    index,
+                    strip,
                     str(network.families[index]),
                     bool(network.closed[index]),
-                    stations,
                     crossing[nodes],
-                    slots.of(stops),
                     singular[nodes],
                     rules,
                     longest,
@@ -132,88 +120,56 @@ def make_parts(
                 )
             )
             if pieces:
-                before[index] = max(before[index], stations[0] - pieces[0].start)
-                after[index] = max(after[index], pieces[-1].end - stations[-1])
-            parts.extend([replace(piece, quantity=1) for piece in pieces] if own else pieces)
-    notes.collisions = end_collisions(network, before, after, float(rules.spread[-1]))
-    return Parts(tuple(parts), tuple(notes.sentences(rules, len(network.ids) * len(layers), len(parts))))
-
-
-def _first_cell(network: Network, lamellas: Lamellas, crossing: NDArray[np.bool_]) -> float:
-    """Least distance along a lamella from a singular node to the next crossing, m; infinite where there is none."""
-    owner = network.stop_owner
-    cell = np.where(owner[1:] == owner[:-1], np.diff(lamellas.layer_stations).min(axis=0), np.inf)
-    singular = network.node_kinds[network.stop_nodes] == SINGULAR
-    slots = crossing[network.stop_nodes]
-    return float(cell[(singular[:-1] & slots[1:]) | (slots[:-1] & singular[1:])].min(initial=np.inf))
-
-
-class Slots(NamedTuple):
-    """The slots at stops.
-
-    Attributes
-    ----------
-    stretch : (q,)
-        Their distances over those of the layers that go through them.
-    width : (q,)
-        m.
-    """
-
-    stretch: Floats
-    width: Floats
-
-    def of(self, stops: slice | NDArray[np.bool_]) -> Slots:
-        """Those at some stops."""
-        return Slots(self.stretch[stops], self.width[stops])
+                before[index] = max(before[index], strip.stations[0] - pieces[0].start)
+                after[index] = max(after[index], pieces[-1].end - strip.stations[-1])
+            parts.extend(pieces)
+    notes.collisions = end_collisions(network, before, after, strips.reach)
+    return Parts(tuple(parts), tuple(notes.sentences(rules, len(network.ids) * strips.kinds, len(parts))))
 
 
 def _lamella_parts(
-    name: str,
-    index: int,
+    strip: LayerStrip,
     family: str,
     closed: bool,
-    stations: Floats,
     crossing: NDArray[np.bool_],
-    slots: Slots,
     hub: NDArray[np.bool_],
     rules: Rules,
     longest: float,
     notes: Notes,
 ) -> Iterator[Part]:
-    """Parts of one lamella."""
+    """Parts of one strip."""
+    stations, shifts, width = strip.stations, strip.shifts, strip.slot_width
     if closed:
         # the ring opens in the middle of its last cell, so that no slot lies at the cut
         half = 0.5 * float(stations[-1] - stations[-2])
         start, end = float(stations[0]) - half, float(stations[-1]) - half
-        stations, crossing, slots = stations[:-1], crossing[:-1], slots.of(slice(-1))
+        stations, crossing, shifts, width = stations[:-1], crossing[:-1], shifts[:-1], width[:-1]
     else:
         # little beyond the rim, lest strips meet their neighbours out there, unless the last slot asks for more
-        at, reach = stations[crossing], slots.stretch[crossing] * rules.spread[-1]
-        reach = reach + np.maximum(rules.end_distance, 1.5 * slots.width[crossing] / rules.edge_scale)
-        first = np.min(np.append(at - reach, stations[0] - rules.rim_overhang))
-        last = np.max(np.append(at + reach, stations[-1] + rules.rim_overhang))
+        at, room = stations[crossing], np.maximum(rules.end_distance, 1.5 * width[crossing] / rules.edge_scale)
+        first = np.min(np.append(at + shifts[crossing, 0] - room, stations[0] - rules.rim_overhang))
+        last = np.max(np.append(at + shifts[crossing, -1] + room, stations[-1] + rules.rim_overhang))
         start = float(stations[0] + rules.hub_radius if hub[0] else first)
         end = float(stations[-1] - rules.hub_radius if hub[-1] else last)
     if end - start <= rules.slot_width:
-        notes.left_out.append(name)
+        notes.left_out.append(strip.name)
         return
-    cuts = _cuts(name, start, end, stations, rules, longest, notes)
+    cuts = _cuts(strip.name, start, end, stations, rules, longest, notes)
     if end - start > rules.longest_ring and not len(cuts):
-        notes.left_out.append(name)
+        notes.left_out.append(strip.name)
         return
     bounds = np.concatenate(([start], cuts, [end]))
     for piece, (low, high) in enumerate(zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)):
         # a hub's node lies beyond the strip's end but belongs to its first or last piece
         inside = (stations > (low if piece else -np.inf)) & (stations < (high if piece < len(cuts) else np.inf))
         yield _part(
-            f"{name}.{piece + 1}" if len(cuts) else name,
-            index,
+            f"{strip.name}.{piece + 1}" if len(cuts) else strip.name,
+            strip,
             family,
-            low,
-            high,
+            strip.axis(low, high),
             stations[inside],
-            crossing[inside],
-            slots.of(inside),
+            (stations[:, None] + shifts)[inside & crossing],
+            float(width[inside & crossing].max(initial=rules.slot_width)),
             rules,
             notes,
         )
@@ -246,41 +202,41 @@ def _cuts(
 
 def _part(
     name: str,
-    index: int,
+    strip: LayerStrip,
     family: str,
-    start: float,
-    end: float,
+    axis: Axis,
     nodes: Floats,
-    crossing: NDArray[np.bool_],
-    wanted: Slots,
+    wanted: Floats,
+    slot_width: float,
     rules: Rules,
     notes: Notes,
 ) -> Part:
     """One part with its slots, all as wide as its widest one, or without where they would come too close."""
-    slots = np.sort((nodes[crossing, None] + wanted.stretch[crossing, None] * rules.spread).ravel())
-    slot_width = float(wanted.width[crossing].max(initial=rules.slot_width))
-    edge = 0.5 * rules.height if family == "A" else -0.5 * rules.height
-    scale = min(1.0, 1.0 - rules.curvature * edge)
+    slots = np.sort(wanted.ravel())
+    start, end = float(axis.knots[0]), float(axis.knots[-1])
     left_out = 0
     if len(slots):
+        scale = axis.least_scale(0.5 * rules.height if family == "A" else -0.5 * rules.height)
         between = scale * np.diff(slots)
         outside = scale * min(slots[0] - start, end - slots[-1])
         needed = 2 * slot_width - ROUNDING
         if outside < 0.75 * needed or (len(between) and between.min() < needed):
             left_out, slots = len(slots), slots[:0]
             notes.unslotted.append((name, float(np.diff(nodes).min()) if len(nodes) > 1 else np.inf))
-    vertices = outline(start, end, rules.height, rules.curvature, slots, slot_width, family == "A")
+    vertices = outline(axis, rules.height, slots, slot_width, family == "A")
     area = outline_area(vertices)
     return Part(
         id=name,
-        lamella=index,
+        lamella=strip.lamella,
         family=family,
-        quantity=rules.layers,
+        quantity=1 if strip.layer else rules.layers,
         height=rules.height,
         thickness=rules.thickness,
         curvature=rules.curvature,
-        start=start,
-        end=end,
+        axis=axis,
+        layer=strip.layer,
+        side=strip.side,
+        distance=strip.distance,
         nodes=nodes,
         slots=slots,
         slot_width=slot_width,

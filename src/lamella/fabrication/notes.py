@@ -96,7 +96,7 @@ class Notes:
             )
         if self.unslotted:
             between = 2 * rules.slot_width / rules.edge_scale
-            spread = float(rules.spread[-1])
+            spread = 0.5 * (rules.layers - 1) * rules.offset
             edge = min(edge for _, edge in self.unslotted)
             smallest = f"their smallest cell edge is {1e3 * edge:.1f} mm; " if np.isfinite(edge) else ""
             if edge < 0:

@@ -7,17 +7,22 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.fabrication.flat import develop, extents
+from lamella.fabrication.axis import Axis
+from lamella.fabrication.flat import extents
 
 Floats = NDArray[np.float64]
+
+# points an arc whose bounds and distances are taken from them
+BOUND_POINTS = 33
 
 
 @dataclass(frozen=True)
 class Part:
     """One flat strip to be cut, or one piece of a lamella that had to be split.
 
-    Stations run along the developed centre line from the lamella's first node, in m. The part's own drawing
-    frame has its origin at the centre line's middle, x along it and y towards +n.
+    Stations run along the developed centre line from the lamella's first node, in m. The part's own drawing frame is
+    that of its `Axis`: origin in the centre line's middle, x along it and y towards +n. Seen so, face up, the strip
+    shows the side that looks to the right of its direction, -u.
 
     Attributes
     ----------
@@ -33,9 +38,17 @@ class Part:
     height, thickness : float
         m.
     curvature : float
-        Of the developed centre line, 1/m, > 0 where it bends towards +n.
-    start, end : float
-        Stations of the strip's ends, m.
+        Of the developed centre line, 1/m, > 0 where it bends towards +n; of a layer cut to its own outline that of the
+        others, which it is near to.
+    axis : Axis
+        The developed centre line from the strip's start to its end.
+    layer : int
+        Number of the layer, 1 for the one farthest to the right; 0 where one part stands for all layers.
+    side : str
+        On which side of the centre line the layer lies: R and L of two, M the middle one of three, RR and LL the outer
+        ones of four; empty where `layer` is 0.
+    distance : float
+        Of the layer from the centre line, m, > 0 to the left; where it varies, its mean. 0 where `layer` is.
     nodes : (n,)
         Stations of the part's nodes, m; a hub's node lies beyond the end.
     slots : (k,)
@@ -45,7 +58,7 @@ class Part:
     slots_left_out : int
         Slots that are not cut because they would come too close to each other or to an end.
     outline : (v, 3)
-        x, y in m and bulge, see `lamella.fabrication.flat.outline`.
+        x, y in m and bulge, see `lamella.fabrication.axis.outline`.
     area : float
         Of the outline, m2.
     mass : float
@@ -59,8 +72,10 @@ class Part:
     height: float
     thickness: float
     curvature: float
-    start: float
-    end: float
+    axis: Axis
+    layer: int
+    side: str
+    distance: float
     nodes: Floats
     slots: Floats
     slot_width: float
@@ -68,6 +83,21 @@ class Part:
     outline: Floats
     area: float
     mass: float
+
+    @property
+    def start(self) -> float:
+        """Station of the strip's start, m."""
+        return float(self.axis.knots[0])
+
+    @property
+    def end(self) -> float:
+        """Station of the strip's end, m."""
+        return float(self.axis.knots[-1])
+
+    @property
+    def label(self) -> str:
+        """What is engraved: the id, and the side where the part is one of several layers."""
+        return f"{self.id} {self.side}" if self.side else self.id
 
     @property
     def length(self) -> float:
@@ -82,6 +112,11 @@ class Part:
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         """Least x, y and greatest x, y in the part's own frame, m."""
+        if not self.axis.is_arc:
+            fine = np.linspace(self.axis.knots[:-1], self.axis.knots[1:], BOUND_POINTS).ravel()
+            edges = self.place(fine, np.array([[-0.5], [0.5]]) * self.height).reshape(-1, 2)
+            (left, low), (right, high) = edges.min(axis=0).tolist(), edges.max(axis=0).tolist()
+            return left, low, right, high
         half_width, rise = extents(self.length, self.height, self.curvature)
         low, high = -0.5 * self.height, float(rise)
         if self.curvature < 0:
@@ -89,8 +124,21 @@ class Part:
         return -float(half_width), low, float(half_width), high
 
     def place(self, stations: Floats, heights: Floats | float) -> Floats:
-        """Points of the strip in the part's own frame, (..., 2), m; see `develop`."""
-        return develop(stations, heights, self.curvature, 0.5 * (self.start + self.end))
+        """Points of the strip in the part's own frame, (..., 2), m; see `Axis.develop`."""
+        return self.axis.develop(stations, heights)
+
+    @property
+    def bow(self) -> float:
+        """How far the centre line leaves the arc of the part's `curvature` laid best on it, m."""
+        if self.axis.is_arc:
+            return 0.0
+        fine = np.linspace(self.axis.knots[:-1], self.axis.knots[1:], BOUND_POINTS).ravel()
+        arc = Axis.arc(self.start, self.end, self.curvature)
+        off = self.place(fine, 0.0) - arc.develop(fine, 0.0)
+        # along the arc points may be shifted
+        heading = arc.heading(fine)
+        across = off[:, 1] * np.cos(heading) - off[:, 0] * np.sin(heading)
+        return float(np.abs(across).max())
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,13 @@ import ezdxf
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.fabrication.axis import Axis
 from lamella.fabrication.dxf_text import APPLICATION
 
 Floats = NDArray[np.float64]
+
+# sine of the turn at a corner: edges that go over into each other do not turn at all
+SHARP = 0.5
 
 
 @dataclass(frozen=True)
@@ -30,7 +34,7 @@ class SlotReading:
     height : float
         mm.
     curvature : float
-        Of the centre line, 1/mm, > 0 where it bends towards the +n side.
+        Of the centre line, 1/mm, > 0 where it bends towards the +n side; the mean where it varies.
     outline : (v, 3)
         x, y (mm) and bulge.
     """
@@ -82,48 +86,54 @@ def _measure(outline: Floats, marks: list[tuple[float, float]]) -> SlotReading:
     points, bulges = outline[:, :2], outline[:, 2]
     ahead = np.roll(points, -1, axis=0) - points
     behind = np.roll(ahead, 1, axis=0)
-    straight = bulges == 0.0
-    turn = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
-    reflex = (turn < 0) & straight & np.roll(straight, 1)
+    # the turn at each vertex, from the arc that comes to the one that leaves
+    leave = np.arctan2(ahead[:, 1], ahead[:, 0]) - 2 * np.arctan(bulges)
+    come = np.arctan2(behind[:, 1], behind[:, 0]) + 2 * np.arctan(np.roll(bulges, 1))
+    turn = np.sin(leave - come)
+    reflex = turn < -SHARP
     foot = reflex & np.roll(reflex, -1)
     feet = 0.5 * (points + np.roll(points, -1, axis=0))[foot]
     start, height = 0.5 * (points[0] + points[-1]), float(np.hypot(*(points[-1] - points[0])))
-    corner = _end_corner(points, straight, height)
+    # on the edge without notches the strip's end is the first corner; notches begin with one and a reflex one
+    corners = np.flatnonzero(np.abs(turn) > SHARP)
+    corners = corners[(corners > 0) & (corners < len(points) - 1)]
+    lower = not reflex[corners[0] + 1]
+    corner = int(corners[0]) if lower else int(corners[-1]) - 1
+    edge = np.arange(corner) if lower else np.arange(len(points) - 2, corner, -1)
+    angle = 4 * np.arctan(bulges[edge]) * (1 if lower else -1)
+    chord = np.hypot(*ahead[edge].T)
+    arc = chord / np.sinc(0.5 * angle / np.pi)
+    # an edge at the height z is shorter than the centre line by z times its turn
+    steps = arc + angle * (-0.5 * height if lower else 0.5 * height)
+    knots = np.append(0.0, np.cumsum(steps))
+    axis = Axis.of(knots, angle / steps)
+    # from the axis' own frame into the drawing
+    middle = axis.develop(knots[[0, -1]], 0.0)
     end = 0.5 * (points[corner] + points[corner + 1])
+    turn = _angle(points[-1] - points[0]) - _angle(_upwards(axis, knots[0]))
     places = np.concatenate((feet, np.array(marks).reshape(-1, 2), end[None]))
-    if np.all(straight):
-        along = end - start
-        stations, curvature = (places - start) @ along / np.hypot(*along), 0.0
-    else:
-        longest = int(np.argmax(np.abs(bulges)))
-        b, (dx, dy) = bulges[longest], ahead[longest]
-        centre = 0.5 * (2 * points[longest] + ahead[longest]) + np.array([-dy, dx]) * (1 - b * b) / (4 * b)
-        # the lower edge runs from start to end, the upper one backwards
-        sign = float(np.sign(b)) * (1.0 if longest <= corner else -1.0)
-        radius = sign * float(np.hypot(*(start - centre)))
-        first = start - centre
-        others = places - centre
-        angle = np.arctan2(first[0] * others[:, 1] - first[1] * others[:, 0], others @ first)
-        # the end of a strip that turns through more than half a circle comes round from the other side
-        angle = np.mod(sign * angle, 2 * np.pi)
-        stations, curvature = angle * abs(radius), 1 / radius
+    stations = axis.stations(_turned(places - start, -turn) + middle[0])
+    length = float(knots[-1])
     return SlotReading(
         np.sort(stations[: len(feet)]),
         np.sort(stations[len(feet) : -1]),
-        float(stations[-1]),
+        length,
         height,
-        curvature,
+        float(angle.sum() / length),
         outline,
     )
 
 
-def _end_corner(points: Floats, straight: NDArray[np.bool_], height: float) -> int:
-    """Index of the end's -n corner: its edge is straight and as long as the strip is high.
+def _upwards(axis: Axis, station: float) -> Floats:
+    """The axis' perpendicular at a station."""
+    heading = float(axis.heading(np.array([station]))[0])
+    return np.array([-np.sin(heading), np.cos(heading)])
 
-    Slots are on one side only, so one of the edges is a single segment: either the end's corner is the
-    second vertex, or it is the last but two.
-    """
-    size = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
-    candidates = [1, len(points) - 3]
-    error = [abs(size[index] - height) if straight[index] else np.inf for index in candidates]
-    return candidates[int(np.argmin(error))]
+
+def _angle(vector: Floats) -> float:
+    return float(np.arctan2(vector[1], vector[0]))
+
+
+def _turned(points: Floats, angle: float) -> Floats:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.asarray(points @ np.array([[c, s], [-s, c]]))

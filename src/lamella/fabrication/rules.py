@@ -63,6 +63,8 @@ class Rules:
         Length and width, m.
     gap : float
         Between parts and to the sheet's edge, m.
+    bow : float
+        How far outlines of layers that are cut to their own curvature leave the others' at most, m.
     """
 
     layers: int
@@ -77,12 +79,7 @@ class Rules:
     slot_width: float
     sheet: tuple[float, float]
     gap: float
-
-    @property
-    def spread(self) -> Floats:
-        """Stations of a crossing's slots from its node, m, (layers,)."""
-        steps = np.arange(self.layers, dtype=np.float64) - 0.5 * (self.layers - 1)
-        return np.asarray(steps * self.offset, dtype=np.float64)
+    bow: float = 0.0
 
     @property
     def edge_scale(self) -> float:
@@ -98,7 +95,7 @@ class Rules:
     def longest_on_sheet(self) -> float:
         """Length of the longest strip that fits the sheet, m."""
         length, width = max(self.sheet) - 2 * self.gap, min(self.sheet) - 2 * self.gap
-        return longest_fitting(length, width, self.height, self.curvature, LARGEST_TURN)
+        return longest_fitting(length, width, self.height + 2 * self.bow, self.curvature, LARGEST_TURN)
 
     def check(self) -> None:
         """Raise an `InputError` for measures that no part can be made with."""

@@ -18,6 +18,8 @@ Floats = NDArray[np.float64]
 
 # parts that differ by less (m) can stand for each other
 CONGRUENT = 1e-5
+# places along a bowed centre line at which it is compared
+COMPARED = 33
 
 COLUMNS = (
     "id",
@@ -35,8 +37,14 @@ COLUMNS = (
     "torsion_MPa",
     "helix_MPa",
     "restraint_MPa",
+    "layer_MPa",
     "von_mises_MPa",
     "utilisation",
+    "utilisation_net_section",
+    "layer",
+    "side",
+    "distance_mm",
+    "bow_mm",
     "sheets",
     "same_as",
 )
@@ -56,7 +64,9 @@ def write_schedule(
 
     The first row, after "#", names version and project; the second the columns and their units. Lengths and the mass
     are those of one piece; curvatures and stresses are the largest magnitudes along the part, where
-    ``helix_MPa`` is the larger of the edge's tension and the centre's compression. ``same_as`` names the
+    ``helix_MPa`` is the larger of the edge's tension and the centre's compression. ``layer``, ``side`` and
+    ``distance_mm`` say where a part lies that is one of several layers, and ``bow_mm`` how far its centre line leaves a
+    straight line or the radius, where it is cut to its own curvature. ``same_as`` names the
     first part of the family that is congruent to this one within 0.01 mm.
 
     Parameters
@@ -99,6 +109,11 @@ def write_schedule(
                     len(part.slots),
                     f"{part.mass:.6g}",
                     *[f"{value:.6g}" for value in largest.tolist()],
+                    f"{_net_section(part, network, lamellas):.6g}",
+                    part.layer or "",
+                    part.side,
+                    f"{1e3 * part.distance:.4f}" if part.layer else "",
+                    f"{1e3 * part.bow:.4f}" if part.bow else "",
                     ";".join(map(str, sorted(sheets[index]))),
                     "" if same[index] == index else parts.parts[same[index]].id,
                 )
@@ -106,12 +121,13 @@ def write_schedule(
 
 
 def _along_samples(network: Network, lamellas: Lamellas) -> Floats:
-    """Magnitudes along all samples in the columns' order and units, (9, k)."""
+    """Magnitudes along all samples in the columns' order and units, (10, k)."""
     pascals = (
         lamellas.bending,
         lamellas.torsion,
         np.maximum(np.abs(lamellas.helix_edge), np.abs(lamellas.helix_centre)),
         lamellas.restraint,
+        lamellas.layer,
         lamellas.von_mises,
     )
     return np.abs(
@@ -123,6 +139,14 @@ def _along_samples(network: Network, lamellas: Lamellas) -> Floats:
             lamellas.utilisation,
         ]
     )
+
+
+def _net_section(part: Part, network: Network, lamellas: Lamellas) -> float:
+    """Largest utilisation of the half height left at the part's slots; 0 where there are none."""
+    stops = slice(int(network.stop_offsets[part.lamella]), int(network.stop_offsets[part.lamella + 1]))
+    at = network.stop_samples[stops] + network.sample_offsets[part.lamella]
+    on = np.isin(at, _samples(part, network, lamellas))
+    return float(lamellas.net_utilisation[stops][on].max(initial=0.0))
 
 
 def _samples(part: Part, network: Network, lamellas: Lamellas) -> NDArray[np.int64]:
@@ -148,13 +172,25 @@ def _samples(part: Part, network: Network, lamellas: Lamellas) -> NDArray[np.int
 def congruent_parts(parts: Parts) -> list[int]:
     """For each part the index of the first one congruent to it within `CONGRUENT`; its own where none is.
 
-    Parts are compared as drawn from their start on: a part and its mirror image count as different.
+    Parts are compared as drawn from their start on: a part and its mirror image count as different. Of one that is cut
+    to its own curvature places along the centre line are compared too.
     """
     known: dict[tuple[object, ...], list[tuple[int, Floats]]] = {}
     result = []
     for index, part in enumerate(parts.parts):
         profile = np.concatenate(([part.end], part.nodes, part.slots)) - part.start
-        kind = (part.family, part.curvature, part.height, part.thickness, len(part.nodes), len(part.slots))
+        if not part.axis.is_arc:
+            along = part.place(np.linspace(part.start, part.end, COMPARED), 0.0)
+            profile = np.concatenate((profile, along.ravel()))
+        kind = (
+            part.family,
+            part.curvature,
+            part.height,
+            part.thickness,
+            len(part.nodes),
+            len(part.slots),
+            len(profile),
+        )
         cell = int(np.floor(part.length / CONGRUENT))
         found = index
         for near in (cell - 1, cell, cell + 1):

@@ -59,6 +59,7 @@ class _Blank:
 
     piece: int
     half_width: float
+    bow: float
     top: float
     bottom: float
     length: float
@@ -72,7 +73,9 @@ def nest(parts: Parts, *, sheet: tuple[float, float] = (12.0, 2.0), gap: float =
     """Lay all pieces on sheets.
 
     Straight pieces fill rows, longest first, each into the fullest row that has room for it. Circular ones
-    are stacked into columns, longest first, each moved down into the one below as far as the gap allows.
+    are stacked into columns, longest first, each moved down into the one below as far as the gap allows. Layers that
+    are cut to their own curvature are laid like the straight lines or arcs they are near to, with room for the most
+    bowed one.
 
     Parameters
     ----------
@@ -92,6 +95,7 @@ def nest(parts: Parts, *, sheet: tuple[float, float] = (12.0, 2.0), gap: float =
     plan = _Plan(len(of_part), max(sheet), min(sheet), gap)
     straight: list[_Blank] = []
     rounds: dict[tuple[float, float], list[_Blank]] = {}
+    bow = max((part.bow for part in parts.parts), default=0.0)
     blanks = [_blank(part) for part in parts.parts]
     for piece, index in enumerate(of_part.tolist()):
         blank = _Blank(piece, *blanks[index])
@@ -104,7 +108,7 @@ def nest(parts: Parts, *, sheet: tuple[float, float] = (12.0, 2.0), gap: float =
     for height in sorted({blank.height for blank in straight}):
         plan.rows(_longest_first([blank for blank in straight if blank.height == height]))
     for key in sorted(rounds):
-        plan.columns(_longest_first(rounds[key]))
+        plan.columns(_longest_first(rounds[key]), bow)
     # sheets of the asked size come first
     order = np.argsort(plan.oversize, kind="stable")
     rank = np.empty_like(order)
@@ -122,15 +126,16 @@ def nest(parts: Parts, *, sheet: tuple[float, float] = (12.0, 2.0), gap: float =
     )
 
 
-def _blank(part: Part) -> tuple[float, float, float, float, float, float, float, bool]:
+def _blank(part: Part) -> tuple[float, float, float, float, float, float, float, float, bool]:
     """The fields of a part's `_Blank` behind the piece's number."""
-    _, low, half_width, high = part.bounds
+    left, low, right, high = part.bounds
     turned = part.curvature < 0
     if turned:
         low, high = -high, -low
     curvature = abs(part.curvature)
     radius = 1 / curvature if curvature else 0.0
-    return half_width, high, low, part.length, 0.5 * curvature * part.length, radius, part.height, turned
+    half_angle = 0.5 * curvature * part.length
+    return max(right, -left), part.bow, high, low, part.length, half_angle, radius, part.height, turned
 
 
 def _longest_first(blanks: list[_Blank]) -> list[_Blank]:
@@ -173,7 +178,9 @@ class _Plan:
 
     def rows(self, blanks: Sequence[_Blank]) -> None:
         """Best fit of straight pieces of one height into rows."""
-        pitch = blanks[0].height + self.gap
+        # straight pieces that are bowed lean out of their rows on either side
+        below = max(-blank.bottom for blank in blanks)
+        pitch = below + max(blank.top for blank in blanks) + self.gap
         rows_a_sheet = int((self.width - self.gap + 1e-9) / pitch)
         free: list[tuple[float, int]] = []
         rows = 0
@@ -188,20 +195,20 @@ class _Plan:
                 room, row = self.length - self.gap, rows
                 if rows % rows_a_sheet == 0:
                     sheet = self.sheet()
-                places.append((sheet, self.gap + 0.5 * blank.height + (rows % rows_a_sheet) * pitch))
+                places.append((sheet, self.gap + below + (rows % rows_a_sheet) * pitch))
                 rows += 1
             on, y = places[row]
             self.put(blank, on, self.length - room + blank.half_width, y)
             insort(free, (room - need, row))
 
-    def columns(self, blanks: Sequence[_Blank]) -> None:
-        """Circular pieces of one radius, stacked into columns side by side."""
+    def columns(self, blanks: Sequence[_Blank], bow: float) -> None:
+        """Circular pieces of one radius, within `bow` (m), stacked into columns side by side."""
         sheet, left, right = -1, 0.0, np.inf
         below: _Blank | None = None
         y = 0.0
         for blank in blanks:
             if below is not None:
-                y += self._rise(below, blank)
+                y += self._rise(below, blank, bow)
             if below is None or y + blank.top > self.width - self.gap + 1e-9:
                 left = right + self.gap
                 if sheet < 0 or left + 2 * blank.half_width > self.length - self.gap + 1e-9:
@@ -211,7 +218,7 @@ class _Plan:
             self.put(blank, sheet, 0.5 * (left + right), y)
             below = blank
 
-    def _rise(self, below: _Blank, above: _Blank) -> float:
+    def _rise(self, below: _Blank, above: _Blank, bow: float) -> float:
         """How far ``above``, which is no longer, has to be moved up from ``below``.
 
         Its lower edge, of radius ro, has to stay inside the circle of radius ri - gap about the centre of
@@ -219,7 +226,7 @@ class _Plan:
         tips, at the half angle phi: ro^2 - 2 ro d cos(phi) + d^2 = (ri - gap)^2 for the least move d.
         """
         boxes = below.top - above.bottom + self.gap
-        outer, inner = above.radius + 0.5 * above.height, below.radius - 0.5 * below.height
+        outer, inner = above.radius + 0.5 * above.height + bow, below.radius - 0.5 * below.height - bow
         reach = inner - self.gap
         across = outer * sin(above.half_angle)
         # beyond a half circle, and where tips come above the centre, the circle says nothing

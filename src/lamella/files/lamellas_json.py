@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import orjson
@@ -37,11 +38,13 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
         "stress_helix_edge": lamellas.helix_edge,
         "stress_helix_centre": lamellas.helix_centre,
         "stress_restraint": lamellas.restraint,
+        "stress_layer": lamellas.layer,
         "von_mises": lamellas.von_mises,
         "utilisation": lamellas.utilisation,
+        "sideways_curvature_slope": network.sample_slopes,
         "planarity": lamellas.planarity,
     }
-    require_finite(*along.values(), lamellas.stop_stations)
+    require_finite(*along.values(), lamellas.stop_stations, lamellas.layers.distances, lamellas.layers.bow)
     samples, stops = network.sample_offsets.tolist(), network.stop_offsets.tolist()
     content = {
         "schema": SCHEMA,
@@ -57,10 +60,24 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
                 "developed_length": float(lamellas.developed_lengths[i]),
                 "nodes": network.stop_nodes[stops[i] : stops[i + 1]],
                 "node_stations": lamellas.stop_stations[stops[i] : stops[i + 1]],
+                "node_utilisation_net_section": lamellas.net_utilisation[stops[i] : stops[i + 1]],
                 "layer_node_stations": np.ascontiguousarray(lamellas.layer_stations[:, stops[i] : stops[i + 1]]),
+                "layers": _layers(lamellas, slice(samples[i], samples[i + 1])),
             }
             | {key: values[samples[i] : samples[i + 1]] for key, values in along.items()}
             for i, lamella in enumerate(network.ids)
         ],
     }
     write_whole(path, orjson.dumps(content, option=orjson.OPT_SERIALIZE_NUMPY))
+
+
+def _layers(lamellas: Lamellas, samples: slice) -> list[dict[str, Any]]:
+    """Of each layer, from the right one to the left one, what is not alike along all of them."""
+    layers, way = lamellas.layers, lamellas.section.layer_curves
+    told: list[dict[str, Any]] = [{"offset": d} for d in lamellas.section.layer_offsets.tolist()]
+    for row, one in enumerate(told):
+        if way == "lamella":
+            one["distance"] = layers.distances[row, samples]
+        if way == "cut":
+            one["flat_curvature"] = layers.bow[row, samples]
+    return told

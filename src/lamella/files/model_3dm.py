@@ -13,7 +13,9 @@ from lamella.files.splines import RELATIVE_TOLERANCE, fit_spline
 from lamella.files.text import require_finite
 from lamella.files.whole import write_whole
 from lamella.network.network import NODE_KINDS, Network
+from lamella.network.turning import derivative
 from lamella.strip.lamellas import Lamellas, Section, twisted_strip
+from lamella.strip.layers import SIDES
 from lamella.surface.mesh import SurfaceMesh
 
 Floats = NDArray[np.float64]
@@ -24,11 +26,16 @@ COLOURS = {
     "lamellas B": (30, 90, 170),
     "strips A": (230, 150, 130),
     "strips B": (130, 170, 220),
+    "layers A": (240, 190, 170),
+    "layers B": (180, 205, 235),
     "nodes regular": (60, 60, 60),
     "nodes boundary": (20, 140, 70),
     "nodes singular": (220, 0, 160),
     "nodes seam": (240, 160, 0),
 }
+# samples of a layer that make a strip
+LEAST_SAMPLES = 4
+
 POINT_OBJECTS = 20_000
 """Nodes up to this number are points named by their index; above, one point cloud a layer."""
 
@@ -49,7 +56,9 @@ def model_bytes(
         within `RELATIVE_TOLERANCE` of the length from every sample; nodes to "nodes regular",
         "nodes boundary", "nodes singular" and "nodes seam".
     lamellas : Lamellas, optional
-        Twisted strips go to "strips A" and "strips B" as surfaces of degree 3 x 1, ruled along the normals.
+        Twisted strips go to "strips A" and "strips B" as surfaces of degree 3 x 1, ruled along the normals; where a
+        lamella has several layers, each of these to "layers A" and "layers B", named A1-1, A1-2, ... from the right one
+        (u = n x t is left) to the left one.
 
     Returns
     -------
@@ -85,8 +94,10 @@ class _Model:
         self.file = self.rhino.file
 
     def filled(self, surface: SurfaceMesh, network: Network, lamellas: Lamellas | None) -> _Model:
-        strips = lamellas is not None
-        self.rhino.add_layers({k: colour for k, colour in COLOURS.items() if strips or not k.startswith("strips")})
+        left_out: tuple[str, ...] = () if lamellas is not None else ("strips", "layers")
+        if lamellas is not None and lamellas.section.layers == 1:
+            left_out = ("layers",)
+        self.rhino.add_layers({k: colour for k, colour in COLOURS.items() if not k.startswith(left_out)})
         self.rhino.add_mesh(surface, self.rhino.attributes("surface", "surface", version=self.version))
         for k in range(len(network.ids)):
             self._add_centre_line(network, k)
@@ -94,7 +105,11 @@ class _Model:
             require_finite(network.sample_darboux.kn, network.sample_darboux.tg)
             edges = np.hstack(twisted_strip(network, lamellas.section.height))
             for k in range(len(network.ids)):
-                self._add_strip(network, lamellas.section, edges, k)
+                span = slice(network.sample_offsets[k], network.sample_offsets[k + 1])
+                slopes = _edge_slopes(network, lamellas.section.height, span)
+                self._add_strip(network, lamellas.section, k, span, edges[span], slopes)
+            if lamellas.section.layers > 1:
+                self._add_layers(network, lamellas)
         self._add_nodes(network)
         return self
 
@@ -120,27 +135,55 @@ class _Model:
         )
         self.file.Objects.AddCurve(nurbs_curve(3, spline.knots[1:-1], spline.controls), attributes)
 
-    def _add_strip(self, network: Network, section: Section, edges: Floats, k: int) -> None:
-        span = slice(network.sample_offsets[k], network.sample_offsets[k + 1])
-        arclengths = network.sample_arclengths[span]
+    def _add_layers(self, network: Network, lamellas: Lamellas) -> None:
+        layers, section = lamellas.layers, lamellas.section
+        require_finite(layers.points, layers.normals)
+        reach = section.height / 2 * layers.normals
+        both = np.concatenate((layers.points - reach, layers.points + reach), axis=2)
+        one = np.zeros(1, bool)
+        for k in range(len(network.ids)):
+            first, last = network.sample_offsets[k : k + 2]
+            known = np.flatnonzero(layers.followed[first:last]) + first
+            if len(known) < LEAST_SAMPLES:
+                continue
+            span = slice(known[0], known[-1] + 1)
+            for row in range(section.layers):
+                edges = both[row, span]
+                slopes = derivative(edges, network.sample_arclengths[span], np.array([0, len(edges)]), one)[[0, -1]]
+                self._add_strip(network, section, k, span, edges, slopes, row + 1)
+
+    def _add_strip(
+        self,
+        network: Network,
+        section: Section,
+        k: int,
+        span: slice,
+        edges: Floats,
+        slopes: Floats,
+        layer: int = 0,
+    ) -> None:
+        """The strip along a lamella between two edges (n, 6), or one of its layers."""
+        arclengths = network.sample_arclengths[span] - network.sample_arclengths[span.start]
         length = float(arclengths[-1])
-        slopes = _edge_slopes(network, section.height, span)
-        spline = fit_spline(arclengths, edges[span], slopes, RELATIVE_TOLERANCE * length / 3**0.5)
+        spline = fit_spline(arclengths, edges, slopes, RELATIVE_TOLERANCE * length / 3**0.5)
         lower, upper = (
             nurbs_curve(3, spline.knots[1:-1], spline.controls[:, side]) for side in (slice(0, 3), slice(3, 6))
         )
         strip = rhino3dm.NurbsSurface.CreateRuledSurface(lower, upper)
         strip.SetDomain(1, rhino3dm.Interval(-section.height / 2, section.height / 2))
         family = str(network.families[k])
+        name = f"{network.ids[k]}-{layer}" if layer else network.ids[k]
+        told = {"side": SIDES[section.layers][layer - 1]} if layer else {}
         attributes = self.rhino.attributes(
-            f"strips {family}",
-            network.ids[k],
-            id=network.ids[k],
+            f"{'layers' if layer else 'strips'} {family}",
+            name,
+            id=name,
             family=family,
             length_m=repr(length),
             height_m=repr(float(section.height)),
             thickness_m=repr(float(section.thickness)),
             version=self.version,
+            **told,
         )
         self.file.Objects.AddSurface(strip, attributes)
 

@@ -64,6 +64,11 @@ class Network:
         Centre line samples (m), unit surface normals, unit tangents in the lamella's own direction.
     sample_darboux : Darboux
         kn, kg and tg of the lamellas at their samples, 1/m, each (k,).
+    sample_mean_curvature : (k,)
+        H of the surface at the samples, 1/m.
+    sample_slopes : (k,)
+        Change of the normal curvature from a centre line to the curves beside it, d kn / d u towards u = n x t, 1/m^2:
+        tg' + 2 kg (kn - H), see `lamella.surface.darboux.sideways_slope`.
     sample_where : (k,) or (k, d)
         The samples' places on the surface, in the surface's own coordinates.
     sample_arclengths : (k,)
@@ -101,6 +106,8 @@ class Network:
     sample_normals: Floats
     sample_tangents: Floats
     sample_darboux: Darboux
+    sample_mean_curvature: Floats
+    sample_slopes: Floats
     sample_where: NDArray[np.generic]
     sample_arclengths: Floats
     stop_offsets: Integers

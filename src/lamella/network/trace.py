@@ -18,7 +18,7 @@ from lamella.network.lattice import Lattice, build_lattice, ragged_ranges
 from lamella.network.leaning_band import LeaningBand, line_darboux
 from lamella.network.network import BOUNDARY, Network
 from lamella.surface.closed_form import ClosedForm
-from lamella.surface.darboux import Darboux, lamella_darboux
+from lamella.surface.darboux import Darboux, lamella_darboux, sideways_slope
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -26,6 +26,8 @@ Integers = NDArray[np.int64]
 
 # samples a cell (docs/files.md)
 FINE, COARSE, FINE_LIMIT = 16, 8, 20_000
+# of a ray's first cell: where a limit at the singular node is taken
+BESIDE_ZERO = 1e-6
 
 
 def _ids(families: Integers) -> tuple[str, ...]:
@@ -52,6 +54,7 @@ class _Samples(NamedTuple):
     normals: Floats
     tangents: Floats
     darboux: Floats
+    slopes: Floats
     where: Complexes
 
 
@@ -63,6 +66,7 @@ def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, segment: 
         np.empty((count, 3)),
         np.empty((count, 3)),
         np.empty((3, count)),
+        np.empty(count),
         np.empty(count, np.complex128),
     )
     leaning = isinstance(segments.domain, LeaningBand)
@@ -73,6 +77,13 @@ def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, segment: 
         samples.points[block], samples.normals[block] = at.position, at.normal
         samples.tangents[block] = at.vector(heading)
         samples.darboux[:, block] = line_darboux(at, heading) if leaning else lamella_darboux(at, heading)
+        samples.slopes[block] = sideways_slope(at, heading)
+        # at a singular node, where rays begin, the gradient of ln mu has no bound, and its product with mu^2 a limit
+        zero = np.flatnonzero(at.deviator == 0)
+        if len(zero):
+            zeta_beside, derivative = segments.where(segment[block][zero], np.full(len(zero), BESIDE_ZERO))
+            beside = surface.at(zeta_beside)
+            samples.slopes[block.start + zero] = sideways_slope(beside, derivative / np.abs(derivative))
         samples.where[block] = zeta
     return samples
 
@@ -188,6 +199,8 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
         sample_normals=normals,
         sample_tangents=tangents,
         sample_darboux=Darboux(*samples.darboux),
+        sample_mean_curvature=np.full(len(samples.points), surface.mean_curvature),
+        sample_slopes=samples.slopes,
         sample_where=samples.where,
         sample_arclengths=arclengths,
         stop_offsets=lattice.offsets,

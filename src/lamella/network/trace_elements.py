@@ -29,7 +29,7 @@ from lamella.network.numbering import numbered, rim_places
 from lamella.network.rim_ends import Ends, along_rim, settled_ends, within_tips
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
 from lamella.network.tracks import A, B, Tracks, make_tracks, rim_tips, singular_ends
-from lamella.network.turning import turning
+from lamella.network.turning import derivative, turning
 from lamella.sparse import counted
 from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
@@ -238,6 +238,10 @@ def trace_elements(
         sample_normals=normals,
         sample_tangents=tangents,
         sample_darboux=darboux,
+        sample_mean_curvature=np.full(len(bend), mean_curvature),
+        # kn is H on a lamella but for errors; along principal lines tg is 0 but for them
+        sample_slopes=derivative(twist[:, None], arclengths, offsets, closed)[:, 0]
+        + 2 * darboux.kg * (bend - mean_curvature),
         sample_where=np.column_stack([places.element, places.local]),
         sample_arclengths=arclengths,
         stop_offsets=np.r_[0, np.cumsum(np.bincount(stop_chain, minlength=len(used)))],

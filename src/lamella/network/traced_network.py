@@ -34,7 +34,7 @@ from lamella.network.traced_stops import (
     whole_edge,
     without_short,
 )
-from lamella.network.turning import turning
+from lamella.network.turning import derivative, turning
 from lamella.progress import Progress, silent
 from lamella.surface.darboux import Darboux
 
@@ -270,6 +270,9 @@ def _network(
             sample_normals=look.normal,
             sample_tangents=tangents,
             sample_darboux=darboux,
+            sample_mean_curvature=look.mean,
+            sample_slopes=derivative(darboux.tg[:, None], s, offsets, closed)[:, 0]
+            + 2 * darboux.kg * (darboux.kn - look.mean),
             sample_where=np.column_stack([where.element, where.local]),
             sample_arclengths=s,
             stop_offsets=np.r_[0, np.cumsum(np.bincount(owner, minlength=flow.count))],

@@ -1,4 +1,4 @@
-"""Geodesic curvature of a sampled curve on a surface, from the turning of its tangents."""
+"""Derivatives along sampled curves on a surface: geodesic curvature, and the change of the geodesic torsion."""
 
 from __future__ import annotations
 
@@ -23,13 +23,25 @@ def turning(
 ) -> Floats:
     """kg = t' . u at the samples of curves, 1/m, (k,): of second order in their distance, at a curve's ends too.
 
-    t' is that of the parabola through t at three samples: at this one and those about `WIDE` to either side of it; next
-    to an end at the end itself and those once and twice as far away.
-
     Parameters
     ----------
     tangents, sideways : (k, 3)
         Unit t and u = n x t.
+    arclengths, offsets, closed
+        See `derivative`.
+    """
+    return np.asarray(dots(derivative(tangents, arclengths, offsets, closed), sideways))
+
+
+def derivative(values: Floats, arclengths: Floats, offsets: Integers, closed: NDArray[np.bool_]) -> Floats:
+    """Derivatives by the arc length of values along curves, (k, c): of second order in the samples' distance.
+
+    That of the parabola through three samples: this one and those about `WIDE` to either side of it; next to an end the
+    end itself and those once and twice as far away.
+
+    Parameters
+    ----------
+    values : (k, c)
     arclengths : (k,)
         From each curve's start, m.
     offsets : (m + 1,) int
@@ -38,7 +50,7 @@ def turning(
         Curves that go on from their last sample, which is the first one once more, to the second.
     """
     if not len(arclengths):
-        return np.zeros(0)
+        return np.zeros_like(values)
     count = np.diff(offsets)
     begin, end = np.repeat(offsets[:-1], count), np.repeat(offsets[1:] - 1, count)
     middle = np.arange(len(arclengths))
@@ -51,10 +63,10 @@ def turning(
     before[uneven], middle[uneven], after[uneven] = three.samples
     a, b, c = (arclengths[k] for k in (before, middle, after))
     a[uneven], b[uneven], c[uneven] = three.places
-    t_a, t_b, t_c = (tangents.take(k, 0) for k in (before, middle, after))
-    first, second = dots(t_b - t_a, sideways) / (b - a), dots(t_c - t_b, sideways) / (c - b)
-    # Newton's form of the parabola through (a, t_a), (b, t_b), (c, t_c), derived
-    return np.asarray(first + (second - first) / (c - a) * (2 * arclengths - a - b))
+    v_a, v_b, v_c = (values.take(k, 0) for k in (before, middle, after))
+    first, second = (v_b - v_a) / (b - a)[:, None], (v_c - v_b) / (c - b)[:, None]
+    # Newton's form of the parabola through (a, v_a), (b, v_b), (c, v_c), derived
+    return np.asarray(first + (second - first) * ((2 * arclengths - a - b) / (c - a))[:, None])
 
 
 class _Three(NamedTuple):

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lamella.errors import InputError, require_positive
-from lamella.network.network import Network
+from lamella.network.network import SINGULAR, Network
+from lamella.strip.layer_curves import lamella_layers
+from lamella.strip.layers import LayerCurves, Layers, at_stops, parallel_layers, running
 from lamella.strip.material import Material
 from lamella.strip.planarity import planarity_score
 from lamella.strip.stress import shortening, stresses
+from lamella.surface.surface import Surface
 from lamella.wording import rounded
 
 Floats = NDArray[np.float64]
@@ -38,6 +41,8 @@ class Section:
     layer_lengths : str
         "alike": all layers are marked like the centre line. "own": each at the arc lengths of its own curve c + d u,
         d to the side of the centre line, where an element is sqrt((1 - d kg)^2 + (d tg)^2) ds long.
+    layer_curves : str
+        "offset", "cut" or "lamella", see `lamella.strip.layers`; with the last two layers have their own lengths.
     """
 
     height: float = 0.1
@@ -46,11 +51,17 @@ class Section:
     offset: float = 0.025
     marks: Marks = "arc-length"
     layer_lengths: LayerLengths = "alike"
+    layer_curves: LayerCurves = "offset"
 
     @property
     def layer_offsets(self) -> Floats:
         """Sideways distances d of the layers from the centre line, m, towards u = n x t, (layers,)."""
         return np.asarray((np.arange(self.layers) - 0.5 * (self.layers - 1)) * self.offset)
+
+    @property
+    def own_parts(self) -> bool:
+        """Whether the layers of a lamella differ, so that each is a part of its own."""
+        return self.layers > 1 and (self.layer_lengths == "own" or self.layer_curves != "offset")
 
     def __post_init__(self) -> None:
         """Raise an `InputError` for a section that is none."""
@@ -64,6 +75,7 @@ class Section:
         for key, value, known in (
             ("marks", self.marks, get_args(Marks)),
             ("layer_lengths", self.layer_lengths, get_args(LayerLengths)),
+            ("layer_curves", self.layer_curves, get_args(LayerCurves)),
         ):
             if value not in known:
                 raise InputError(f"{key} = {value!r}", f"choose one of {', '.join(known)}", f"lamella.{key}")
@@ -81,20 +93,26 @@ class Lamellas:
     section : Section
     bending, torsion : (k,)
         Weak-axis bending stress E t |kg| / 2 and St-Venant shear G t |tg|, Pa.
+    layer : (k,)
+        Strong-axis bending stress of the layers farthest from the centre line, E h/2 d |d kn / d u|, Pa; zero where
+        they are cut to their curvature or lie on lamella curves.
     helix_edge, helix_centre : (k,)
-        Helix normal stress at the strip's edge (tension) and centre line (compression), Pa.
+        Helix normal stress, with plate action, at the strip's edge (tension) and centre line (compression), Pa, where
+        it is free to shorten.
     restraint : (k,)
-        Tension from node marks at the unshortened length, Pa; zero where marks are relaxed.
+        Tension on the centre line from node marks at the unshortened length, Pa; zero where marks are relaxed.
     von_mises : (k,)
         Largest equivalent stress of the section, Pa.
     utilisation : (k,)
         Share of the material's strength.
+    net_utilisation : (q,)
+        The same of the half height that is left at the slots (`lamella.strip.stress.net_section`); 0 at nodes without.
     planarity : (k,)
         Planarity score of the strip quad between a sample and the next; zero at each lamella's end.
     stop_stations : (q,)
         Place of the node on the developed centre line, m from the lamella's start.
-    layer_stations : (layers, q)
-        The same for each layer; equal to `stop_stations` where layers are cut alike.
+    layers : Layers
+        The layers beside it.
     developed_lengths : (m,)
         Length of the developed centre line from first to last node, m.
     """
@@ -102,15 +120,22 @@ class Lamellas:
     section: Section
     bending: Floats
     torsion: Floats
+    layer: Floats
     helix_edge: Floats
     helix_centre: Floats
     restraint: Floats
     von_mises: Floats
     utilisation: Floats
+    net_utilisation: Floats
     planarity: Floats
     stop_stations: Floats
-    layer_stations: Floats
+    layers: Layers
     developed_lengths: Floats
+
+    @property
+    def layer_stations(self) -> Floats:
+        """Place of the nodes on each flat layer, m from its start, (layers, q)."""
+        return self.layers.stop_stations
 
 
 def twisted_strip(network: Network, height: float) -> tuple[Floats, Floats]:
@@ -119,37 +144,35 @@ def twisted_strip(network: Network, height: float) -> tuple[Floats, Floats]:
     return network.sample_points - reach, network.sample_points + reach
 
 
-def _along(network: Network, strain: Floats) -> Floats:
-    """Integral of a strain given at the samples from each lamella's start to its nodes, m, (q,).
-
-    Trapezia, whose samples are near-equal arcs a small part of a cell long.
-    """
-    growth = np.append(0.0, (strain[1:] + strain[:-1]) / 2 * np.diff(network.sample_arclengths))
-    growth[network.sample_offsets[:-1]] = 0.0
-    total = np.cumsum(growth)
-    start = network.sample_offsets[network.stop_owner]
-    return np.asarray(total[start + network.stop_samples] - total[start])
-
-
 def layer_drift(network: Network) -> Floats:
     """Turn of each lamella's tangent to the side, max - min of the integral of kg ds over its nodes, (m,).
 
     Times the distance of two layers this is what their node marks would have to shift along each other, from one end
     of the lamella to the other, where both are cut alike.
     """
-    turn = _along(network, network.sample_darboux.kg)
+    turn = at_stops(network, running(network, network.sample_darboux.kg))
     starts = network.stop_offsets[:-1]
     return np.asarray(np.maximum.reduceat(turn, starts) - np.minimum.reduceat(turn, starts))
 
 
-def make_lamellas(network: Network, section: Section, material: Material) -> Lamellas:
+def make_lamellas(
+    network: Network, section: Section, material: Material, surface: Surface[Any] | None = None
+) -> Lamellas:
     """Strips of a section along every lamella of a network.
+
+    Parameters
+    ----------
+    network : Network
+    section : Section
+    material : Material
+    surface : Surface, optional
+        The network's, for layers on lamella curves of their own.
 
     Raises
     ------
     InputError
         The strip is so high that its circular development would reach its own centre; the net is one of curves that
-        no strips are made for.
+        no strips are made for, or whose layers cannot have lamella curves of their own.
     """
     if network.pattern.no_strips:
         raise InputError(
@@ -167,7 +190,18 @@ def make_lamellas(network: Network, section: Section, material: Material) -> Lam
         )
     kn, kg, tg = network.sample_darboux
     held = section.marks == "arc-length"
-    s = stresses(material, section.height, section.thickness, kn - curvature, kg, tg, held)
+    offsets = section.layer_offsets
+    beside = np.abs(offsets).max() * np.abs(network.sample_slopes)
+    s = stresses(
+        material,
+        section.height,
+        section.thickness,
+        curvature_error=kn - curvature,
+        layer_curvature=beside if section.layer_curves == "offset" else np.zeros_like(kn),
+        kg=kg,
+        tg=tg,
+        held=held,
+    )
 
     low, high = twisted_strip(network, section.height)
     planarity = np.zeros(len(kn))
@@ -175,25 +209,42 @@ def make_lamellas(network: Network, section: Section, material: Material) -> Lam
     ends = network.sample_offsets[1:] - 1
     planarity[ends] = 0.0
 
-    stations = network.stop_arclengths
-    if not held:
-        stations = stations + _along(network, shortening(section.height, tg))
-    layers = np.tile(stations, (section.layers, 1))
-    if section.layer_lengths == "own":
-        d = section.layer_offsets[:, None]
-        stretch = np.sqrt((1 - d * kg) ** 2 + (d * tg) ** 2) - 1
-        layers = layers + np.stack([_along(network, strain) for strain in stretch])
+    lengthening = np.zeros_like(tg) if held else shortening(section.height, tg)
+    stations = network.stop_arclengths + at_stops(network, running(network, lengthening))
     return Lamellas(
         section,
         s.bending,
         s.torsion,
+        s.layer,
         s.helix_edge,
         s.helix_centre,
         s.restraint,
         s.von_mises,
         s.utilisation,
+        np.where(crossings(network)[network.stop_nodes], at_stops(network, s.net_utilisation), 0.0),
         planarity,
         stations,
-        layers,
+        _layers(network, section, lengthening, surface),
         stations[network.stop_offsets[1:] - 1],
     )
+
+
+def _layers(network: Network, section: Section, lengthening: Floats, surface: Surface[Any] | None) -> Layers:
+    """The layers as the section has them."""
+    offsets = section.layer_offsets
+    if section.layer_curves == "lamella" and section.layers > 1:
+        if surface is None:
+            raise InputError(
+                'layer_curves = "lamella" needs the surface that the network is on',
+                "give make_lamellas the surface, or choose another value",
+                "lamella.layer_curves",
+            )
+        return lamella_layers(surface, network, offsets, lengthening)
+    cut = section.layer_curves == "cut"
+    return parallel_layers(network, offsets, lengthening, own_lengths=section.own_parts, cut=cut)
+
+
+def crossings(network: Network) -> NDArray[np.bool_]:
+    """Nodes where strips are slotted into each other: an A meets a B, and no rays, (n,)."""
+    degree_a, degree_b = network.node_degrees()
+    return np.asarray((degree_a > 0) & (degree_b > 0) & (network.node_kinds != SINGULAR))

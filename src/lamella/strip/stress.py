@@ -11,8 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.strip.material import Material
+from lamella.strip.plate import across, mean_tension, poisson_ratio
 
 Floats = NDArray[np.float64]
+
+# above the centre line, over h / 2: where stresses are compared; the worst is at the edge or on the centre line
+HEIGHTS = (0.0, 0.5, 1.0)
 
 
 def bending(material: Material, thickness: float, kg: Floats) -> Floats:
@@ -30,19 +34,9 @@ def torsion(material: Material, thickness: float, tg: Floats) -> Floats:
     return np.asarray(material.shear_modulus * thickness * np.abs(tg))
 
 
-def helix(material: Material, height: float, tg: Floats, z: float) -> Floats:
-    """Helix normal stress E tg^2 (z^2 / 2 - h^2 / 24) of a strip free to shorten, Pa; it has no resultant."""
-    return np.asarray(material.youngs_modulus * np.square(tg) * (z**2 / 2 - height**2 / 24))
-
-
 def shortening(height: float, tg: Floats) -> Floats:
-    """Strain h^2 tg^2 / 24 by which a free strip's centre line shortens when it is twisted."""
+    """Strain h^2 tg^2 / 24 by which a free strip's centre line shortens when it is twisted: what relaxed marks add."""
     return np.asarray(np.square(height * tg) / 24)
-
-
-def restraint(material: Material, height: float, tg: Floats) -> Floats:
-    """Tension E h^2 tg^2 / 24 of a strip whose nodes hold its unshortened length, Pa."""
-    return np.asarray(material.youngs_modulus * shortening(height, tg))
 
 
 @dataclass(frozen=True)
@@ -51,15 +45,25 @@ class Stresses:
 
     bending: Floats
     torsion: Floats
+    layer: Floats
     helix_edge: Floats
     helix_centre: Floats
     restraint: Floats
     von_mises: Floats
     utilisation: Floats
+    net_utilisation: Floats
 
 
 def stresses(
-    material: Material, height: float, thickness: float, curvature_error: Floats, kg: Floats, tg: Floats, held: bool
+    material: Material,
+    height: float,
+    thickness: float,
+    *,
+    curvature_error: Floats,
+    layer_curvature: Floats,
+    kg: Floats,
+    tg: Floats,
+    held: bool,
 ) -> Stresses:
     """All stresses of twisted strips.
 
@@ -69,7 +73,9 @@ def stresses(
     height, thickness : float
         m.
     curvature_error : (k,)
-        kn - 1/r, 1/m.
+        kn - 1/r of the centre line, 1/m.
+    layer_curvature : (k,)
+        Largest difference of a layer's normal curvature from the one its flat strip has, beside that error, 1/m.
     kg, tg : (k,)
         1/m.
     held : bool
@@ -78,18 +84,65 @@ def stresses(
     Returns
     -------
     Stresses
-        Von Mises stress sqrt(sigma^2 + 3 tau^2) at the worse of edge and centre line, on the worse face, with the
+        Von Mises stress of plane stress, the worst of both faces at `HEIGHTS`: membrane stress of the helix with its
+        plate action (`lamella.strip.plate`), bending of the plate along and across, strong-axis bending, and the
         St-Venant shear of the long faces everywhere. Utilisation is von Mises over strength, or, where the
         material has a shear strength of its own, the worse of normal and shear stress over their strengths.
+        The net section's is that at a slot, see `net_section`.
     """
     weak, shear = bending(material, thickness, kg), torsion(material, thickness, tg)
-    strong = strong_axis(material, height, curvature_error)
-    edge, centre = helix(material, height, tg, height / 2), helix(material, height, tg, 0.0)
-    tension = restraint(material, height, tg) if held else np.zeros_like(weak)
-    normal = weak + np.maximum(strong + edge + tension, np.abs(centre + tension))
-    mises = np.sqrt(normal**2 + 3 * shear**2)
+    layer = strong_axis(material, height, layer_curvature)
+    strong = strong_axis(material, height, curvature_error) + layer
+    edge, centre = (across(material, height, thickness, kg, tg, share, False).stress for share in (1.0, 0.0))
+    nu = poisson_ratio(material)
+    face = material.youngs_modulus * thickness / (2 * (1 - nu**2))
+    normal, square = np.zeros((2, len(weak)))
+    for share in HEIGHTS:
+        membrane, curvature = across(material, height, thickness, kg, tg, share, held)
+        along, cross = face * (np.abs(kg) + nu * curvature), face * (curvature + nu * np.abs(kg))
+        for side in (-1.0, 1.0):
+            for bent in (-strong, strong):
+                sigma = membrane + share * bent + side * along
+                normal = np.maximum(normal, np.abs(sigma))
+                square = np.maximum(square, sigma**2 - sigma * side * cross + cross**2)
+    mises = np.sqrt(square + 3 * shear**2)
+    tension = mean_tension(material, height, thickness, kg, tg) if held else np.zeros_like(weak)
+    net = net_section(weak, tension, strong)
+    return Stresses(
+        weak,
+        shear,
+        layer,
+        edge,
+        centre,
+        -centre if held else np.zeros_like(weak),
+        mises,
+        _utilisation(material, mises, normal, shear),
+        _utilisation(material, np.sqrt(net**2 + 3 * shear**2), net, shear),
+    )
+
+
+def net_section(bending: Floats, tension: Floats, strong: Floats) -> Floats:
+    """Largest normal stress at a slot, where half of the height is left, Pa.
+
+    The half carries the axial force and the strong-axis moment of the whole strip: on half of the area and a quarter of
+    the section modulus they make twice the mean tension and four times the strong-axis stress (net section of a beam,
+    elastic: EN 1993-1-1, 6.2.3 and 6.2.5). The helix stress has no resultant and is not carried over. The moment that
+    an axial force has about the half's own middle is taken by the node, which clamps both edges; stress concentration
+    at the slot's corners is not counted.
+
+    Parameters
+    ----------
+    bending : (k,)
+        About the weak axis: the same on half of the height.
+    tension : (k,)
+        Mean of the membrane stress over the height.
+    strong : (k,)
+        Strong-axis bending stress at the edges of the whole strip.
+    """
+    return np.asarray(bending + 2 * np.abs(tension) + 4 * strong)
+
+
+def _utilisation(material: Material, mises: Floats, normal: Floats, shear: Floats) -> Floats:
     if material.shear_strength is None:
-        utilisation = mises / material.strength
-    else:
-        utilisation = np.maximum(normal / material.strength, shear / material.shear_strength)
-    return Stresses(weak, shear, edge, centre, tension, mises, utilisation)
+        return np.asarray(mises / material.strength)
+    return np.maximum(normal / material.strength, shear / material.shear_strength)

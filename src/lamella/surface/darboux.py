@@ -38,3 +38,29 @@ def lamella_darboux(points: SurfacePoints, heading: NDArray[np.complex128]) -> D
     turned = points.deviator * heading**2
     kg = np.ascontiguousarray((np.conj(points.log_mu_gradient) * 1j * heading).real)
     return Darboux(points.mean_curvature + turned.real, kg, -turned.imag)
+
+
+def sideways_slope(points: SurfacePoints, heading: NDArray[np.complex128]) -> Floats:
+    r"""Change of the normal curvature from a curve to the parallel curves beside it, d kn / d u, 1/m^2, (n,).
+
+    The equation of Codazzi, :math:`(\nabla_u h)(t, t) = (\nabla_t h)(t, u)`, in geodesic parallel coordinates about a
+    curve gives
+
+    .. math:: \partial_u \kappa_n = \tau_g' + 2 \kappa_g (\kappa_n - H),
+
+    which is tg' along lamellas, where kn = H. With the mean curvature constant the deviator D is that of a holomorphic
+    differential: its covariant derivative along x is 2 D conj(grad ln mu) x, so that nothing is differentiated here.
+
+    Parameters
+    ----------
+    points, heading
+        See `lamella_darboux`; any curves.
+
+    Returns
+    -------
+    (n,)
+        Exact where the surface is; 0 at an umbilic itself, where the gradient of ln mu is not defined.
+    """
+    turned = points.deviator * heading**2
+    slope = -2 * (turned * np.conj(points.log_mu_gradient) * heading).imag
+    return np.where(turned == 0, 0.0, slope)

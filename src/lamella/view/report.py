@@ -335,6 +335,7 @@ def _lamellas_payload(network: Network, strips: Lamellas, kept: Integers) -> Spe
         "helixEdge": strips.helix_edge,
         "helixCentre": strips.helix_centre,
         "restraint": strips.restraint,
+        "layer": strips.layer,
         "vonMises": strips.von_mises,
     }
     return {

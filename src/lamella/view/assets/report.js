@@ -165,6 +165,7 @@
     return [
       { key: "utilisation", label: "Utilisation", unit: "of strength", ...utilisation },
       { key: "mises", label: "Von Mises stress", unit: "MPa", ...magnitude(strips.vonMises) },
+      { key: "layer", label: "Stress of layers beside", unit: "MPa", ...magnitude(strips.layer) },
       ...ofNetwork,
       { key: "planarity", label: "Planarity score", unit: "", ...planarity },
       family,
@@ -812,6 +813,7 @@
         { key: "helixEdge", label: "helix edge", colour: "edge" },
         { key: "helixCentre", label: "helix centre", colour: "centre" },
         { key: "restraint", label: "restraint", colour: "restraint", dash: "6 3" },
+        { key: "layer", label: "layers beside", colour: "layer", dash: "1 2" },
         { key: "vonMises", label: "von Mises", colour: "mises", dash: "2 2.5" },
       ],
     },
