@@ -90,7 +90,7 @@ def starter(kind: str, name: str, mesh: str = "surface.obj") -> str:
         File of the mesh, where the surface is one.
     """
     model = SURFACE_TABLES[kind]
-    active = _ACTIVE | ({"surface.file": mesh} if kind == "mesh" else {})
+    active = _ACTIVE | ({"surface.file": mesh, "network.cells": 16} if kind == "mesh" else {})
     surface = _table("surface", model, active, frozenset({"kind", "boundary"}))
     surface = surface.replace("[surface]", f'[surface]\nkind = "{kind}"', 1)
     if kind == "form-found":
@@ -112,7 +112,7 @@ def starter_mesh() -> str:
     around, along = 13, 9
     rows = []
     for k in range(along):
-        z = -2.0 + 4.0 * k / (along - 1)
+        z = -1.8 + 3.6 * k / (along - 1)
         radius = 2.0 * math.cosh(z / 2.0)
         turns = (math.pi * j / (around - 1) for j in range(around))
         rows += [f"v {radius * math.cos(t):.6f} {radius * math.sin(t):.6f} {z:.6f}" for t in turns]

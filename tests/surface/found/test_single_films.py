@@ -32,8 +32,9 @@ TETRAHEDRON = np.array([[0, 0, 0], [6, 0, 6], [6, 6, 0], [0, 6, 6.0]])
     ids=["low", "steep and turned", "tetrahedron"],
 )
 def test_no_unstable_film_in_a_loop_of_convex_plan(pieces, monkeypatch) -> None:
-    # nothing is searched for
+    # nothing is searched for, but what the remedy offers
     monkeypatch.setattr(finding, "FirstFilm", None)
+    monkeypatch.setattr(finding.Tries, "curvature_of_bubble", lambda self: None)
     with pytest.raises(InputError, match=r"seen along .* convex curve.*Rado") as error:
         find_film((make_loop("saddle", pieces),), branch="unstable")
     assert error.value.where == "surface.branch"

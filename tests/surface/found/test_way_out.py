@@ -94,3 +94,50 @@ def test_rounding_to_the_safe_side(value: float) -> None:
     assert high - low <= 0.011 * value
     assert float(f"{low:.3g}") == low
     assert rounded(low, up=True) == rounded(low, up=False) == low
+
+
+@pytest.mark.slow
+def test_a_tube_of_the_wrong_sign() -> None:
+    """The other sign, or the first loop reversed."""
+    boundary = [ring(0, 2.0), ring(5.0, 2.0)]
+    error = refused(film(boundary, mean_curvature=0.25))
+    assert error.where == "surface.mean_curvature"
+    value = number("mean_curvature = #,", error.remedy)
+    assert make_surface(parse_project(film(boundary, mean_curvature=value))).mean_curvature == value
+    circle = boundary[0]["circle"]
+    reversed_ = [{"circle": circle | {"normal": [-x for x in circle["normal"]]}}, boundary[1]]
+    assert make_surface(parse_project(film(reversed_, mean_curvature=0.25))).mean_curvature == 0.25
+
+
+SADDLE = np.stack([3 * np.cos(TURNS), 2.5 * np.sin(TURNS), 0.3 * np.cos(2 * TURNS)], 1).tolist()
+
+
+@pytest.mark.parametrize("boundary", [[{"points": SADDLE}], [ring(0, 2.0)]], ids=["convex in plan", "flat"])
+def test_unstable_films_where_there_is_the_stable_one_alone(boundary: list[dict[str, Any]]) -> None:
+    error = refused(film(boundary, branch="unstable"))
+    assert error.where == "surface.branch"
+    assert make_surface(parse_project(film(boundary))).describe()["stability"] == "stable"
+    value = number("mean_curvature = #", error.remedy)
+    large = make_surface(parse_project(film(boundary, branch="unstable", mean_curvature=value)))
+    assert large.describe()["stability"] == "unstable"
+
+
+def test_a_tolerance_that_the_nodes_keep() -> None:
+    tables = film([ring(0, 3.0), ring(3.9, 3.0)], most_nodes=500)
+    tables["surface"]["tolerance"] = 1e-3
+    error = refused(tables)
+    assert error.where == "surface.tolerance"
+    tables["surface"]["tolerance"] = number("tolerance = #", error.remedy)
+    assert make_surface(parse_project(tables)).mean_curvature == 0
+
+
+def test_elements_of_a_low_order() -> None:
+    """Told by make_surface; a check on coarse elements names it as left to the run."""
+    tables = film([ring(0, 3.0), ring(3.0, 3.0)], order=2, most_nodes=3000)
+    tables["surface"]["tolerance"] = 2e-3
+    with pytest.raises(InputError) as error:
+        make_surface(parse_project(tables))
+    assert error.value.remedy.startswith("write order = 3 or 4")
+    for order in (3, 4):
+        tables["surface"]["order"] = order
+        assert make_surface(parse_project(tables)).mean_curvature == 0

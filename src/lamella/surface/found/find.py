@@ -146,10 +146,10 @@ def find_film(
     unstable = branch == "unstable"
     coarse = max(tolerance, COARSE)
 
-    def finds(others: tuple[Loop, ...], value: float) -> bool:
+    def finds(others: tuple[Loop, ...], value: float, unstable: bool = False) -> bool:
         progress(f"  trying mean_curvature = {value:g} 1/m")
         try:
-            _found(others, value, None, order, coarse, False, most_nodes, silent)
+            _found(others, value, None, order, coarse, unstable, most_nodes, silent)
         except (InputError, SearchError):
             return False
         return True
@@ -159,10 +159,10 @@ def find_film(
     if volume is None and not any(loop.slides for loop in loops):
         try:
             refuse_impossible(loops, mean_curvature)
+            if unstable:
+                refuse_single(loops, mean_curvature)
         except ImpossibleError as error:
             raise impossible(error, tries, mean_curvature, unstable) from None
-        if unstable:
-            refuse_single(loops, mean_curvature)
     search = FirstFilm(loops, order, progress)
     try:
         return _found(loops, mean_curvature, volume, order, tolerance, unstable, most_nodes, progress, search)

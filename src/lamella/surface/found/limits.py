@@ -65,7 +65,7 @@ def refuse_afloat(loops: Sequence[Loop]) -> None:
 
 
 def refuse_single(loops: Sequence[Curve], mean_curvature: float) -> None:
-    """Raise an `InputError` where an unstable film without pressure is asked of a loop that has the stable one alone.
+    """Raise an `ImpossibleError` where an unstable film without pressure is wanted in a loop that has the stable one.
 
     A flat loop's only film is its plane: no film leaves the convex hull of its loop. A loop that is a convex curve seen
     along some direction has one film, a graph over that curve's inside (Rado, Acta Litt. Sci. Szeged 6 (1932), 1-20),
@@ -75,20 +75,17 @@ def refuse_single(loops: Sequence[Curve], mean_curvature: float) -> None:
         return
     points = loops[0].at(samples_of(loops[0], SAMPLES))
     _, length, axes = np.linalg.svd(points - points.mean(0), full_matrices=False)
-    remedy = "leave branch out, or give a mean_curvature other than 0"
     if length[2] <= FLAT * length[0]:
-        raise InputError(
+        raise ImpossibleError(
             "there is no unstable surface: the boundary is flat, and without pressure its only surface is the plane",
-            remedy,
             "surface.branch",
         )
     for axis in (vector_area(points), *axes):
         if is_convex_along(points, axis):
             x, y, z = np.round(axis / np.linalg.norm(axis), 3) + 0.0
-            raise InputError(
+            raise ImpossibleError(
                 f"there is no unstable surface: seen along ({x:g}, {y:g}, {z:g}) the boundary is a convex curve, and "
                 "without pressure the only surface in such a boundary is the stable one (Rado 1932)",
-                remedy,
                 "surface.branch",
             )
 

@@ -74,6 +74,10 @@ def not_found(
 
 def impossible(error: ImpossibleError, tries: Tries, mean_curvature: float, unstable: bool) -> InputError:
     """The error of a bound that is broken, with what exists instead."""
+    if error.where == "surface.branch":
+        value = tries.curvature_of_bubble()
+        other = "" if value is None else f", or write mean_curvature = {value:g}"
+        return InputError(error.message, f"leave branch out{other}", error.where)
     if not mean_curvature:
         remedy = _of_tube(tries, error.limit) or "move the loops closer together, or make them larger"
         return InputError(error.message, remedy, error.where)

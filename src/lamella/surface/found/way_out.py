@@ -22,7 +22,8 @@ from lamella.wording import rounded
 # of the largest H of stable films, the shares that are tried: next to the fold films are found with difficulty, and a
 # slightly other boundary has none
 SHARES = (0.97, 0.93, 0.87, 0.8, 0.65, 0.5)
-# of the H of a cylinder between two loops, those that are tried
+# of the H of a hemisphere over a loop, and of a cylinder between two, those that are tried
+OF_SPHERE = (0.8, 0.6, 0.9)
 OF_CYLINDER = (1.0, 0.8, 1.25, 0.6, 1.6)
 # of a distance, those that are tried; of the largest one that is known, what is offered
 CLOSER, BELOW_LIMIT = 0.85, 0.98
@@ -40,12 +41,12 @@ class Tries:
     order : int
         Of the elements.
     finds : callable
-        Whether a run finds a stable film in loops, of a mean curvature (1/m).
+        Whether a run finds a film in loops, of a mean curvature (1/m): a stable one, or where asked an unstable one.
     """
 
     loops: tuple[Loop, ...]
     order: int
-    finds: Callable[[tuple[Loop, ...], float], bool]
+    finds: Callable[..., bool]
 
     def nearest_curvature(self, wanted: float, fold: float | None = None) -> float | None:
         """The mean curvature of the sign of a wanted one, and nearly as large as can be, of which a film is found.
@@ -68,6 +69,18 @@ class Tries:
         for share in SHARES:
             value = float(np.sign(wanted)) * rounded(share * abs(largest), up=False)
             if self.finds(self.loops, value):
+                return value
+        return None
+
+    def curvature_of_bubble(self) -> float | None:
+        """A mean curvature of which there is an unstable film in one loop, 1/m: more than half of a sphere, so to say.
+
+        The sphere over a ring of radius R has |H| < 1 / R on either side of its equator.
+        """
+        radius = self.loops[0].length / (2 * np.pi)
+        for share in OF_SPHERE:
+            value = rounded(share / radius, up=False)
+            if self.finds(self.loops, value, True):
                 return value
         return None
 
