@@ -46,7 +46,7 @@ def summary_under(kernel: str, example: str) -> dict[str, Any]:
     program = (
         "import sys; from pathlib import Path; from lamella import compute, read_project; import orjson;"
         "p = Path(sys.argv[1]); summary = compute(read_project(p), folder=p.parent).summary;"
-        "sys.stdout.buffer.write(orjson.dumps(summary))"
+        "sys.stdout.buffer.write(orjson.dumps(summary, option=orjson.OPT_SERIALIZE_NUMPY))"
     )
     path = EXAMPLES / f"{example}.toml"
     run = subprocess.run(

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-
+import orjson
 import pytest
 
 from conftest import run_of_example
@@ -20,7 +19,7 @@ NAMES = [
 @pytest.mark.parametrize("kernel", KERNELS)
 @pytest.mark.parametrize("name", NAMES)
 def test_examples_say_the_same_under_other_kernels(name: str, kernel: str) -> None:
-    own = json.loads(json.dumps(run_of_example(name).summary))
+    own = orjson.loads(orjson.dumps(run_of_example(name).summary, option=orjson.OPT_SERIALIZE_NUMPY))
     assert not list(differences(own, summary_under(kernel, name), own))
 
 
