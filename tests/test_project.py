@@ -217,8 +217,8 @@ def test_toml_writer_and_reader_agree_on_odd_names(tmp_path: Path) -> None:
     path = tmp_path / "p.toml"
     path.write_text(tomli_w.dumps(values), encoding="utf-8")
     project = read_project(path)
-    assert project.name == name
-    assert tomllib.loads(project.to_toml())["name"] == name
+    assert project.name == 'a "b"\\ <script>alert(1)</script> 日本 😀'
+    assert tomllib.loads(project.to_toml())["name"] == project.name
 
 
 RIM = {"kind": "form-found", "boundary": [{"points": [[3, 0, 1], [0, 2, 0], [-3, 0, 1], [0, -2, 0]]}]}

@@ -17,6 +17,7 @@ from typing import NoReturn
 from lamella import __version__
 from lamella.errors import InputError
 from lamella.optimise_command import add_optimise, run_optimise
+from lamella.wording import readable
 
 _ABOUT = """\
 lamella takes a designer from a surface of constant mean curvature to the net of lamellas on it,
@@ -109,8 +110,12 @@ def _add_verbose(parser: argparse._ActionsContainer) -> None:
     )
 
 
+def _tell(result: str) -> None:
+    print(readable(result))
+
+
 def _say(message: str) -> None:
-    print(message, file=sys.stderr, flush=True)
+    print(readable(message), file=sys.stderr, flush=True)
 
 
 def _progress(arguments: argparse.Namespace) -> Callable[[str], None]:
@@ -135,7 +140,7 @@ def _run(arguments: argparse.Namespace) -> None:
         warn=lambda message: _say(f"warning: {message}"),
     )
     if not quiet:
-        print(f"report: {folder / 'report.html'}")
+        _tell(f"report: {folder / 'report.html'}")
 
 
 def _check(arguments: argparse.Namespace) -> None:
@@ -149,7 +154,7 @@ def _check(arguments: argparse.Namespace) -> None:
         raise located(error, arguments.project) from None
     for message in checked.warnings:
         _say(f"warning{' (from coarse elements)' if checked.coarse else ''}: {message}")
-    print(f"{arguments.project}: {checked}")
+    _tell(f"{arguments.project}: {checked}")
 
 
 def _new(arguments: argparse.Namespace) -> None:
@@ -175,7 +180,7 @@ def _new(arguments: argparse.Namespace) -> None:
         {file: text.encode() for file, text in reversed(files.items())},
         "name another file with --out, or move it away",
     )
-    print(f"wrote {' and '.join(map(str, files))}; next: lamella run {target}")
+    _tell(f"wrote {' and '.join(map(str, files))}; next: lamella run {target}")
 
 
 def _examples(arguments: argparse.Namespace) -> None:
@@ -189,7 +194,7 @@ def _examples(arguments: argparse.Namespace) -> None:
         print("\ncopy them with: lamella examples --copy DIR [NAME ...]")
         return
     for path in copy_examples(arguments.names, arguments.copy):
-        print(path)
+        _tell(str(path))
 
 
 def _schema(arguments: argparse.Namespace) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from lamella.wording import readable
+
 
 class InputError(ValueError):
     """Something the user can mend: what is wrong, the value, the limit and the remedy, in one message.
@@ -21,8 +23,8 @@ class InputError(ValueError):
     """
 
     def __init__(self, message: str, remedy: str = "", where: str = "") -> None:
-        self.message, self.remedy, self.where = message, remedy, where
-        super().__init__(f"{where}: {message}" if where else message)
+        self.message, self.remedy, self.where = (readable(text) for text in (message, remedy, where))
+        super().__init__(f"{self.where}: {self.message}" if where else self.message)
 
     def __str__(self) -> str:
         head = f"{self.where}: {self.message}" if self.where else self.message

@@ -12,6 +12,7 @@ from lamella import __version__
 from lamella.errors import InputError
 from lamella.files.ours import is_ours
 from lamella.optimise_wishes import USED, Wishes, driver_of
+from lamella.wording import one_line, readable
 
 if TYPE_CHECKING:
     from lamella.files.quad_mesh_files import QuadFile
@@ -143,7 +144,7 @@ def run_optimise(arguments: argparse.Namespace) -> int:
 
     def say(line: str) -> None:
         if not arguments.quiet:
-            print(line, file=sys.stderr, flush=True)
+            print(readable(line), file=sys.stderr, flush=True)
 
     require_format(arguments.out)
     given = read_quad_mesh(arguments.mesh, arguments.unit)
@@ -163,9 +164,9 @@ def run_optimise(arguments: argparse.Namespace) -> int:
     for remark in result.remarks:
         say(remark)
     if not result.solved:
-        print(_not_solved(last), file=sys.stderr, flush=True)
+        print(readable(_not_solved(last)), file=sys.stderr, flush=True)
     if not arguments.quiet:
-        print(f"{last.verdict}; wrote " + ", ".join(str(path) for path in files))
+        print(readable(f"{last.verdict}; wrote " + ", ".join(str(path) for path in files)))
     return 0 if result.solved else NOT_SOLVED
 
 
@@ -252,7 +253,7 @@ def _files(
     from lamella.view.net_colours import net_colours
 
     out: Path = arguments.out
-    name = f"{arguments.mesh.name} as {arguments.problem}"
+    name = f"{one_line(arguments.mesh.name)} as {arguments.problem}"
     colours = net_colours(result.mesh, figures, _colour(arguments))
     common: dict[str, Any] = {"like": given, "name": name, "version": __version__}
     files = {out: quad_mesh_bytes(out.suffix, result.mesh, figures, colours={colours.on: colours.rgb}, **common)}
@@ -261,7 +262,7 @@ def _files(
         target = _lamellas_file(out)
         files[target] = quad_mesh_bytes(out.suffix, result.lamellas, own, **common)
     if arguments.json is not None:
-        about = optimise_bytes(result, figures, given, problem=arguments.problem, file=arguments.mesh.name)
+        about = optimise_bytes(result, figures, given, problem=arguments.problem, file=one_line(arguments.mesh.name))
         files[arguments.json] = about
     return files
 

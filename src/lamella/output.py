@@ -15,13 +15,13 @@ from lamella.files.model_3dm import write_model
 from lamella.files.network_json import write_network
 from lamella.files.nodes_csv import write_nodes_csv
 from lamella.files.surface_3dm import write_surface_3dm
-from lamella.files.text import one_line
 from lamella.files.whole import write_whole
 from lamella.project_file import moved
 from lamella.surface.boundary.tables import boundary_loops, drawing_unit
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.report import ReportData, write_report
+from lamella.wording import one_line
 
 if TYPE_CHECKING:
     from lamella.pipeline import Results

@@ -365,6 +365,7 @@ def complete(project: Project, planned: Planned, clock: Clock, *, until: str | N
     content: dict[str, Any] = {"schema": SCHEMA, "version": __version__, "name": project.name}
     content |= {stage: figures.get(stage) for stage in STAGES}
     content |= {"warnings": warnings, "seconds": clock.seconds}
+    content = summary.cleaned(content)
     return Results(project, surface, mesh, network, lamellas, parts, nesting, content, folder, adjusted)
 
 

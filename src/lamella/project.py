@@ -18,9 +18,9 @@ from lamella.project_boundary import (
     SlideTable,
 )
 from lamella.project_surface import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
-from lamella.project_values import LEAST_LENGTH, Range, Refusal, Table, length, number, read_points, two_numbers
+from lamella.project_values import LEAST_LENGTH, Name, Range, Refusal, Table, length, number, read_points, two_numbers
 from lamella.strip.material import MATERIALS, Material, find_material
-from lamella.wording import shown
+from lamella.wording import is_byte, shown
 
 __all__ = [
     "FURTHER_TABLES",
@@ -164,7 +164,7 @@ class LamellaTable(Table):
     thickness: float = number("Thickness of one strip.", "m", ge=1e-6, le=0.5, default=0.0015)
     layers: int = number("Parallel strips of each lamella.", "", ge=1, le=4, default=2)
     offset: float = number("Distance between the middles of neighbouring layers.", "m", gt=0, le=1, default=0.025)
-    material: str = Field(
+    material: Name = Field(
         default="1.4301",
         max_length=100,
         description=f"One of {', '.join(MATERIALS)}, or a table [materials.NAME] of the project.",
@@ -297,13 +297,13 @@ FURTHER_TABLES: dict[str, type[Table]] = {
 class Project(Table):
     """A whole project file."""
 
-    name: str = Field(default="", description="Name of the project; the file's name when not given.", max_length=200)
+    name: Name = Field(default="", description="Name of the project; the file's name when not given.", max_length=200)
     surface: Annotated[SurfaceTable, Field(discriminator="kind")]
     network: NetworkTable = NetworkTable()
     lamella: LamellaTable = LamellaTable()
     fabrication: FabricationTable = FabricationTable()
     files: FilesTable = FilesTable()
-    materials: dict[str, MaterialTable] = Field(default={}, description="Materials by name.")
+    materials: dict[Name, MaterialTable] = Field(default={}, description="Materials by name.")
 
     def material(self) -> Material:
         """The material of the lamellas."""
@@ -312,7 +312,9 @@ class Project(Table):
 
     def to_toml(self) -> str:
         """The project with its defaults filled in, as TOML (`Results.project` has those of the pipeline as well)."""
-        return tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))
+        text = tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))
+        # names of files and layers are kept as they are, but what cannot be seen is written as an escape
+        return "".join(c if c.isprintable() or c == "\n" or is_byte(c) else f"\\U{ord(c):08X}" for c in text)
 
 
 def project_schema() -> dict[str, Any]:

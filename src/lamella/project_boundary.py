@@ -8,6 +8,7 @@ from pydantic import Field, field_validator, model_validator
 
 from lamella.project_values import (
     Direction,
+    Name,
     Point,
     Points,
     Refusal,
@@ -164,7 +165,7 @@ class BoundaryTable(Table):
     The surface's normal follows the outer loop by the right-hand rule.
     """
 
-    name: str = Field(
+    name: Name = Field(
         default="", max_length=100, description='Name in messages and files; "outer", "hole 1", ... when not given.'
     )
     points: Points | None = number(

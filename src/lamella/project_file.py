@@ -14,7 +14,7 @@ from lamella.byte_order import unmarked
 from lamella.errors import InputError
 from lamella.project import FormFoundTable, MeshTable, Project
 from lamella.project_errors import explain, told_once
-from lamella.wording import cut
+from lamella.wording import cut, one_line
 
 # a project file is written by hand; anything larger is some other file
 MOST_BYTES = 5_000_000
@@ -66,7 +66,7 @@ def read_project(path: str | Path) -> Project:
     if project.name.strip():
         return project
     # a file name may hold bytes that are no text
-    return project.model_copy(update={"name": os.fsencode(path.stem).decode("utf-8", "replace")})
+    return project.model_copy(update={"name": one_line(os.fsencode(path.stem).decode("utf-8", "replace"))})
 
 
 def _toml(text: str, source: str) -> dict[str, Any]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-from lamella.wording import shown
+from lamella.wording import one_line, shown
 
 # m; a thousand times smaller and larger than any model or building, so that no figure can overflow
 LEAST_LENGTH, MOST_LENGTH = 1e-6, 1e6
@@ -119,6 +119,9 @@ Triple = Annotated[tuple[float, float, float], Field(strict=False)]
 Point = Annotated[Triple, BeforeValidator(three_numbers)]
 Direction = Annotated[Triple, BeforeValidator(direction)]
 Points = Annotated[tuple[tuple[float, float, float], ...], Field(strict=False), BeforeValidator(read_points)]
+Name = Annotated[str, AfterValidator(one_line)]
+"""Text for people, which goes into files and messages: without control characters."""
+
 Unit = Literal["m", "mm", "cm", "dm", "ft", "in"]
 
 

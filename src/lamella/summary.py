@@ -19,10 +19,19 @@ from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
-from lamella.wording import loop_names
+from lamella.wording import loop_names, one_line
 
 if TYPE_CHECKING:
     from lamella.project import BoundaryTable
+
+
+def cleaned(value: Any) -> Any:
+    """A table of figures with all its texts on one line each, without control characters: names come from files."""
+    if isinstance(value, str):
+        return one_line(value)
+    if isinstance(value, dict):
+        return {key: cleaned(item) for key, item in value.items()}
+    return [cleaned(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 def surface_summary(surface: Surface[Any], mesh: SurfaceMesh) -> dict[str, Any]:

@@ -7,6 +7,24 @@ from datetime import date, datetime, time
 from typing import Any
 
 
+def readable(text: str) -> str:
+    """Text for a terminal: control characters, and those that turn the direction of writing, as question marks.
+
+    Line breaks stay, and so do bytes of a file name that are no text: streams write them as escapes.
+    """
+    return "".join(c if c.isprintable() or c == "\n" or is_byte(c) else "?" for c in text)
+
+
+def is_byte(character: str) -> bool:
+    """Whether a character stands for a byte of a file name that is no text."""
+    return "\ud800" <= character <= "\udfff"
+
+
+def one_line(text: str) -> str:
+    """Text for a field of a file: on one line, without control characters and those that turn the direction."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
+
+
 def cut(text: str, most: int = 80) -> str:
     """One line of text that fits a message."""
     line = "".join(c if c.isprintable() else "?" for c in text)

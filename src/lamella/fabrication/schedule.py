@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lamella.fabrication.part import Part, Parts
 from lamella.fabrication.sheet import Nesting
-from lamella.files.text import one_line
+from lamella.files.text import csv_comment
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 
@@ -94,7 +94,7 @@ def write_schedule(
     same = congruent_parts(parts)
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        file.write(f"# lamella {one_line(version)} · project {one_line(name)}\n")
+        file.write(f"# lamella {csv_comment(version)} · project {csv_comment(name)}\n")
         writer.writerow(COLUMNS)
         for index, part in enumerate(parts.parts):
             largest = values[:, _samples(part, network, lamellas)].max(axis=1)

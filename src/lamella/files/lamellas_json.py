@@ -13,6 +13,7 @@ from lamella.files.text import require_finite
 from lamella.files.whole import write_whole
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
+from lamella.wording import one_line
 
 SCHEMA = "lamella/lamellas/1"
 
@@ -49,7 +50,7 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
     content = {
         "schema": SCHEMA,
         "version": version,
-        "name": name,
+        "name": one_line(name),
         "units": {"length": "m", "curvature": "1/m", "stress": "Pa"},
         "section": asdict(lamellas.section),
         "development": {"curvature": network.normal_curvature},

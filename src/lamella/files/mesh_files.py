@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.files.text import dumped, one_line, require_finite, rows
+from lamella.files.text import dumped, require_finite, rows
 from lamella.files.whole import write_whole
 from lamella.network.network import Network
 from lamella.surface.mesh import SurfaceMesh
+from lamella.wording import one_line
 
 Integers = NDArray[np.int64]
 

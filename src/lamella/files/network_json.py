@@ -14,6 +14,7 @@ import orjson
 from lamella.files.text import require_finite
 from lamella.files.whole import write_whole
 from lamella.network.network import NODE_KINDS, Network
+from lamella.wording import one_line
 
 SCHEMA = "lamella/network/1"
 
@@ -44,7 +45,7 @@ def network_bytes(network: Network, *, name: str, version: str) -> bytes:
         "schema": SCHEMA,
         "version": version,
         "units": "m",
-        "name": name,
+        "name": one_line(name),
         "surface": {"mean_curvature": float(network.mean_curvature)},
     }
     if network.pattern.kind != "lamellas":

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lamella.files.text import dumped, one_line, require_finite, rows
+from lamella.files.text import csv_comment, dumped, require_finite, rows
 from lamella.files.whole import write_whole
 from lamella.network.network import NODE_KINDS, Network
 
@@ -32,7 +32,7 @@ def nodes_csv_bytes(network: Network, *, name: str, version: str) -> bytes:
     counts = np.bincount(network.stop_nodes, minlength=len(coordinates))
     ends = np.cumsum(counts)
 
-    lines = [f"# lamella {one_line(version)} · project {one_line(name)}", HEADER]
+    lines = [f"# lamella {csv_comment(version)} · project {csv_comment(name)}", HEADER]
     table = zip(network.node_kinds.tolist(), coordinates, (ends - counts).tolist(), ends.tolist(), strict=True)
     for index, (kind, place, start, end) in enumerate(table):
         stops = f"{' '.join(owners[start:end])},{' '.join(stations[start:end])}"

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from lamella.errors import InputError
 from lamella.files.compas_json import compas_bytes, read_compas
-from lamella.files.text import dumped, one_line, require_finite, rows
+from lamella.files.text import dumped, require_finite, rows
 from lamella.projection.mesh_figures import MeshFigures
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.unknowns import Floats
@@ -22,7 +22,7 @@ from lamella.surface.imported.read_mesh import LARGEST_FILE, LARGEST_SIZE, SMALL
 from lamella.surface.imported.read_obj import read_obj
 from lamella.surface.imported.read_ply import read_ply
 from lamella.surface.imported.units import METRES, name_of
-from lamella.wording import counted
+from lamella.wording import counted, one_line
 
 READERS = {".obj": read_obj, ".ply": read_ply, ".3dm": read_3dm}
 FORMATS = (*READERS, ".json")

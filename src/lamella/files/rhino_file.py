@@ -10,8 +10,8 @@ import numpy as np
 import rhino3dm
 from numpy.typing import NDArray
 
-from lamella.files.text import one_line
 from lamella.surface.mesh import SurfaceMesh
+from lamella.wording import one_line
 
 Floats = NDArray[np.float64]
 
@@ -48,7 +48,7 @@ class RhinoFile:
     def say(self, **text: str) -> None:
         """Put document text ``lamella\\key``."""
         for key, value in text.items():
-            self.file.Strings[f"lamella\\{key}"] = value
+            self.file.Strings[f"lamella\\{key}"] = one_line(value)
 
     def identity(self, *names: str) -> uuid.UUID:
         """The same id for the same project and names."""
@@ -67,7 +67,7 @@ class RhinoFile:
         """Attributes of an object on a layer, with user text."""
         attributes = rhino3dm.ObjectAttributes()
         attributes.Id = self.identity(layer, name)
-        attributes.Name = name
+        attributes.Name = one_line(name)
         attributes.LayerIndex = self.layers[layer]
         for key, value in text.items():
             attributes.SetUserString(key, value)

@@ -6,10 +6,15 @@ import numpy as np
 import orjson
 from numpy.typing import NDArray
 
+from lamella.wording import one_line
 
-def one_line(text: str) -> str:
-    """Return ``text`` without line breaks or control characters, for a comment line of a text format."""
-    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
+
+def csv_comment(text: str) -> str:
+    """Text for a comment line of a table: no character that a spreadsheet takes for the end of a cell.
+
+    What follows one would be a cell of its own, and a formula if it begins like one.
+    """
+    return one_line("".join(" " if c in ',;|"' else c for c in one_line(text)))
 
 
 def require_finite(*arrays: NDArray[np.float64]) -> None:

@@ -19,6 +19,7 @@ from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.quantity import Quantity, surface_quantities
+from lamella.wording import one_line
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -105,9 +106,9 @@ def report_html(data: ReportData) -> str:
         _asset("report.html"),
         {
             "policy": _policy(three, script),
-            "name": html.escape(data.name),
+            "name": html.escape(one_line(data.name)),
             "version": html.escape(data.version),
-            "subtitle": html.escape(_subtitle(data)),
+            "subtitle": html.escape(one_line(_subtitle(data))),
             "warnings": _warnings_html(data.warnings),
             "figures": _figures_html(data.figures),
             "notes": "".join(f'<p class="note">{html.escape(note)}</p>' for note in notes),
@@ -154,7 +155,7 @@ def _warnings_html(warnings: tuple[str, ...]) -> str:
     if not warnings:
         return ""
     title = "Warning" if len(warnings) == 1 else f"{len(warnings)} warnings"
-    items = "".join(f"<li>{html.escape(warning)}</li>" for warning in warnings)
+    items = "".join(f"<li>{html.escape(one_line(warning))}</li>" for warning in warnings)
     return f'<section class="warnings" aria-label="Warnings"><h2>{title}</h2><ul>{items}</ul></section>'
 
 
@@ -187,7 +188,7 @@ def _payload(data: ReportData) -> tuple[Spec, list[str]]:
     centre = _centre(clouds)
     payload: Spec = {
         "schema": "lamella/report/1",
-        "name": data.name,
+        "name": one_line(data.name),
         "centre": centre.tolist(),
         "surface": _surface_payload(data, centre, notes),
         "network": None,
