@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
+import rhino3dm
 from scipy.interpolate import CubicSpline
 
 from lamella import (
@@ -14,10 +17,13 @@ from lamella import (
     Lamellas,
     Section,
     Unduloid,
+    compute,
     find_material,
     make_lamellas,
     make_network,
     make_parts,
+    parse_project,
+    write,
 )
 from lamella.network.element_network import element_network
 from lamella.network.network import Network
@@ -166,6 +172,31 @@ def test_next_to_a_singular_node():
         at = np.searchsorted(lamellas.layers.stations[part.layer - 1, lines(network)[part.lamella]], part.start)
         away = lamellas.layers.distances[part.layer - 1, lines(network)[part.lamella]][at]
         assert abs(away) < part.start * np.tan(np.pi / 6)
+
+
+@pytest.mark.parametrize("way", ["offset", "cut", "lamella"])
+def test_whole_runs_with_a_singular_node(tmp_path, way):
+    """Every file of a run, of each way, around a hexagonal node, where layers on lamella curves are not followed."""
+    project = {
+        "name": way,
+        "surface": {"kind": "enneper", "order": 3, "radius": 0.8, "scale": 3.0},
+        "network": {"cells": 10},
+        "lamella": {"height": 0.06, "thickness": 0.001, "offset": 0.03, "layer_curves": way},
+    }
+    results = compute(parse_project(project))
+    write(results, tmp_path / way)
+    lamellas = json.loads((tmp_path / way / "lamellas.json").read_bytes())["lamellas"]
+    key = {"offset": set(), "cut": {"flat_curvature"}, "lamella": {"distance"}}[way]
+    assert all(set(layer) == {"offset"} | key for one in lamellas for layer in one["layers"])
+    model = rhino3dm.File3dm.Read(str(tmp_path / way / "model.3dm"))
+    names = {model.Layers[item.Attributes.LayerIndex].Name: [] for item in model.Objects}
+    for item in model.Objects:
+        names[model.Layers[item.Attributes.LayerIndex].Name].append(item.Attributes.Name)
+    drawn = names["layers A"] + names["layers B"]
+    ids = [id for family in "AB" for id in results.network.ids if id[0] == family]
+    assert drawn == [f"{id}-{layer}" for id in ids for layer in (1, 2)]
+    stress = results.summary["lamellas"]["stress_layer_max"]
+    assert (stress > 1e6) == (way == "offset")
 
 
 def test_lines_of_another_normal_curvature_have_none():

@@ -147,9 +147,10 @@ class _Model:
             if len(known) < LEAST_SAMPLES:
                 continue
             span = slice(known[0], known[-1] + 1)
+            s = network.sample_arclengths[span] - network.sample_arclengths[span.start]
             for row in range(section.layers):
                 edges = both[row, span]
-                slopes = derivative(edges, network.sample_arclengths[span], np.array([0, len(edges)]), one)[[0, -1]]
+                slopes = derivative(edges, s, np.array([0, len(edges)]), one)[[0, -1]]
                 self._add_strip(network, section, k, span, edges, slopes, row + 1)
 
     def _add_strip(
