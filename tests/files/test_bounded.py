@@ -125,6 +125,20 @@ def test_the_same_where_no_process_can_be_started(rhino_file: bytes, monkeypatch
     assert read_rhino(rhino_file, "meshes", "key").unit == "Feet"
 
 
+def test_a_file_of_several_loops_is_read_once(rhino_file: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = []
+
+    def counted(module: str, arguments: list[str], data: bytes, limits: Limits) -> bytes:
+        calls.append(arguments)
+        return run_bounded(module, arguments, data, limits)
+
+    monkeypatch.setattr(rhino_model, "run_bounded", counted)
+    assert len({read_rhino(rhino_file, "curves", f"boundary[{k}]").unit for k in range(3)}) == 1
+    assert calls == [["curves"]]
+    assert read_rhino(rhino_file, "meshes", "key").unit == "Feet"
+    assert calls == [["curves"], ["meshes"]]
+
+
 @pytest.mark.parametrize(("error", "words"), [(TookTooLong, "longer than 10 s"), (BrokeDown, "breaks down")])
 def test_a_limit_reached_is_a_message(
     rhino_file: bytes, monkeypatch: pytest.MonkeyPatch, error: type[Exception], words: str

@@ -5,13 +5,14 @@ from __future__ import annotations
 import io
 import json
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lamella.errors import InputError
-from lamella.files.bounded import BrokeDown, TookTooLong, has_processes, limits_for, run_bounded
+from lamella.files.bounded import BrokeDown, Limits, TookTooLong, has_processes, limits_for, run_bounded
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -24,6 +25,8 @@ MAGIC = b"3D Geometry File Format "
 # packed holds up to four times as much.
 SECONDS, SECONDS_PER_MEGABYTE = 10, 2
 MEMORY, MEMORY_PER_BYTE = 2**29, 128
+REMEMBERED = 10_000_000
+"""Bytes; the last two files up to this size are not read again."""
 
 
 @dataclass(frozen=True)
@@ -194,7 +197,7 @@ def read_rhino(data: bytes, wanted: Wanted, where: str) -> RhinoModel:
 def _read_apart(data: bytes, wanted: Wanted, where: str) -> bytes:
     limits = limits_for(len(data), SECONDS, SECONDS_PER_MEGABYTE, MEMORY, MEMORY_PER_BYTE)
     try:
-        return run_bounded(CHILD, [wanted], data, limits)
+        return _remembered(data, wanted, limits) if len(data) <= REMEMBERED else _read(data, wanted, limits)
     except TookTooLong:
         what = f"reading {len(data) / 1e6:.3g} MB took longer than {limits.seconds} s in Rhino's own library"
     except BrokeDown:
@@ -204,6 +207,14 @@ def _read_apart(data: bytes, wanted: Wanted, where: str) -> bytes:
         f"open it in Rhino and save it again, with nothing but the {wanted} that are needed",
         where,
     )
+
+
+def _read(data: bytes, wanted: Wanted, limits: Limits) -> bytes:
+    return run_bounded(CHILD, [wanted], data, limits)
+
+
+# the loops of a project are often curves of one file, and check and run look at it several times
+_remembered = lru_cache(maxsize=2)(_read)
 
 
 def _unpacked(packed: bytes) -> RhinoModel | None:
