@@ -25,7 +25,7 @@ from lamella.surface.element.places import Places
 from lamella.surface.element.placing import edge_blends
 from lamella.surface.element.rim import ElementRim, element_rims
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.element.umbilics import Umbilics
+from lamella.surface.element.umbilics import Umbilics, deviator_error
 from lamella.surface.points import Complexes, Floats, SurfacePoints, shape_entries
 from lamella.surface.vectors import diagonal, lengths
 
@@ -47,6 +47,8 @@ GROWTH = 0.45
 GAP = 0.15
 # radii of the circle on which the order's coefficient is measured, over the rosette's
 MEASURED = 0.5
+# times its error that a deviator is to be trusted; the leading term alone counts within this share of that radius
+SURE, INNER = 20.0, 0.5
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,7 @@ class NetMesh:
 class _TangentPlane:
     """The plane at an umbilic as the complex plane; `middles` are those of the surface's elements."""
 
+    places: Places
     at: SurfacePoints
     middles: cKDTree
 
@@ -107,7 +110,13 @@ class _TangentPlane:
         """One for each umbilic."""
         middles = cKDTree(surface.nodes[surface.connectivity.faces].mean(1))
         count = len(umbilics.orders)
-        return [cls(surface.at(umbilics.places[number : number + 1]), middles) for number in range(count)]
+        places = [umbilics.places[number : number + 1] for number in range(count)]
+        return [cls(place, surface.at(place), middles) for place in places]
+
+    def turn(self, e_u: Floats) -> Complexes:
+        """Factor (n,) from deviators in the frame of the plane to those in frames along e_u (n, 3)."""
+        along = e_u @ self.at.e_u[0] + 1j * (e_u @ self.at.e_v[0])
+        return np.asarray((along / np.abs(along)) ** 2)
 
     def down(self, points: Floats) -> Complexes:
         """Complex coordinates (...,) of points (..., 3), m."""
@@ -159,6 +168,7 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     faces = [parts.faces]
     points = [parts.points]
     at = np.full(len(zeros), -1)
+    leading = np.zeros(len(zeros), complex)
     count = len(parts.points)
     patches: list[tuple[int, Rosette, int, int]] = []
     nodes_of_parts = _positions(parts, surface)
@@ -166,12 +176,9 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         plane, radius = planes[number], float(radii[number])
         hole = _hole(parts, nodes_of_parts, zeros[number], (1 + GAP) * radius)
         kept &= ~hole
-        rose = rosette(
-            int(umbilics.orders[number]),
-            _argument(surface, plane, int(umbilics.orders[number]), MEASURED * radius),
-            radius,
-            ORDER,
-        )
+        order = int(umbilics.orders[number])
+        leading[number] = _leading(surface, plane, order, MEASURED * radius)
+        rose = rosette(order, float(np.angle(leading[number])), radius, ORDER)
         ring = _ring(parts.faces[hole])
         gap = _between(plane.down(parts.points[ring]), rose.vertices[rose.rim])
         names = np.concatenate([ring, count + rose.rim])
@@ -196,6 +203,7 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     element[target], local[target] = where.element, where.local
     start = len(mine)
     patch = np.full(len(new.faces), -1)
+    around = []
     for number, rose, petals, gaps in patches:
         plane = planes[number]
         patch[start : start + petals + gaps] = number
@@ -203,8 +211,14 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         start += petals + gaps
         places, there = plane.up(z, surface)
         positions[names], element[names], local[names] = there, places.element, places.local
+        around.append((number, names, z))
     every = Places(element, local)
     frames, mean, deviator = surface.shape_at(every)
+    for number, names, z in around:
+        plane, order = planes[number], int(umbilics.orders[number])
+        turn = plane.turn(frames.e_u[names])
+        sure = _without_noise(surface, plane, order, complex(leading[number]), z, deviator[names] / turn)
+        deviator[names] = sure * turn
     shape = shape_entries(frames.e_u, frames.e_v, mean, deviator)
     normals = surface.smooth_normal(every)
     corners = _corners(element_rims(new, positions, loop[new.rim_nodes[:, 0]]))
@@ -259,15 +273,27 @@ def _radii(surface: ElementSurface, umbilics: Umbilics, to_rim: Floats) -> Float
     return np.asarray(radii)
 
 
-def _argument(surface: ElementSurface, plane: _TangentPlane, order: int, radius: float) -> float:
-    """Argument of c in D = c z^m + ... around an umbilic, by the mean over a circle."""
+def _leading(surface: ElementSurface, plane: _TangentPlane, order: int, radius: float) -> complex:
+    """c in D dz^2 = (c z^m + ...) dz^2 around an umbilic, by the mean over a circle."""
     turn = np.exp(2j * np.pi * np.arange(24) / 24)
     places, _ = plane.up(radius * turn, surface)
-    there = surface.at(places)
-    frame = there.e_u @ plane.at.e_u[0] + 1j * (there.e_u @ plane.at.e_v[0])
-    # D dz^2 does not depend on the frame
-    value = there.deviator / (frame / np.abs(frame)) ** 2
-    return float(np.angle((value * turn ** (-order)).mean()))
+    frames, _, deviator = surface.shape_at(places)
+    return complex((deviator / plane.turn(frames.e_u) * turn ** (-order)).mean() / radius**order)
+
+
+def _without_noise(
+    surface: ElementSurface, plane: _TangentPlane, order: int, leading: complex, z: Complexes, of: Complexes
+) -> Complexes:
+    """Deviators `of` (n,) at z (n,) in the frame of the plane, next to the umbilic replaced by their leading term.
+
+    Nearer to a zero of order m than (error / c)^(1 / m) the deviator is nothing but its error.
+    """
+    error = float(deviator_error(surface, plane.places.element)[0])
+    radius = (SURE * error / abs(leading)) ** (1 / order)
+    # cubic from 0 to 1 between both radii
+    share = np.clip((np.abs(z) / radius - INNER) / (1 - INNER), 0, 1)
+    share = share**2 * (3 - 2 * share)
+    return np.asarray(share * of + (1 - share) * leading * z**order)
 
 
 def _hole(parts: Parts, nodes: Floats, centre: Floats, radius: float) -> Flags:

@@ -56,4 +56,4 @@ def test_a_film_that_crosses_itself_is_told_with_its_place() -> None:
     (note,) = notes_on(found)
     place = np.array([float(x) for x in note.split("(")[1].split(")")[0].split(",")])
     assert np.linalg.norm(self_crossing(film) - place, axis=1).min() < 1e-3
-    assert not notes_on(find_film((ring(1.0, 0.0),), 0.5))
+    assert not notes_on(find_film((ring(1.0, 0.0),), -0.5))

@@ -13,9 +13,10 @@ from scipy.spatial import cKDTree
 
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
+from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import rim_marks
 from lamella.surface.points import Complexes, Floats, SurfacePoints
-from lamella.surface.vectors import diagonal, dots
+from lamella.surface.vectors import diagonal, dots, lengths
 
 if TYPE_CHECKING:
     from lamella.surface.element.surface import ElementSurface
@@ -26,8 +27,16 @@ Integers = NDArray[np.int64]
 PARTS = 4
 # Newton steps from a small triangle's middle
 MOST_STEPS = 30
-# zeros nearer to each other than this part of the surface's size are one of higher order; the least that serves
-REACHES = (2e-3, 6e-3, 2e-2, 6e-2)
+# of the surface's size: zeros nearer to each other are one found twice, and those farther apart are never one
+SAME, APART = 1e-6, 0.3
+# zeros are one of higher order where the deviator between them is below this many times its error; the least that
+# leaves no negative order
+ERRORS = (1.0, 4.0, 16.0, 64.0)
+# neighbours of a zero that it may be one with, and places on the way to each
+NEIGHBOURS, ON_THE_WAY = 6, 5
+# radius of the circle on which turns are counted, over the zeros' distance from its middle and of the surface's size;
+# at most this part of the way to the next zeros
+AROUND, LEAST_RADIUS, TO_NEXT = 1.5, 2e-3, 0.5
 # of the size: umbilics whose distances from the rim differ by less are alike
 DEPTH = 0.01
 # shares of the outer loop from its start on: of umbilics that are alike the one nearest to the first of these places
@@ -62,8 +71,10 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
     """All zeros of the trace-free shape operator of a surface of elements, to Newton precision.
 
     A zero of order m turns the deviator m times around it. Every small triangle whose corners turn it, and its
-    neighbours, is a place to begin from; zeros closer together than `REACHES` times the size count as one of the sum of
-    their orders, since the surface cannot tell them apart.
+    neighbours, is a place to begin from. Errors of the surface split a zero of order m, where D = c z^m, into m of
+    order 1 about (error / c)^(1/m) apart: zeros between which the deviator stays below its own error are one, of the
+    sum of their orders, in their middle (the middle of the roots of z^m + a z^(m - 1) + ... is -a / m: it moves by the
+    error itself, not by a root of it).
     """
     local, faces = subdivision(PARTS)
     m = len(surface.connectivity.elements)
@@ -80,12 +91,14 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
     size = diagonal(surface.nodes)
     if not len(found):
         return Umbilics(found, np.zeros((0, 3)), np.zeros(0, np.int64))
-    places, position = found, surface.frames(found).position
-    for reach in REACHES:
-        places, position, orders = _gathered(surface, places, position, reach * size)
+    places, position = _distinct(found, surface.frames(found).position, SAME * size)
+    ends, ratio = _ratios(surface, places, position, APART * size)
+    for most in ERRORS:
+        places_of, position_of, orders = _gathered(surface, places, position, ends[ratio <= most], size)
         # the Hopf differential is holomorphic: a negative turn is noise next to a zero of higher order
         if (orders >= 0).all():
             break
+    places, position = places_of, position_of
     kept = np.flatnonzero(orders > 0)
     kept = kept[_deepest_first(surface, position[kept], DEPTH * size)]
     return Umbilics(places[kept], position[kept], orders[kept])
@@ -111,17 +124,68 @@ def _deepest_first(surface: ElementSurface, position: Floats, step: float) -> In
     return np.array(order, np.int64)
 
 
-def _gathered(
-    surface: ElementSurface, places: Places, position: Floats, reach: float
-) -> tuple[Places, Floats, Integers]:
-    """Zeros nearer to each other than `reach` (m) as one, with the turns of the deviator around them."""
-    pairs = np.array(list(cKDTree(position).query_pairs(reach)), np.int64).reshape(-1, 2)
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), (len(position), len(position)))
+def _groups(count: int, ends: Integers) -> Integers:
+    """Number of the group of each of `count` things, some of which (p, 2) are joined."""
+    graph = coo_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), (count, count))
     _, group = connected_components(graph, directed=False)
+    return np.asarray(group, np.int64)
+
+
+def _distinct(places: Places, position: Floats, reach: float) -> tuple[Places, Floats]:
+    """Zeros without those that are nearer than `reach` (m) to one before them."""
+    pairs = np.array(list(cKDTree(position).query_pairs(reach)), np.int64).reshape(-1, 2)
+    _, first = np.unique(_groups(len(position), pairs), return_index=True)
+    return places[first], position[first]
+
+
+def _ratios(surface: ElementSurface, places: Places, position: Floats, reach: float) -> tuple[Integers, Floats]:
+    """Pairs (p, 2) of zeros within `reach` (m), and the largest deviator between them over its error, (p,)."""
+    distance, near = cKDTree(position).query(position, min(NEIGHBOURS + 1, len(position)), distance_upper_bound=reach)
+    start, column = np.nonzero(np.isfinite(distance.reshape(len(position), -1)))
+    ends = np.sort(np.stack([start, near.reshape(len(position), -1)[start, column]], 1), 1)
+    ends = np.unique(ends[ends[:, 0] < ends[:, 1]], axis=0)
+    if not len(ends):
+        return ends, np.zeros(0)
+    share = (np.arange(ON_THE_WAY)[:, None] + 1) / (ON_THE_WAY + 1)
+    first, second = position[ends.T]
+    way = first[:, None] + share * (second - first)[:, None]
+    between, _ = surface.closest_near(way.reshape(-1, 3), places[np.repeat(ends[:, 0], ON_THE_WAY)])
+    largest = np.abs(surface.shape_at(between)[2]).reshape(-1, ON_THE_WAY).max(1)
+    elements, number = np.unique(between.element, return_inverse=True)
+    error = deviator_error(surface, elements)[number]
+    return ends, np.asarray(largest / error.reshape(-1, ON_THE_WAY).max(1))
+
+
+def deviator_error(surface: ElementSurface, elements: Integers) -> Floats:
+    """Bound of the deviator's error on elements (n,), 1/m, (n,).
+
+    How far the continuous deviator is from that of the elements' own second derivatives, which are one order less
+    accurate (Zienkiewicz and Zhu, Int. J. Numer. Methods Eng. 33 (1992), 1331-1364, doi:10.1002/nme.1620330702).
+    """
+    checked = triangle_rule(2 * surface.connectivity.basis.order)[0]
+    where = Places(np.repeat(elements, len(checked)), np.tile(checked, (len(elements), 1)))
+    # both are in the frames of the elements
+    off = surface.shape_at(where)[2] - surface.measured(where).deviator
+    return np.asarray(np.abs(off).reshape(len(elements), -1).max(1))
+
+
+def _gathered(
+    surface: ElementSurface, places: Places, position: Floats, ends: Integers, size: float
+) -> tuple[Places, Floats, Integers]:
+    """Zeros that are joined (p, 2) as one in their middle, with the turns of the deviator around them."""
+    group = _groups(len(position), ends)
     centre = np.stack([np.bincount(group, position[:, c]) for c in range(3)], 1) / np.bincount(group)[:, None]
     _, first = np.unique(group, return_index=True)
+    extent = np.zeros(len(centre))
+    np.maximum.at(extent, group, lengths(position - centre[group]))
+    radius = np.maximum(AROUND * extent, LEAST_RADIUS * size)
+    for number in range(len(centre)):
+        others = position[group != number]
+        if len(others):
+            free = lengths(others - centre[number]).min() - extent[number]
+            radius[number] = min(radius[number], extent[number] + TO_NEXT * max(free, 0))
     places, position = surface.closest_near(centre, places[first])
-    return places, position, _turns(surface, places, position, reach)
+    return places, position, _turns(surface, places, position, radius)
 
 
 def _turned(at: SurfacePoints, axes: Floats) -> Complexes:
@@ -156,15 +220,15 @@ def _newton(surface: ElementSurface, start: Places, axes: Floats) -> tuple[Place
     return Places(element, np.clip(local, 0, 1)), inside
 
 
-def _turns(surface: ElementSurface, places: Places, centre: Floats, radius: float) -> Integers:
-    """Turns of the deviator once around places of the surface, at a radius (m), (n,)."""
+def _turns(surface: ElementSurface, places: Places, centre: Floats, radius: Floats) -> Integers:
+    """Turns of the deviator once around places of the surface, at a radius (m) of each, (n,)."""
     count = 48
     frame = surface.at(places)
     angle = 2 * np.pi * np.arange(count) / count
     ring = (
         centre[:, None]
-        + radius * np.cos(angle)[:, None] * frame.e_u[:, None]
-        + radius * np.sin(angle)[:, None] * frame.e_v[:, None]
+        + (radius[:, None] * np.cos(angle))[..., None] * frame.e_u[:, None]
+        + (radius[:, None] * np.sin(angle))[..., None] * frame.e_v[:, None]
     )
     around, _ = surface.closest_near(ring.reshape(-1, 3), places[np.repeat(np.arange(len(places)), count)])
     value = _turned(surface.at(around), np.repeat(frame.e_u, count, axis=0)).reshape(-1, count)

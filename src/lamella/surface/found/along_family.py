@@ -34,6 +34,20 @@ class FoldError(ArithmeticError):
         self.mean_curvature, self.steps = mean_curvature, steps
 
 
+class VolumeFoldError(NoFilmError):
+    """The volume of the films turns back before the wanted one.
+
+    Attributes
+    ----------
+    volume : float
+        The farthest reached, estimated, m^3.
+    """
+
+    def __init__(self, volume: float, last: Film) -> None:
+        super().__init__(f"the films' volume turns back at about {volume:.5g} m3", last)
+        self.volume = volume
+
+
 @dataclass(frozen=True)
 class Reached:
     """A film reached along a path.
@@ -120,6 +134,8 @@ def to_volume(start: Equilibrium, volume: float, detail: Detail) -> Reached:
 
     Raises
     ------
+    VolumeFoldError
+        Their volume turns back before the wanted one.
     NoFilmError
         The path breaks.
     """
@@ -129,7 +145,7 @@ def to_volume(start: Equilibrium, volume: float, detail: Detail) -> Reached:
         return Reached(start, 0)
     if (missing < 0) != (first.growth < 0):
         first = first.backwards()
-    turned = 0
+    turned, fold = 0, volume
     for stretch in stretches(first, detail, FAR * max(start.film.size, abs(volume) ** (1 / 3))):
         for root in stretch.roots("volume", volume):
             with suppress(NoFilmError):
@@ -137,11 +153,11 @@ def to_volume(start: Equilibrium, volume: float, detail: Detail) -> Reached:
                 left = volume - enclosed_volume(near.film)
                 found = find_equilibrium(near.film, near.mean_curvature, volume=left, stable=False, detail=detail)
                 return Reached(found, stretch.steps + near.steps + found.steps)
-        turned += stretch.second.growth * missing < 0
+        if stretch.second.growth * missing < 0:
+            fold = fold if turned else stretch.extreme("volume")
+            turned += 1
         if turned > 3:
-            raise NoFilmError(
-                f"the films' volume turns back at about {stretch.first.volume:.5g} m3", stretch.second.film
-            )
+            raise VolumeFoldError(fold, stretch.second.film)
     raise AssertionError("stretches end with an error")
 
 

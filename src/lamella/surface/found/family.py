@@ -26,6 +26,8 @@ from lamella.surface.points import Floats
 # largest shift of a first step and of any, over the film's size; a path that needs smaller ones than the last ends
 FIRST_STEP, LARGEST_STEP, LEAST_STEP = 0.05, 0.2, 1e-4
 MOST_FILMS, MOST_NEWTON = 80, 500
+# eigenvalues that may change their sign between neighbouring films, unless the step is this short over the film's size
+CHANGED, SHORT_STEP = 1, 0.02
 # Newton steps at which the next step along the family may be longer, and that a film may take
 FEW, MANY = 5, 10
 
@@ -117,12 +119,12 @@ class Stretch:
         real = found.real[np.abs(found.imag) < 1e-6]
         return np.sort(real[(real > 1e-9) & (real <= 1 + 1e-9)]) * self.step
 
-    def extreme(self) -> float:
-        """H at the fold between the two, 1/m."""
-        cubic = self._cubic("mean_curvature")
+    def extreme(self, quantity: str = "mean_curvature") -> float:
+        """H, 1/m, or the "volume", m^3, where it turns between the two."""
+        cubic = self._cubic(quantity)
         turns = cubic.deriv().roots()
         inside = turns.real[(np.abs(turns.imag) < 1e-6) & (turns.real >= 0) & (turns.real <= 1)]
-        return float(cubic(inside[0])) if len(inside) else self.second.mean_curvature
+        return float(cubic(inside[0])) if len(inside) else float(getattr(self.second, quantity))
 
     def _cubic(self, quantity: str) -> np.polynomial.Polynomial:
         slope = {"mean_curvature": "rise", "volume": "growth"}[quantity]
@@ -147,6 +149,9 @@ def stretches(start: Member, detail: Detail, largest: float) -> Iterator[Stretch
                 here.film, here.mean_curvature, way=Way(here.weights, step), stable=False, most_steps=MANY
             )
             there = member_of(found.film, found.mean_curvature)
+            if abs(there.negative - here.negative) > CHANGED and step > SHORT_STEP * here.film.size:
+                # worn elements have solutions of their own, which no film is near to
+                raise NoFilmError("the step leads to another family", here.film)
         except NoFilmError as error:
             steps, step = steps + MANY, step / 2
             if step < LEAST_STEP * begin or steps > MOST_NEWTON:

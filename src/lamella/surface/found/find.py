@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 BESIDE = 0.02
 # tolerance of the elements on which other films than the one asked for are tried
 COARSE = 2e-2
+# of the film's size: it hangs where it is this much lower than its whole boundary, and nowhere higher by as much
+HANGS = 0.01
 
 __all__ = ["Found", "adapted", "find_film", "notes_on", "remarks_on", "surface_of_table"]
 
@@ -80,8 +82,10 @@ def notes_on(found: Found, *, given_curvature: bool = True) -> tuple[str, ...]:
     if verdict.verdict == "unstable":
         notes.append(
             f"the surface is unstable as a film at this mean curvature (lowest Jacobi eigenvalue {verdict.lowest:.4g} "
-            f"1/m2, {verdict.negative} negative): a soap film would leave it unless its volume is held; a stiff net "
-            "need not"
+            f"1/m2, {verdict.negative} negative): a soap film would leave it "
+            # one condition holds back one mode
+            + ("unless" if verdict.negative == 1 else "even if")
+            + " its volume is held; a stiff net need not"
         )
     elif verdict.verdict == "fold":
         notes.append(
@@ -95,6 +99,9 @@ def notes_on(found: Found, *, given_curvature: bool = True) -> tuple[str, ...]:
             f'this is the {verdict.verdict} one, branch = "{"unstable" if stable else "stable"}" finds the other. '
             "Which of the two is the one meant may depend on small changes of the boundary"
         )
+    hanging = _hanging(found.equilibrium.film, found.equilibrium.mean_curvature, given_curvature=given_curvature)
+    if hanging:
+        notes.append(hanging)
     crossing = self_crossing(found.equilibrium.film)
     if crossing is not None:
         x, y, z = crossing[np.linalg.norm(crossing - crossing.mean(0), axis=1).argmin()]
@@ -103,6 +110,24 @@ def notes_on(found: Found, *, given_curvature: bool = True) -> tuple[str, ...]:
             "boundary, but cannot be built"
         )
     return tuple(notes)
+
+
+def _hanging(film: Film, mean_curvature: float, *, given_curvature: bool) -> str:
+    """That a film is pressed down below its boundary, z being up, and what makes a dome of it; empty: it is not.
+
+    A film without pressure stays in the convex hull of its boundary.
+    """
+    height = film.nodes[:, 2]
+    rim = height[np.unique(film.connectivity.rim_nodes)]
+    below, above, least = rim.min() - height.min(), height.max() - rim.max(), HANGS * film.size
+    if below <= least or above > least:
+        return ""
+    value = f"mean_curvature = {-mean_curvature:.6g}"
+    return (
+        f"the surface hangs up to {below:.3g} m below its boundary (z is up): where a dome is meant, "
+        + (f"write {value}" if given_curvature else "write the volume with the other sign")
+        + ", or reverse the first loop"
+    )
 
 
 def find_film(

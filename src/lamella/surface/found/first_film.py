@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 from lamella.errors import InputError
-from lamella.surface.found.along_family import FoldError, Reached, to_curvature, to_volume
+from lamella.surface.found.along_family import FoldError, Reached, VolumeFoldError, to_curvature, to_volume
 from lamella.surface.found.chart import make_chart
 from lamella.surface.found.film import Film, Loop, harmonic_over_itself
 from lamella.surface.found.from_held import from_held
@@ -59,6 +59,8 @@ class FirstFilm:
         See `SearchError`.
     calm : bool
         Whether a film without pressure was found on the way to one of a volume.
+    most : float or None
+        Volume at which that of the films followed turns back, m^3.
     unstable : Equilibrium or None
         An unstable film of the wanted mean curvature that was found on the way to a stable one.
     """
@@ -70,6 +72,7 @@ class FirstFilm:
     reasons: list[str] = field(default_factory=list)
     fold: float | None = None
     calm: bool = False
+    most: float | None = None
     unstable: Equilibrium | None = None
 
     def of_curvature(self, mean_curvature: float, *, unstable: bool = False) -> First:
@@ -134,6 +137,8 @@ class FirstFilm:
             reached = to_volume(calm, volume, self.progress)
         except NoFilmError as error:
             self.calm = True
+            if isinstance(error, VolumeFoldError):
+                self.most = error.volume
             self.tell(f"followed from the film without pressure: {error}")
             return None
         return First(reached.equilibrium, self.steps + reached.steps, True)

@@ -12,6 +12,8 @@ from lamella.wording import rounded
 
 # no bound says that there is no such surface: the search alone ended
 MAY_EXIST = "no bound is broken, so that there may be one"
+# of the volume at which the films followed turn back, what is offered: next to a fold films are found with difficulty
+NEXT_TO_FOLD = 0.98
 
 
 def not_found(
@@ -123,6 +125,12 @@ def _no_volume(search: FirstFilm, went: str, volume: float) -> InputError:
                 f"write volume = {-volume:.6g}, or reverse the first loop",
                 "surface.volume",
             )
+    if search.most is not None:
+        return InputError(
+            f"{wanted}: the search did not arrive at a surface. {went}",
+            f"choose a volume of up to {NEXT_TO_FOLD * search.most:.3g} m3 in size",
+            "surface.volume",
+        )
     return InputError(
         f"{wanted}: the search did not arrive at a surface; {MAY_EXIST}. {went}",
         "choose a volume nearer to that of a film that is found"
