@@ -8,6 +8,7 @@ that power at each singular end, sigma itself where there is none.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +25,9 @@ Integers = NDArray[np.int64]
 
 # of a ray's first cell: a place taken for the singular node's own direction
 BESIDE = 1e-3
-# of a ray's first cell: nearer to the node it is led out from it to points at these multiples, inside the rosette
-OUT, LEADING = 0.2, np.array([1.0, 1.5, 2.0, 2.5])
+# nearer to the node than where chi has risen by this (cells) a ray is led out from it to points at these multiples of
+# the parameter, inside the rosette and the first cell
+RISEN, LEADING = 0.09, np.array([1.0, 1.5, 2.0, 2.5])
 
 
 @dataclass(frozen=True)
@@ -141,6 +143,7 @@ class ElementSegments:
         for block in blocks(len(spots)):
             at, position[block], velocity[block] = self._velocity(spots[block], None if near is None else near[block])
             places.element[block], places.local[block] = at.element, at.local
+        self._lead_out(spots, position, velocity)
         return places, position, velocity
 
     def _velocity(self, spots: Spots, near: Places | None = None) -> tuple[Places, Floats, Floats]:
@@ -180,37 +183,45 @@ class ElementSegments:
         sigma[bent] = betaincinv(*self._power[segment[bent]].T, sigma[bent])
         return segment, sigma
 
-    def lead_out(self, spots: Spots, points: Floats, tangents: Floats) -> tuple[Floats, Floats]:
-        """Points and directions (k, 3), those next to singular nodes from the node and points a little further out.
+    @cached_property
+    def _leads(self) -> list[tuple[Integers, Floats, Floats]]:
+        """For the segments that begin (end) in singular nodes: their numbers, how far they are led out, as sigma, and
+        coefficients (n, 5, 3) of positions as polynomials of the share of that: through the node and places beyond.
+        """
+        at = np.r_[0.0, LEADING]
+        inverse = np.linalg.inv(np.vander(at, increasing=True))
+        leads = []
+        for side in range(2):
+            own = np.flatnonzero(self._at_zero[:, side])
+            out = self._out(own, side)
+            apart = (out[:, None] * at).ravel()
+            ahead = self._velocity(self.spots(np.repeat(own, len(at)), np.abs(side - apart)))[1]
+            leads.append((own, out, np.matmul(inverse, ahead.reshape(len(own), len(at), 3))))
+        return leads
+
+    def _lead_out(self, spots: Spots, position: Floats, velocity: Floats) -> None:
+        """Set positions and velocities (k, 3) of spots next to singular nodes, from the node and places further out.
 
         chi has next to no slope there, and a zero of higher order is not quite one in numbers: a lamella would pass
         the node by. As a function of sigma a ray is analytic.
         """
-        points, tangents = points.copy(), tangents.copy()
-        some = np.flatnonzero(self._singular[spots.segment])
-        for side in range(2):
-            mine = some[self._at_zero[spots.segment[some], side]]
-            own, row = np.unique(spots.segment[mine], return_inverse=True)
-            if not len(own):
-                continue
-            row = row.ravel()
-            out = self._out(own, side)
-            at = np.r_[0.0, LEADING]
-            apart = (out[:, None] * at).ravel()
-            ahead = self._velocity(self.spots(np.repeat(own, len(at)), np.abs(side - apart)))[1]
-            series = np.matmul(np.linalg.inv(np.vander(at, increasing=True)), ahead.reshape(len(own), len(at), 3))
+        if not self._singular[spots.segment].any():
+            return
+        power = np.arange(len(LEADING) + 1)
+        for side, (own, out, series) in enumerate(self._leads):
+            mine = np.flatnonzero(self._at_zero[spots.segment, side])
+            row = np.searchsorted(own, spots.segment[mine])
             share = np.abs(side - spots.sigma[mine]) / out[row]
             near = share < 1
-            mine, share, series = mine[near], share[near, None], series[row[near]]
-            power = np.arange(len(at))
-            points[mine] = np.einsum("np,npc->nc", share**power, series)
-            away = np.einsum("np,npc->nc", power[1:] * share ** power[:-1], series[:, 1:])
-            tangents[mine] = (1 - 2 * side) * away / lengths(away)[:, None]
-        return points, tangents
+            mine, row, share = mine[near], row[near], share[near, None]
+            position[mine] = np.einsum("np,npc->nc", share**power, series[row])
+            away = np.einsum("np,npc->nc", power[1:] * share ** power[:-1], series[row, 1:])
+            velocity[mine] = (1 - 2 * side) * away / out[row, None]
 
     def _out(self, segment: Integers, side: int) -> Floats:
         """How far segments (k,) are led out from the node at one end, as sigma: inside the node's rosette."""
-        away = np.repeat([0.0, BESIDE], len(segment))
+        out = np.minimum(RISEN ** (1 / self._power[segment, side]), 1 / LEADING[-1])
+        away = np.r_[np.zeros(len(out)), out]
         node, beside = np.split(self._velocity(self.spots(np.tile(segment, 2), np.abs(side - away)))[1], 2)
-        speed = lengths(beside - node) / BESIDE
-        return np.asarray(np.minimum(OUT, self._cells.mesh.radii[self._zeros[segment, side]] / (LEADING[-1] * speed)))
+        speed = lengths(beside - node) / out
+        return np.asarray(np.minimum(out, self._cells.mesh.radii[self._zeros[segment, side]] / (LEADING[-1] * speed)))

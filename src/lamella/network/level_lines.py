@@ -116,6 +116,8 @@ def small_triangles(cells: CellMap, cut: NDArray[np.bool_], umbilics: Integers) 
     local = grid.basis.nodes
     point = sectors(grid, cut)
     values = cells.value @ connectivity.basis.basis(local).T
+    for vertex in umbilics.tolist():
+        _straighten(values, cells, local, vertex)
     chi = np.zeros(int(point.max()) + 1, complex)
     chi[point] = values
     # umbilics on the lattice have whole values; no other grid point may
@@ -158,6 +160,25 @@ def small_triangles(cells: CellMap, cut: NDArray[np.bool_], umbilics: Integers) 
         np.stack([right[:, :-1].ravel(), right[:, 1:].ravel()], 1),
         np.repeat(piece, parts),
     )
+
+
+def _straighten(values: Complexes, cells: CellMap, local: Floats, vertex: int) -> None:
+    """Make chi at local coordinates (k, 2) linear along each ray from an umbilic within the elements around it.
+
+    It goes like a power of the distance there that polynomials only follow up to their order, to an error that near the
+    umbilic is more than its value. Which lines pass through a homogeneous function's zero is decided at its rim.
+    """
+    basis = cells.mesh.connectivity.basis
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    far = 1 - np.column_stack([1 - local.sum(1), local])
+    for element, which in np.argwhere(cells.mesh.connectivity.faces == vertex).tolist():
+        share = far[:, which]
+        beyond = corners[which] + (local - corners[which]) / np.where(share > 0, share, 1)[:, None]
+        zero = cells.value[element, which]
+        rise = np.where(share > 0, cells.value[element] @ basis.basis(beyond).T - zero, 0)
+        # other lines pass these elements where they reach over a cell: their places count
+        if max(np.abs(rise.real).max(), np.abs(rise.imag).max()) < 1:
+            values[element] = zero + share * rise
 
 
 def whole_shifts(cells: CellMap, family: int) -> Floats:

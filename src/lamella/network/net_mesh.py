@@ -16,6 +16,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from lamella.network.beyond_rim import zeros_beyond_rim
 from lamella.network.inverse import find_places
 from lamella.network.rosette import RINGS, Rosette, rosette
 from lamella.surface.element.bisect import Parts, bisect, whole
@@ -25,7 +26,7 @@ from lamella.surface.element.places import Places
 from lamella.surface.element.placing import edge_blends
 from lamella.surface.element.rim import ElementRim, element_rims
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.element.umbilics import Umbilics, deviator_error
+from lamella.surface.element.umbilics import SURE, Umbilics, deviator_error
 from lamella.surface.points import Complexes, Floats, SurfacePoints, shape_entries
 from lamella.surface.vectors import diagonal, lengths
 
@@ -47,8 +48,8 @@ GROWTH = 0.45
 GAP = 0.15
 # radii of the circle on which the order's coefficient is measured, over the rosette's
 MEASURED = 0.5
-# times its error that a deviator is to be trusted; the leading term alone counts within this share of that radius
-SURE, INNER = 20.0, 0.5
+# share of the radius from which on a deviator is to be trusted within which the leading term alone counts
+INNER = 0.5
 
 
 @dataclass(frozen=True)
@@ -155,9 +156,12 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     inside = (to_rim > ON_RIM * size) & ~_near(zeros, surface.nodes[_corners(rims)], AT_CORNER * size)
     radii = np.where(inside, _radii(surface, umbilics, to_rim), ON_RIM * size)
 
+    beyond = zeros_beyond_rim(surface, ON_RIM * size)
+    centres, least = np.concatenate([zeros, beyond]), np.append(radii, np.full(len(beyond), ON_RIM * size))
+
     def too_large(corners: Floats, longest: Floats) -> Flags:
         result = np.zeros(len(longest), bool)
-        for zero, radius in zip(zeros, radii, strict=True):
+        for zero, radius in zip(centres, least, strict=True):
             distance = lengths(corners - zero).min(1)
             result |= (longest > GROWTH * np.maximum(distance, radius)) & (distance < 8 * radius + longest)
         return result

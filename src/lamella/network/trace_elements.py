@@ -175,7 +175,6 @@ def trace_elements(
     spots = segments.spots(segment, parameter)[order]
     places, points, velocity = segments.velocity(spots, near[order])
     tangents = velocity / lengths(velocity)[:, None]
-    points, tangents = segments.lead_out(spots, points, tangents)
     points = onto(places.element, points)
     normals, tangents, bend, twist = _frames(cells, places, tangents)
     back = np.empty(len(order), np.int64)

@@ -37,6 +37,8 @@ NEIGHBOURS, ON_THE_WAY = 6, 5
 # radius of the circle on which turns are counted, over the zeros' distance from its middle and of the surface's size;
 # at most this part of the way to the next zeros
 AROUND, LEAST_RADIUS, TO_NEXT = 1.5, 2e-3, 0.5
+# places on a circle around a zero, and times its error that a deviator is to be trusted
+CIRCLE, SURE = 48, 20.0
 # of the size: umbilics whose distances from the rim differ by less are alike
 DEPTH = 0.01
 # shares of the outer loop from its start on: of umbilics that are alike the one nearest to the first of these places
@@ -100,6 +102,8 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
             break
     places, position = places_of, position_of
     kept = np.flatnonzero(orders > 0)
+    places, position = _recentred(surface, places[kept], position[kept], orders[kept])
+    orders, kept = orders[kept], np.arange(len(kept))
     kept = kept[_deepest_first(surface, position[kept], DEPTH * size)]
     return Umbilics(places[kept], position[kept], orders[kept])
 
@@ -188,6 +192,29 @@ def _gathered(
     return places, position, _turns(surface, places, position, radius)
 
 
+def _recentred(surface: ElementSurface, places: Places, position: Floats, orders: Integers) -> tuple[Places, Floats]:
+    """Zeros of order 2 and above moved to where a circle around them, on which the deviator is sure, has them.
+
+    D = c (z - z_0)^m on it has the Fourier coefficients c r^m and -m z_0 c r^(m - 1) of the orders m and m - 1.
+    """
+    moved = position.copy()
+    tree = cKDTree(surface.nodes[np.unique(surface.connectivity.rim_nodes)])
+    for number in np.flatnonzero(orders > 1).tolist():
+        m, here = int(orders[number]), slice(number, number + 1)
+        free = lengths(np.delete(position, number, 0) - position[number]).min(initial=np.inf)
+        most = TO_NEXT * min(free, float(tree.query(position[number])[0]))
+        value = _circle(surface, places[here], position[here], np.array([most]))[0]
+        error = float(deviator_error(surface, places.element[here])[0])
+        radius = most * min(1.0, (SURE * error / np.abs(value).mean()) ** (1 / m))
+        value = _circle(surface, places[here], position[here], np.array([radius]))[0]
+        modes = np.fft.fft(value)
+        shift = -radius * modes[m - 1] / (m * modes[m])
+        if abs(shift) < TO_NEXT * radius:
+            frame = surface.frames(places[here])
+            moved[number] += shift.real * frame.e_u[0] + shift.imag * frame.e_v[0]
+    return surface.closest_near(moved, places) if len(moved) else (places, position)
+
+
 def _turned(at: SurfacePoints, axes: Floats) -> Complexes:
     """Trace-free shape operators, 1/m, (n,), in frames along the tangents nearest to given directions (n, 3)."""
     turn = dots(axes, at.e_u) + 1j * dots(axes, at.e_v)
@@ -220,17 +247,21 @@ def _newton(surface: ElementSurface, start: Places, axes: Floats) -> tuple[Place
     return Places(element, np.clip(local, 0, 1)), inside
 
 
-def _turns(surface: ElementSurface, places: Places, centre: Floats, radius: Floats) -> Integers:
-    """Turns of the deviator once around places of the surface, at a radius (m) of each, (n,)."""
-    count = 48
+def _circle(surface: ElementSurface, places: Places, centre: Floats, radius: Floats) -> Complexes:
+    """Deviators at `CIRCLE` places around those of the surface, at a radius (m) of each, in its frame, (n, CIRCLE)."""
     frame = surface.at(places)
-    angle = 2 * np.pi * np.arange(count) / count
+    angle = 2 * np.pi * np.arange(CIRCLE) / CIRCLE
     ring = (
         centre[:, None]
         + (radius[:, None] * np.cos(angle))[..., None] * frame.e_u[:, None]
         + (radius[:, None] * np.sin(angle))[..., None] * frame.e_v[:, None]
     )
-    around, _ = surface.closest_near(ring.reshape(-1, 3), places[np.repeat(np.arange(len(places)), count)])
-    value = _turned(surface.at(around), np.repeat(frame.e_u, count, axis=0)).reshape(-1, count)
+    around, _ = surface.closest_near(ring.reshape(-1, 3), places[np.repeat(np.arange(len(places)), CIRCLE)])
+    return _turned(surface.at(around), np.repeat(frame.e_u, CIRCLE, axis=0)).reshape(-1, CIRCLE)
+
+
+def _turns(surface: ElementSurface, places: Places, centre: Floats, radius: Floats) -> Integers:
+    """Turns of the deviator once around places of the surface, at a radius (m) of each, (n,)."""
+    value = _circle(surface, places, centre, radius)
     turns = np.angle(np.roll(value, -1, 1) / value).sum(1) / (2 * np.pi)
     return np.asarray(np.rint(turns), np.int64)

@@ -1,0 +1,57 @@
+"""Nets around umbilics of higher order: films in regular skew polygons of straight beams.
+
+A polygon of 2 (m + 2) corners alternately above and below a plane is carried into itself by turning it by one corner
+and mirroring it, and so is its film: D = c z^m (1 + ...) around the middle, an umbilic of order m.
+"""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from lamella import compute, parse_project
+from lamella.files.network_json import network_bytes
+from lamella.network.network import SINGULAR
+from lamella.pipeline import Results
+from measure_network import measure
+
+
+def skew_polygon(order: int, radius: float = 4.0, height: float = 3.0) -> np.ndarray:
+    count = 2 * (order + 2)
+    angle = 2 * np.pi * np.arange(count) / count
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle), height * (-1.0) ** np.arange(count)], 1)
+
+
+def results_in(corners: np.ndarray, cells: int, until: str) -> Results:
+    surface = {"kind": "form-found", "boundary": [{"interpolation": "polyline", "points": corners.tolist()}]}
+    return compute(parse_project({"name": "x", "surface": surface, "network": {"cells": cells}}), until=until)
+
+
+@pytest.mark.parametrize(
+    ("order", "limit"),
+    [(3, 0.02), *(pytest.param(m, 0.05, marks=pytest.mark.slow) for m in (1, 2, 4))],
+)
+def test_one_umbilic_in_a_skew_polygon(order, limit) -> None:
+    net = results_in(skew_polygon(order), 20, "network").network
+    assert net is not None
+    (node,) = np.flatnonzero(net.node_kinds == SINGULAR)
+    a, b = net.node_degrees()
+    assert (a[node], b[node]) == (order + 2, order + 2)
+    assert np.linalg.norm(net.node_points[node]) < 2e-4 * 8
+    figures = measure(json.loads(network_bytes(net, name="x", version="0")))
+    # DESIGN section 9: published nets of this kind are off by 0.47 degrees
+    assert figures["node_angle_deviation_max_deg"] < limit
+    assert figures["normal_curvature_error_rel_max"] < 5e-3
+
+
+@pytest.mark.slow
+def test_a_double_umbilic_splits_with_its_symmetry() -> None:
+    """With two opposite corners raised the film has two planes of symmetry: two umbilics of order 1 in one of them."""
+    corners = skew_polygon(2)
+    corners[[0, 4], 2] += 0.3
+    umbilics = results_in(corners, 20, "surface").surface.umbilics
+    assert umbilics.orders.tolist() == [1, 1]
+    assert np.linalg.norm(umbilics.position[:, :2].sum(0)) < 1e-3
+    assert np.abs(umbilics.position[:, :2]).min(1) == pytest.approx(0, abs=1e-3)

@@ -1,0 +1,36 @@
+"""Nets of surfaces whose deviator has a zero just beyond the rim, or next to it within."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from lamella.files.network_json import network_bytes
+from lamella.network.beyond_rim import zeros_beyond_rim
+from lamella.network.make import make_network
+from lamella.summary import network_summary
+from measure_network import measure
+from surface.weierstrass import weierstrass
+
+
+@pytest.mark.parametrize("distance", [1.01, 1.04, 1.1])
+def test_zero_beyond_the_rim_is_estimated(distance) -> None:
+    zero = distance * np.exp(0.4j)
+    surface = weierstrass([zero], rings=12)
+    found = zeros_beyond_rim(surface, 0.01)
+    # next to the zero the surface is nearly flat, half as large as the disc of its parameter
+    nearest = surface.closest(found[:1])[1]
+    assert np.linalg.norm(found[0] - nearest[0]) == pytest.approx((distance - 1) / 2, rel=0.5)
+    assert np.linalg.norm(found[0]) > np.linalg.norm(nearest[0])
+
+
+@pytest.mark.parametrize("distance", [1.02, *(pytest.param(d, marks=pytest.mark.slow) for d in (1.005, 1.05))])
+def test_angles_next_to_a_zero_beyond_the_rim(distance) -> None:
+    """The net's own angles are right and are those that the ruler finds."""
+    net = make_network(weierstrass([distance * np.exp(0.4j)], rings=10), cells=20)
+    ruler = measure(json.loads(network_bytes(net, name="x", version="0")))
+    figures = network_summary(net, "")
+    assert ruler["node_angle_deviation_max_deg"] < 0.1
+    assert figures["node_angle_deviation_max_deg"] == pytest.approx(ruler["node_angle_deviation_max_deg"], abs=0.05)
