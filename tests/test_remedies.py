@@ -259,3 +259,30 @@ def test_a_corner_that_no_tolerance_follows() -> None:
     assert over
     rounded = surface | {"boundary": [{"points": sail(float(over[1]))}]}
     assert not warned(tables | {"surface": rounded}, "normal curvature of lamellas is off")
+
+
+@pytest.mark.parametrize(
+    ("cells", "layers", "end_distance"), [(17, 1, 0.05), (25, 1, 0.05), (25, 1, 0.3), (25, 2, 0.08), (17, 2, 0.02)]
+)
+def test_strips_that_meet_beyond_the_rim(cells: int, layers: int, end_distance: float) -> None:
+    """With ends as short as is said none meet, and with ends a little longer some do."""
+    tables: Tables = {
+        "surface": {"kind": "enneper", "order": 3, "radius": 0.9, "scale": 3.0},
+        "network": {"cells": cells},
+        "lamella": {"layers": layers, "height": 0.05, "thickness": 0.001},
+        "fabrication": {"end_distance": end_distance},
+    }
+    message = warned(tables, "beyond the rim")
+    assert message
+    if "write fabrication" not in message:
+        # no end is short enough: the strips themselves, as wide as their layers, meet
+        assert "move the rim" in message
+        shortest = {"end_distance": 0.0031, "rim_overhang": 0.0}
+        assert warned(tables | {"fabrication": shortest}, "beyond the rim")
+        return
+    lengths = re.search(r"end_distance = ([\d.]+) and rim_overhang = ([\d.]+)", message)
+    assert lengths
+    end, overhang = map(float, lengths.groups())
+    assert not warned(tables | {"fabrication": {"end_distance": end, "rim_overhang": overhang}}, "beyond the rim")
+    longer = {"end_distance": 1.02 * end + 1e-3, "rim_overhang": 1.02 * overhang + 1e-3}
+    assert warned(tables | {"fabrication": longer}, "beyond the rim")

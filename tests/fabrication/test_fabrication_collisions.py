@@ -26,9 +26,13 @@ def test_single_strips(beyond, overhang, pairs):
     assert len(found) == (pairs > 0)
     if pairs:
         assert found[0].startswith(f"{pairs} pairs")
-        # told by their names; what cannot be shortened is no remedy
+        # told by their names, and how short ends have to be: as far as strips cross beyond their rim nodes
         assert re.search(r"\(A\d+ and B\d+, .*\.\.\.\) meet", found[0])
-        assert "rim_overhang (20.5 mm) or end_distance (20 mm), or move the rim" in found[0]
+        shorter = re.search(r"end_distance = ([\d.]+) and rim_overhang = ([\d.]+), or move the rim", found[0])
+        assert shorter
+        assert float(shorter[1]) < 0.02
+        assert 0.99 * beyond < float(shorter[2]) < 1.01 * beyond
+        assert not warnings(beyond, float(shorter[2]))
 
 
 def test_outer_layers_meet_earlier():

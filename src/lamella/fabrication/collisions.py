@@ -11,8 +11,8 @@ from lamella.network.network import BOUNDARY, Network
 Floats = NDArray[np.float64]
 
 
-def end_collisions(network: Network, before: Floats, after: Floats, spread: float) -> list[str]:
-    """Pairs of an A and a B strip that meet beyond the rim nodes where they end, "A1 and B2", by their ids.
+def end_collisions(network: Network, before: Floats, after: Floats, spread: float) -> tuple[list[str], float]:
+    """Pairs of an A and a B strip that meet beyond the rim nodes where they end, and by how much ends are too long.
 
     Parameters
     ----------
@@ -21,6 +21,14 @@ def end_collisions(network: Network, before: Floats, after: Floats, spread: floa
         How far each lamella's strip reaches beyond its first and its last node, m (negative: it stops short).
     spread : float
         From a lamella's centre line to the middle of its outermost layer, m.
+
+    Returns
+    -------
+    pairs : list of str
+        "A1 and B2", by their ids.
+    excess : float
+        How much shorter all ends have to be for one of each pair to end before the other, m; infinite where no length
+        does, since the strips' own width meets.
     """
     first, last = network.sample_offsets[:-1], network.sample_offsets[1:] - 1
     node = np.r_[network.stop_nodes[network.stop_offsets[:-1]], network.stop_nodes[network.stop_offsets[1:] - 1]]
@@ -31,7 +39,7 @@ def end_collisions(network: Network, before: Floats, after: Floats, spread: floa
     free = (network.node_kinds[node] == BOUNDARY) & (reach > 0)
     a, b = np.flatnonzero(free & is_a), np.flatnonzero(free & ~is_a)
     if not len(a) or not len(b):
-        return []
+        return [], 0.0
     points = network.sample_points[sample]
     pairs = cKDTree(points[a]).sparse_distance_matrix(cKDTree(points[b]), 2 * reach[free].max(), output_type="ndarray")
     a, b = a[pairs["i"]], b[pairs["j"]]
@@ -43,6 +51,8 @@ def end_collisions(network: Network, before: Floats, after: Floats, spread: floa
     x_a, x_b = (along_a - cosine * along_b) / square, (cosine * along_a - along_b) / square
     # a node that both share has its slot
     meet = (node[a] != node[b]) & (x_a > 0) & (x_b > 0) & (x_a < reach[a]) & (x_b < reach[b])
+    excess = np.minimum(*(np.where(x >= spread, reach[end] - x, np.inf)[meet] for end, x in ((a, x_a), (b, x_b))))
     lamella = np.tile(np.arange(len(first)), 2)
     pairs = np.unique(np.column_stack([lamella[a[meet]], lamella[b[meet]]]), axis=0)
-    return [f"{network.ids[one]} and {network.ids[other]}" for one, other in pairs.tolist()]
+    names = [f"{network.ids[one]} and {network.ids[other]}" for one, other in pairs.tolist()]
+    return names, float(excess.max(initial=0.0))

@@ -123,7 +123,7 @@ def make_parts(
                 before[index] = max(before[index], strip.stations[0] - pieces[0].start)
                 after[index] = max(after[index], pieces[-1].end - strip.stations[-1])
             parts.extend(pieces)
-    notes.collisions = end_collisions(network, before, after, strips.reach)
+    notes.collisions, notes.too_far = end_collisions(network, before, after, strips.reach)
     return Parts(tuple(parts), tuple(notes.sentences(rules, len(network.ids) * strips.kinds, len(parts))))
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from lamella.fabrication.rules import Rules
-from lamella.wording import counted
+from lamella.fabrication.rules import ROUNDING, Rules
+from lamella.wording import counted, rounded
 
 
 @dataclass
@@ -31,6 +31,8 @@ class Notes:
         Id and smallest cell edge (m) of the parts without slots.
     collisions : list of str
         Pairs of strips whose ends meet beyond the rim.
+    too_far : float
+        How much shorter the ends would have to be, m.
     hub_cut : float
         Radius (m) asked of the hubs where it would have taken the first slots with it, else 0.
     hub_needed : float
@@ -44,6 +46,7 @@ class Notes:
     left_out: list[str] = field(default_factory=list)
     unslotted: list[tuple[str, float]] = field(default_factory=list)
     collisions: list[str] = field(default_factory=list)
+    too_far: float = 0.0
     hub_cut: float = 0.0
     hub_needed: float = 0.0
 
@@ -86,13 +89,9 @@ class Notes:
             )
         if self.collisions:
             count = len(self.collisions)
-            longer = {"rim_overhang": rules.rim_overhang, "end_distance": rules.end_distance}
-            shorten = [f"{name} ({1e3 * length:g} mm)" for name, length in longer.items() if length]
             yield (
                 f"{counted(count, 'pair')} of strips ({_few(self.collisions)}) {'meets' if count == 1 else 'meet'} "
-                "beyond the rim, where no slot is cut: "
-                + (f"shorten fabrication.{' or '.join(shorten)}, or " if shorten else "")
-                + "move the rim"
+                "beyond the rim, where no slot is cut: " + self._shorter(rules)
             )
         if self.unslotted:
             between = 2 * rules.slot_width / rules.edge_scale
@@ -110,6 +109,17 @@ class Notes:
                 f"{layers} at {1e3 * rules.offset:g} mm need {1e3 * (2 * spread + between):.1f} mm from node "
                 f"to node{offset} and {1e3 * (spread + 0.75 * between):.1f} mm from a node to an end"
             )
+
+    def _shorter(self, rules: Rules) -> str:
+        """Ends so short that no strips meet beyond the rim."""
+        end_distance = rules.end_distance - self.too_far - ROUNDING
+        if not end_distance > rules.least_end_distance:
+            return "move the rim, or choose another number of cells"
+        overhang = max(rules.rim_overhang - self.too_far - ROUNDING, 0.0)
+        lengths = f"fabrication.end_distance = {rounded(end_distance, up=False):g}"
+        if rules.rim_overhang:
+            lengths += f" and rim_overhang = {rounded(overhang, up=False):g}"
+        return f"write {lengths}, or move the rim"
 
 
 def _few(names: Sequence[str]) -> str:

@@ -87,6 +87,11 @@ class Rules:
         return edge_scale(self.curvature, self.height)
 
     @property
+    def least_end_distance(self) -> float:
+        """From the last slot to the end, m: one slot width is left between them."""
+        return 1.5 * self.slot_width / self.edge_scale
+
+    @property
     def longest_ring(self) -> float:
         """Length that turns through `LARGEST_TURN`, m."""
         return LARGEST_TURN / abs(self.curvature) if self.curvature else np.inf
@@ -144,7 +149,7 @@ class Rules:
                 else f"write lamella.thickness = {rounded(0.1 / bend, up=False):g} or less",
                 "lamella.height",
             )
-        nearest = 1.5 * self.slot_width / self.edge_scale
+        nearest = self.least_end_distance
         if not (np.isfinite(self.end_distance) and self.end_distance >= nearest - ROUNDING):
             raise InputError(
                 f"end_distance is {self.end_distance:g} m, which leaves less than one slot width "
