@@ -40,7 +40,7 @@ def test_cut_outlines_are_the_layers_unrolled(surface):
     """
     worst = {}
     for offset in (0.04, 0.02):
-        network = make_network(surface, cells=30)
+        network = make_network(surface, cells=16)
         section = Section(0.08, 0.001, 2, offset, layer_curves="cut")
         lamellas = make_lamellas(network, section, STEEL)
         parts = make_parts(network, lamellas, density=7900.0, sheet=(60.0, 30.0))
@@ -68,17 +68,20 @@ def off_best_placement(one: np.ndarray, other: np.ndarray) -> float:
     return float(np.abs(one - turn / abs(turn) * other).max())
 
 
-@pytest.mark.parametrize("way", ["offset", "cut", "lamella"])
-@pytest.mark.parametrize("surface", SURFACES, ids=lambda s: s.kind)
+@pytest.mark.parametrize(
+    ("surface", "way"),
+    [(SURFACES[0], "offset"), (SURFACES[1], "cut"), (SURFACES[2], "cut"), (SURFACES[2], "lamella")],
+    ids=lambda x: getattr(x, "kind", x),
+)
 def test_slots_read_back(tmp_path, surface, way):
     """What the drawing says of each part, measured on its outline alone, arcs of changing curvature included."""
-    _, _, parts = built(surface, way)
+    _, _, parts = built(surface, way, cells=10)
     nesting = nest(parts, sheet=SHEET)
     write_drawings(tmp_path, parts, nesting, name="layers", version="0")
-    for name in ("A.dxf", "sheets.dxf"):
+    for family, name in (("A", "A.dxf"), ("B", "sheets.dxf")):
         readings = read_slots(tmp_path / name)
         for part in parts.parts:
-            if part.family == "B" and name == "A.dxf":
+            if part.family != family:
                 continue
             reading = readings[part.id]
             np.testing.assert_allclose(reading.slots, 1e3 * (part.slots - part.start), atol=2e-4)
@@ -120,8 +123,8 @@ def test_an_outline_of_changing_curvature(family):
 
 @pytest.mark.parametrize("surface", SURFACES[:2], ids=lambda s: s.kind)
 def test_cut_pieces_keep_their_distance_on_the_sheets(surface):
-    _, _, parts = built(surface, "cut", cells=10)
-    gap, step = 0.01, 4e-3
+    _, _, parts = built(surface, "cut", cells=6)
+    gap, step = 0.01, 5e-3
     nesting = nest(parts, sheet=SHEET, gap=gap)
     assert (nesting.sizes == SHEET).all()
     outlines = list(placed_outlines(parts, nesting, step))

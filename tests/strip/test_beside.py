@@ -89,7 +89,7 @@ def test_slopes_of_lines_by_differences():
         (Unduloid(0.6, 1.2, (-0.9, 1.3)), Pattern("lamellas", (1, 1), 0.4)),
         (Unduloid(0.6, 1.2, (-0.9, 1.3)), Pattern("principal", (1, 1), None)),
     ):
-        density = choose_density(surface, cells=60, spacing=None, pattern=pattern)
+        density = choose_density(surface, cells=40, spacing=None, pattern=pattern)
         network = trace_closed_form(surface, density)
         k = network.sample_darboux
         for first, last in zip(network.sample_offsets[:-1], network.sample_offsets[1:], strict=True):
@@ -155,9 +155,9 @@ def test_enneper(order: int):
 
 def test_on_elements_with_its_order():
     """The catenoid's, from samples on elements: second order in their distance, at the ends too."""
-    _, surface = catenoid(72, 39)
+    _, surface = catenoid(48, 26)
     errors = []
-    for cells in (10, 20):
+    for cells in (8, 16):
         network = element_network(surface, cells=cells).network
         x, y, _ = network.sample_points.T
         cosh = np.sqrt(x**2 + y**2)
@@ -165,4 +165,4 @@ def test_on_elements_with_its_order():
         errors.append(np.abs(np.abs(network.sample_slopes) - expected).max())
     assert np.log2(errors[0] / errors[1]) > 1.7
     # of the largest slope, 0.54
-    assert errors[1] < 0.02
+    assert errors[1] < 0.03

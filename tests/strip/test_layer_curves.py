@@ -135,8 +135,8 @@ def test_slots_are_where_layers_cross(surface):
 
 def test_on_elements():
     """The same on a surface of elements, and beside it against parallel layers, which are bent by millimetres."""
-    _, surface = catenoid(72, 39)
-    network = element_network(surface, cells=20).network
+    _, surface = catenoid(48, 26)
+    network = element_network(surface, cells=12).network
     section = Section(height=0.04, thickness=0.001, layers=2, offset=0.015, layer_curves="lamella")
     lamellas = make_lamellas(network, section, STEEL, surface)
     assert meeting_gaps(network, lamellas).max() < 2e-5
@@ -174,7 +174,7 @@ def test_next_to_a_singular_node():
         assert abs(away) < part.start * np.tan(np.pi / 6)
 
 
-@pytest.mark.parametrize("way", ["offset", "cut", "lamella"])
+@pytest.mark.parametrize("way", ["offset", "lamella"])
 def test_whole_runs_with_a_singular_node(tmp_path, way):
     """Every file of a run, of each way, around a hexagonal node, where layers on lamella curves are not followed."""
     project = {
@@ -186,7 +186,7 @@ def test_whole_runs_with_a_singular_node(tmp_path, way):
     results = compute(parse_project(project))
     write(results, tmp_path / way)
     lamellas = json.loads((tmp_path / way / "lamellas.json").read_bytes())["lamellas"]
-    key = {"offset": set(), "cut": {"flat_curvature"}, "lamella": {"distance"}}[way]
+    key = {"distance"} if way == "lamella" else set()
     assert all(set(layer) == {"offset"} | key for one in lamellas for layer in one["layers"])
     model = rhino3dm.File3dm.Read(str(tmp_path / way / "model.3dm"))
     names = {model.Layers[item.Attributes.LayerIndex].Name: [] for item in model.Objects}
