@@ -11,6 +11,7 @@ import pytest
 from exact_elements import sphere_cap
 from lamella import InputError, compute, make_surface, parse_project
 from lamella.cautions import lamella_cautions, network_cautions, surface_file_cautions
+from lamella.network.cell_sizes import small_cells
 
 
 def warnings(kind: str, until: str = "lamellas", tables: dict[str, Any] | None = None, **surface: Any) -> list[str]:
@@ -63,12 +64,35 @@ def test_large_but_possible_buildings_are_not_warned_about() -> None:
 
 def test_left_out_lamellas_are_counted() -> None:
     for minimum, told in ((0.5, []), (2.0, ["4 lamellas shorter than network.minimum_length are left out"])):
-        tables = {"network": {"cells": 13, "minimum_length": minimum}}
+        # so low that no cell is small for it
+        tables = {"network": {"cells": 13, "minimum_length": minimum}, "lamella": {"height": 0.05}}
         results = compute(
             parse_project({"surface": {"kind": "scherk", "extent": 1.2, "scale": 3.0}} | tables), until="network"
         )
         assert results.summary["warnings"] == told
         assert results.summary["network"]["lamellas_left_out"] == 2 * minimum * len(told)
+
+
+def test_small_cells_are_reported_by_place() -> None:
+    """Every node distance under a tenth of the height counts, the least one with its place; others are not named."""
+    network = compute(
+        parse_project({"surface": {"kind": "scherk", "extent": 1.2, "scale": 3.0}}), until="network"
+    ).network
+    assert network
+    edges = np.sort(network.cell_edges)
+    assert not any("tenth of the strip" in told for told in network_cautions(network, 9.9 * edges[0]))
+    # a little above the third one, so that rounding decides nothing
+    height = 10 * float(np.sqrt(edges[2] * edges[edges > 1.01 * edges[2]][0]))
+    count, places = small_cells(network, height / 10)
+    assert count == (edges < height / 10).sum()
+    assert places[0].edge == edges[0]
+    (told,) = (told for told in network_cautions(network, height) if "tenth of the strip" in told)
+    assert told.startswith(f"{count} cell edges are shorter")
+    for place in places:
+        assert f"({', '.join(f'{x:.3g}' for x in place.point)}) m" in told
+        gaps = np.linalg.norm(network.node_points - place.point, axis=1)
+        # midway between two nodes
+        assert np.sort(gaps)[1] == pytest.approx(place.edge / 2, rel=1e-3)
 
 
 def test_one_is_and_several_are() -> None:
@@ -95,7 +119,8 @@ def test_one_is_and_several_are() -> None:
 def test_cells_smaller_than_the_strip() -> None:
     values = {"radius": 2.0, "height": [0, 1]}
     assert not any("cell edges" in m for m in warnings("cylinder", "network", {"network": {"cells": 60}}, **values))
-    told = warnings("cylinder", "network", {"network": {"cells": 120}}, **values)
+    small, *told = warnings("cylinder", "network", {"network": {"cells": 120}}, **values)
+    assert small.startswith("240 cell edges are shorter than a tenth")
     assert told == [
         "half of the cell edges are shorter than 74 mm, less than the strip's height of 100 mm: at most 84 cells, or a "
         "strip up to 74 mm high"

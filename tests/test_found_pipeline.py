@@ -188,7 +188,7 @@ def test_found_surfaces_on_the_command_line(
     assert "\n    Newton step 1\n" in capsys.readouterr().err
     laid = SimpleNamespace(lattice=SimpleNamespace(cells=10, estimated_nodes=1234))
     monkeypatch.setattr("lamella.weaving.lay", lambda *_: laid)
-    warned = SimpleNamespace(summary={"warnings": []})
+    warned = SimpleNamespace(summary={"warnings": []}, network=None)
     monkeypatch.setattr("lamella.check.complete", lambda *_, **__: warned)
     assert main(["check", "films/film.toml"]) == 0
     told = capsys.readouterr()

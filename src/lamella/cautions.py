@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from lamella.network.cell_sizes import MOST_RATIO, large_cells
+from lamella.network.cell_sizes import MOST_RATIO, large_cells, small_cells
 from lamella.network.density import LEAST_CELLS
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas, Section, layer_drift
@@ -22,6 +22,8 @@ from lamella.wording import counted, rounded
 LARGE = 250.0
 # surfaces this many strip heights across are a unit mistake more often than a building
 SLENDER = 2500.0
+# of the strip's height: nodes closer to each other are reported
+SMALL = 0.1
 # share of the radius of curvature beyond which half the strip's height is no small strip any more
 DEEP = 0.5
 # share of the strength beyond which the stress of layers beside the centre line matters
@@ -104,6 +106,8 @@ def network_cautions(network: Network, height: float, closing: str = "open", *, 
             f"{count} cell edge{'s are' if count > 1 else ' is'} over {MOST_RATIO:g} x the median, up to "
             f"{large[0].ratio:.3g} x ({places}): {_why_large(network, traced)}"
         )
+    if network.pattern.kind == "lamellas":
+        yield from _small_cells(network, height)
     median = float(np.median(network.cell_edges))
     if median < height and network.pattern.kind == "lamellas":
         yield (
@@ -117,6 +121,21 @@ def _fewer(network: Network, median: float, height: float) -> str:
     """How many cells have edges as long as the strip is high, where that many make a net."""
     cells = int(0.95 * network.cells * median / height)
     return f"at most {cells} cells, or " if cells >= LEAST_CELLS else ""
+
+
+def _small_cells(network: Network, height: float) -> Iterator[str]:
+    """Nodes so close to each other that no two slots fit."""
+    count, small = small_cells(network, SMALL * height)
+    if small:
+        places = "; ".join(
+            f"{1000 * one.edge:.2g} mm at ({', '.join(f'{x:.3g}' for x in one.point)}) m" for one in small
+        )
+        are = "is" if count == 1 else "are"
+        yield (
+            f"{counted(count, 'cell edge')} {are} shorter than a tenth of the strip's height ({100 * height:.3g} mm), "
+            f"down to {1000 * small[0].edge:.2g} mm ({places}): a lamella ends just behind a node there; another "
+            "number of cells moves its end"
+        )
 
 
 def _why_large(network: Network, traced: bool) -> str:

@@ -100,11 +100,14 @@ class PartTable(Table):
 class AdjustTable(Table):
     """How far a loop may be changed for a net that closes (network.closing = "adjust"); what is not given is held."""
 
-    move: float = number("Shift in each of x, y and z, at most.", "m", ge=0, le=1000, default=0.0, examples=[0.3])
+    move: float = number("Shift of the loop, at most.", "m", ge=0, le=1000, default=0.0, examples=[0.3])
     scale: float = number("Change of size, as a share of it, at most.", "", ge=0, le=0.5, default=0.0, examples=[0.05])
-    tilt: float = number("Turn about each of x, y and z, at most.", "degrees", ge=0, le=45, default=0.0, examples=[5.0])
+    tilt: float = number(
+        "Turn of the loop about any axis, at most.", "degrees", ge=0, le=45, default=0.0, examples=[5.0]
+    )
     points: float = number(
-        "Shift of the curve in x, y and z, in waves along the loop, at most: of its points, or by arc length.",
+        "Shift of any point of the curve, at most, by all waves along the loop together: of its points, or by arc "
+        "length.",
         "m",
         ge=0,
         le=1000,

@@ -97,6 +97,43 @@ def test_parameters_change_what_they_name() -> None:
     assert Freedom(table_of(sketch(0))).count == 3 * 8 + 3 + 1 + 3 + 1
 
 
+@pytest.mark.parametrize("keep_height", [False, True])
+def test_limits_bound_what_moves(keep_height: bool) -> None:
+    """No point of a loop goes further than its limit by all waves together, nor a ring's middle, nor its axis."""
+    tables = sketch(2, move=0.25, tilt=4.0)
+    tables["surface"]["boundary"][0]["adjust"] = {"points": 0.4, "keep_height": keep_height}
+    freedom = Freedom(table_of(tables))
+    fine = np.arange(2000) / 2000
+    drawn = boundary_loops(freedom.table, HERE)[0].at(fine)
+    rng = np.random.default_rng(0)
+    farthest = []
+    for _ in range(12):
+        shares = rng.normal(size=freedom.count) * rng.integers(0, 2, freedom.count)
+        # at the limit of each part
+        shares[:-6] /= freedom.used(np.append(shares[:-6], np.zeros(6)))
+        shares[-6:-3] /= max(
+            1e-9, freedom.used(np.append(np.append(np.zeros(freedom.count - 6), shares[-6:-3]), np.zeros(3)))
+        )
+        shares[-3:] /= max(1e-9, freedom.used(np.append(np.zeros(freedom.count - 3), shares[-3:])))
+        changed = freedom.changed(shares)
+        away = np.linalg.norm(boundary_loops(changed, HERE)[0].at(fine)[:, None] - drawn[::10], axis=2).min(0)
+        farthest.append(away.max())
+        ring = changed.boundary[1].circle
+        assert ring is not None
+        assert np.linalg.norm(np.array(ring.center) - (0, 0, 2)) < 0.25 * (1 + 1e-9)
+        assert np.degrees(np.arccos(min(1.0, ring.normal[2]))) < 4 * (1 + 1e-6)
+    assert 0.3 < max(farthest) <= 0.4
+
+
+@pytest.mark.slow
+def test_a_limit_that_is_reached_holds() -> None:
+    """The sketch takes 0.11 m where it may move by 0.4: with a limit of 0.09 m it closes in another way."""
+    tables = sketch(1)
+    tables["surface"]["boundary"][0]["adjust"] = {"points": 0.09}
+    adjusted, _ = closed(tables)
+    assert 0.085 < adjusted.figures["moved_max"] <= 0.09
+
+
 def of_volume(tables: dict[str, Any], mean_curvature: float) -> dict[str, Any]:
     """The same film, held by its volume."""
     film = find_film(boundary_loops(table_of(tables), HERE), mean_curvature, tolerance=5e-2).equilibrium.film

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.optimize import lsq_linear
 from scipy.spatial import cKDTree
 
 from lamella.errors import InputError
@@ -23,6 +22,7 @@ from lamella.network.closing_steps import CLOSES
 from lamella.network.element_lattice import Lattice, choose_lattice
 from lamella.network.film_net import FilmNet
 from lamella.network.holonomy import around_holes, holonomies
+from lamella.network.least_squares_within import least_squares_within
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.progress import Progress, patient
 from lamella.surface.boundary.curve import Loop
@@ -356,10 +356,14 @@ class _Search:
         system = np.vstack([WEIGHT * rates, np.eye(len(now))])
         middle = np.zeros(len(now)) if near is None else np.append(near, 0.0)
         right = np.concatenate([WEIGHT * (wanted + rates @ now), middle])
-        solved = lsq_linear(system, right, bounds=(-1.0, 1.0), method="bvls")
-        change = np.asarray(solved.x, float) - now
+        limited = self.films.freedom.limits
+        limits = np.zeros((len(limited) + 1, 3, len(now)))
+        limits[:-1, :, :-1] = limited
+        limits[-1, 0, -1] = 1
+        found = least_squares_within(system, right, limits)
+        change = found - now
         change[-1] *= SPACING
-        return change, float(solved.cost)
+        return change, float(((system @ found - right) ** 2).sum() / 2)
 
     def _shortened(self, net: FilmNet, change: Floats) -> Floats:
         """A change no longer than the linear picture bears."""
@@ -373,7 +377,7 @@ class _Search:
     def _tell(self, aim: _Aim) -> None:
         self.progress(
             f"  {self.steps} steps: misses up to {_worst(aim.misses):.2e} cells, parameters up to "
-            f"{100 * np.abs(aim.net.shares).max(initial=0.0):.0f} % of what they may change"
+            f"{100 * self.films.freedom.used(aim.net.shares):.0f} % of what they may change"
         )
 
 

@@ -1,5 +1,6 @@
 """Where the cells of a net are much larger than elsewhere: a cell edge is l0 / (sqrt2 mu), and mu is small where the
-surface is nearly umbilic, in planar regions above all."""
+surface is nearly umbilic, in planar regions above all. And where they are small: where a curve ends just behind another
+one, or runs along the rim."""
 
 from __future__ import annotations
 
@@ -36,6 +37,13 @@ class LargeCell(NamedTuple):
     ratio: float
 
 
+class SmallCell(NamedTuple):
+    """A place where cells are small: point (3,), m, and the length of the cell edge there, m."""
+
+    point: Floats
+    edge: float
+
+
 def large_cells(network: Network, most: float = MOST_RATIO) -> tuple[int, tuple[LargeCell, ...]]:
     """Cell edges more than `most` times as long as the median of their family, and where the longest of them are.
 
@@ -57,13 +65,43 @@ def large_cells(network: Network, most: float = MOST_RATIO) -> tuple[int, tuple[
             median[family] = np.median(edges[family])
     ratio = edges / median
     large = np.flatnonzero(ratio > most)
-    left = large[np.argsort(-ratio[large], kind="stable")]
-    begin, end = (network.node_points[network.stop_nodes[first[left] + k]] for k in (0, 1))
-    middle = (begin + end) / 2
-    places: list[LargeCell] = []
-    for k, number in enumerate(left.tolist()):
-        if all(np.linalg.norm(middle[k] - told.point) > APART * told.edge for told in places):
-            places.append(LargeCell(middle[k], float(edges[number]), float(ratio[number])))
+    order = large[np.argsort(-ratio[large], kind="stable")]
+    middle = _middles(network, first)
+    places = _apart(middle, order, APART * edges)
+    return len(large), tuple(LargeCell(middle[k], float(edges[k]), float(ratio[k])) for k in places)
+
+
+def small_cells(network: Network, least: float) -> tuple[int, tuple[SmallCell, ...]]:
+    """Cell edges shorter than `least` (m), and where the shortest of them are.
+
+    Returns
+    -------
+    count : int
+        Number of such cell edges.
+    places : tuple of SmallCell
+        The shortest one first; the others are the shortest ones that are not next to one told before.
+    """
+    owner, edges = network.stop_owner, network.cell_edges
+    first = np.flatnonzero(owner[1:] == owner[:-1])
+    small = np.flatnonzero(edges < least)
+    order = small[np.argsort(edges[small], kind="stable")]
+    middle = _middles(network, first)
+    apart = np.full(len(edges), APART * float(np.median(edges)))
+    return len(small), tuple(SmallCell(middle[k], float(edges[k])) for k in _apart(middle, order, apart))
+
+
+def _middles(network: Network, first: NDArray[np.int64]) -> Floats:
+    """Middle of the chord of each cell edge, m, by the stops where these begin."""
+    begin, end = (network.node_points[network.stop_nodes[first + k]] for k in (0, 1))
+    return np.asarray((begin + end) / 2)
+
+
+def _apart(middle: Floats, order: NDArray[np.int64], apart: Floats) -> list[int]:
+    """The first edges of an order, each further from those before it than `apart` of them."""
+    places: list[int] = []
+    for number in order.tolist():
+        if all(np.linalg.norm(middle[number] - middle[one]) > apart[one] for one in places):
+            places.append(number)
             if len(places) == MOST_PLACES:
                 break
-    return len(large), tuple(places)
+    return places

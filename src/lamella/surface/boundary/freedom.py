@@ -20,21 +20,31 @@ if TYPE_CHECKING:
 
 # points of a loop for each full wave along it
 POINTS_A_WAVE = 3
+# places along a loop where its waves together are limited, and to what share of the limit: the curve through shifted
+# points goes a little further between them
+PLACES, NEAR_LIMIT = 144, 0.98
 # where a project names no freedom: of a loop's size
 USUAL = 0.05
 
 
 @dataclass(frozen=True)
 class _Part:
-    """Some of the parameters: what they are, and how the table follows from their values."""
+    """Some of the parameters: what they are, how far they go, and how the table follows from their values.
+
+    With values `ranges` x what is limited are the lengths of the vectors `limits` (n, 3, p) x: 1 at most.
+    """
 
     name: str
     ranges: Floats
+    limits: Floats
     apply: Callable[[FormFoundTable, Floats], FormFoundTable]
 
 
 class Freedom:
-    """The parameters of a boundary that may change, each within +-1 of its range.
+    """The parameters of a boundary that may change, as shares of their ranges.
+
+    A range is a limit of what moves: of the shift of a loop, of the turn about whatever axis, of the shift of every
+    point of a loop by all its waves together.
 
     Parameters
     ----------
@@ -49,6 +59,8 @@ class Freedom:
     names : tuple of str
         What may change.
     count : int
+    limits : (n, 3, count)
+        Shares x are allowed where |limits x| <= 1.
     """
 
     def __init__(self, table: FormFoundTable) -> None:
@@ -58,10 +70,20 @@ class Freedom:
         for index, loop in enumerate(table.boundary):
             parts += _of_loop(index, loop, usual=not given)
         if table.adjust_mean_curvature:
-            parts.append(_Part("mean curvature", np.array([table.adjust_mean_curvature]), _with_curvature))
+            parts.append(_part("mean curvature", table.adjust_mean_curvature, 1, _with_curvature))
         self._parts = parts
         self.names = tuple(part.name for part in parts)
         self.count = sum(len(part.ranges) for part in parts)
+        self.limits = np.zeros((sum(len(part.limits) for part in parts), 3, self.count))
+        row = column = 0
+        for part in parts:
+            n, _, p = part.limits.shape
+            self.limits[row : row + n, :, column : column + p] = part.limits
+            row, column = row + n, column + p
+
+    def used(self, shares: Floats) -> float:
+        """The largest share of a limit that shares (count,) of the ranges take."""
+        return float(np.linalg.norm(self.limits @ shares, axis=1).max(initial=0.0))
 
     def changed(self, shares: Floats) -> FormFoundTable:
         """The table with parameters at shares (count,) of their ranges."""
@@ -115,25 +137,31 @@ def _of_loop(index: int, loop: BoundaryTable, usual: bool) -> list[_Part]:
     parts = []
     # an even wave is a shift
     first = 1 if move else 0
-    if points and loop.points is not None:
-        waves = _waves(len(loop.points))
-        ranges = np.full(axes * (len(waves) - first), points)
-        parts.append(_Part(f"points of {loop.name!r}", ranges, _waved(index, waves[first:])))
-    elif points:
-        ranges = np.full(axes * (2 * MOST_WAVES + 1 - first), points)
-        parts.append(_Part(f"points of {loop.name!r}", ranges, _curve_waved(index, first)))
+    if points:
+        apply = _curve_waved(index, first)
+        most = MOST_WAVES
+        if loop.points is not None:
+            most = min(MOST_WAVES, len(loop.points) // POINTS_A_WAVE)
+            apply = _waved(index, wave_rows(np.arange(len(loop.points)) / len(loop.points), most)[first:])
+        # at some places between the points too
+        rows = wave_rows(np.arange(PLACES) / PLACES, most)[first:] / NEAR_LIMIT
+        limits = np.zeros((PLACES, 3, len(rows), axes))
+        for axis in range(axes):
+            limits[:, axis, :, axis] = rows.T
+        ranges = np.full(axes * len(rows), points)
+        parts.append(_Part(f"points of {loop.name!r}", ranges, limits.reshape(PLACES, 3, -1), apply))
     if move:
-        parts.append(_Part(f"place of {loop.name!r}", np.full(axes, move), _placed(index)))
+        parts.append(_part(f"place of {loop.name!r}", move, axes, _placed(index)))
     if scale:
-        parts.append(_Part(f"size of {loop.name!r}", np.array([scale]), _sized(index)))
+        parts.append(_part(f"size of {loop.name!r}", scale, 1, _sized(index)))
     if tilt:
-        parts.append(_Part(f"tilt of {loop.name!r}", np.full(3, np.radians(tilt)), _tilted(index)))
+        parts.append(_part(f"tilt of {loop.name!r}", np.radians(tilt), 3, _tilted(index)))
     return parts
 
 
-def _waves(points: int) -> Floats:
-    """Even, and one to four full waves along a loop of points, (2 waves + 1, points), each 1 at most."""
-    return wave_rows(np.arange(points) / points, min(MOST_WAVES, points // POINTS_A_WAVE))
+def _part(name: str, most: float, count: int, apply: Callable[[FormFoundTable, Floats], FormFoundTable]) -> _Part:
+    """Components of one vector, at most so long."""
+    return _Part(name, np.full(count, most), np.eye(3, count)[None], apply)
 
 
 def _replaced(table: FormFoundTable, index: int, loop: BoundaryTable) -> FormFoundTable:
