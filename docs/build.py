@@ -266,10 +266,10 @@ def _figures(summary: dict[str, Any]) -> Iterator[str]:
     yield f"| cell edge, least / median / most | {edges} m |"
     yield f"| largest kg, tg | {m['geodesic_curvature_max']:.3f}, {m['geodesic_torsion_max']:.3f} 1/m |"
     stresses = " / ".join(
-        f"{m[f'stress_{kind}_max'] / 1e6:.1f}" for kind in ("bending", "torsion", "helix", "restraint")
+        f"{m[f'stress_{kind}_max'] / 1e6:.1f}" for kind in ("bending", "torsion", "helix", "restraint", "layer")
     )
-    yield f"| bending / torsion / helix / restraint, largest | {stresses} MPa |"
-    yield f"| utilisation, largest | {m['utilisation_max']:.2f} |"
+    yield f"| bending / torsion / helix / restraint / layers beside, largest | {stresses} MPa |"
+    yield f"| utilisation, largest; at slots | {m['utilisation_max']:.2f}; {m['utilisation_net_section_max']:.2f} |"
     mass = f"{f['mass']:.4g} kg ({f['surface_weight']:.3g} kg/m2)"
     yield f"| parts, mass, sheets | {f['parts']} parts, {mass}, {f['sheets']} sheets |"
 
