@@ -86,7 +86,6 @@ def loops_of(text: str) -> tuple[Loop, ...]:
         (NEXT + "points = 7\n", 7, ["surface.boundary[1].points: 7 is not a list of points"]),
         (NEXT + "file = 'a.dwg'\n", 7, ["'a.dwg' is no file that can be read", "ends in .3dm, .dxf, .json"]),
         (NEXT + "file = 'a.dxf'\nunit = 'yd'\n", 8, ["surface.boundary[1].unit: 'yd' is not one of 'm', 'mm'"]),
-        (HEAD + RING + "unit = 'mm'\n", 5, ["surface.boundary[0].unit: unit goes with file", "in metres"]),
         (HEAD + RING + "layer = 'a'\n", 5, ["surface.boundary[0].layer: layer goes with file"]),
         (HEAD + RING + "interpolation = 'spline'\n", 5, ["surface.boundary[0].interpolation: interpolation goes with"]),
         (HEAD + RING + "slide = {point = [0, 0, 0]}\n", 5, ["surface.boundary[0].slide: point is given", "normal ="]),

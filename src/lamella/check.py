@@ -20,6 +20,7 @@ from lamella.progress import Progress, silent
 from lamella.project import FormFoundTable, MeshTable, Project
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
+from lamella.unit_doubt import unit_first
 from lamella.wording import counted
 
 # tolerance of the elements on which a surface is looked for
@@ -121,10 +122,11 @@ def _laid(project: Project, surface: Surface[Any], progress: Progress) -> tuple[
     """Cells and nodes of a net, about, without tracing it."""
     from lamella.weaving import lay, lay_traced
 
-    if is_traced(surface, project.network.pattern):
-        lines = lay_traced(surface, project)
-        return lines.cells, lines.estimated_nodes
-    lattice = lay(surface, project, None, progress).lattice
+    with unit_first(surface):
+        if is_traced(surface, project.network.pattern):
+            lines = lay_traced(surface, project)
+            return lines.cells, lines.estimated_nodes
+        lattice = lay(surface, project, None, progress).lattice
     return lattice.cells, lattice.estimated_nodes
 
 

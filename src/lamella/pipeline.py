@@ -28,6 +28,7 @@ from lamella.surface.closed_forms import CLOSED_FORMS
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
+from lamella.unit_doubt import unit_first
 
 if TYPE_CHECKING:
     from lamella.network.adjust import Adjusted
@@ -316,10 +317,11 @@ def complete(project: Project, planned: Planned, clock: Clock, *, until: str | N
             clock.start(
                 f"network: {'lines from even seeds' if traced else 'umbilics, isothermic coordinates, lamellas'}"
             )
-            if traced:
-                woven: ElementNetwork | TracedNetwork = trace(surface, project, progress)
-            else:
-                woven = weave(lay(surface, project, adjusted.step if adjusted else None, progress), project)
+            with unit_first(surface):
+                if traced:
+                    woven: ElementNetwork | TracedNetwork = trace(surface, project, progress)
+                else:
+                    woven = weave(lay(surface, project, adjusted.step if adjusted else None, progress), project)
             network = woven.network
             figures["network"] = f = summary.network_summary(network, woven.requested) | woven.describe()
             if adjusted:

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, field_validator, model_validator
 
 from lamella.project_values import (
+    METRES,
     Direction,
     Name,
     Point,
@@ -200,7 +201,10 @@ class BoundaryTable(Table):
         examples=["oculus"],
     )
     unit: Unit | None = Field(
-        default=None, description="Unit of the file; the one in its header when not given.", examples=["mm"]
+        default=None,
+        description="Unit of the file, the one in its header when not given; or of points, circle and part, m when not "
+        "given.",
+        examples=["mm"],
     )
     part: Annotated[tuple[PartTable, ...], Field(strict=False)] | None = Field(
         default=None,
@@ -238,10 +242,9 @@ class BoundaryTable(Table):
                     f'write "interpolation": "{self.interpolation}" beside the points in the file',
                     "interpolation",
                 )
-        for key in ("layer", "id", "unit"):
+        for key in ("layer", "id"):
             if getattr(self, key) is not None and self.file is None:
-                remedy = "lengths here are in metres" if key == "unit" else f"leave {key} out"
-                raise Refusal(f"{key} goes with file", remedy, key)
+                raise Refusal(f"{key} goes with file", f"leave {key} out", key)
         slides = self.slide is not None or any(part.slide is not None for part in self.part or ())
         if slides:
             for key in ("adjust", "place"):
@@ -253,3 +256,39 @@ class BoundaryTable(Table):
         if self.slide is not None and self.part is not None:
             raise Refusal("a loop of parts slides by its parts", "move slide into the parts that slide", "slide")
         return self
+
+    def in_metres(self) -> BoundaryTable:
+        """The same curve with points, circle, parts and sliding planes in metres; of a file as it is."""
+        if self.unit is None or self.file is not None:
+            return self
+        scale = METRES[self.unit]
+        changed = {
+            "points": _scaled(self.points, scale),
+            "circle": _scaled_keys(self.circle, ("center", "radius"), scale),
+            "slide": _scaled_keys(self.slide, ("point",), scale),
+            "part": self.part and tuple(_scaled_part(part, scale) for part in self.part),
+        }
+        return self.model_copy(update=changed | {"unit": None})
+
+
+def _scaled(value: Any, scale: float) -> Any:
+    """Numbers, and lists of them, times a factor; None stays None."""
+    if isinstance(value, tuple):
+        return tuple(_scaled(one, scale) for one in value)
+    return None if value is None else value * scale
+
+
+def _scaled_keys(table: Any, keys: tuple[str, ...], scale: float) -> Any:
+    """A table with the lengths of some of its keys times a factor; None stays None."""
+    if table is None:
+        return None
+    return table.model_copy(update={key: _scaled(getattr(table, key), scale) for key in keys})
+
+
+def _scaled_part(part: PartTable, scale: float) -> PartTable:
+    changed = {
+        "points": _scaled(part.points, scale),
+        "arc": _scaled_keys(part.arc, ("start", "middle", "end"), scale),
+        "slide": _scaled_keys(part.slide, ("point",), scale),
+    }
+    return part.model_copy(update=changed)

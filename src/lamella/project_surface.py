@@ -28,7 +28,7 @@ MOST_ELONGATED = 10_000
 # of Enneper's surface: |g| = radius^(order - 1) on the rim, the metric there is 1 + |g|^2 times that in the middle
 MOST_ENNEPER_GROWTH = 100
 MOST_LOOPS = 50
-MESH_FILES = (".obj", ".ply", ".stl", ".3dm")
+MESH_FILES = (".obj", ".off", ".ply", ".stl", ".3dm")
 
 
 class _WithHeight(Table):
@@ -264,7 +264,8 @@ class FormFoundTable(Table):
                     f"boundary[{names.index(name)}] and boundary[{k}] are both called {shown(name)}",
                     "give each loop a name of its own",
                 )
-        return tuple(loop.model_copy(update={"name": name}) for loop, name in zip(loops, names, strict=True))
+        named = (loop.model_copy(update={"name": name}) for loop, name in zip(loops, names, strict=True))
+        return tuple(loop.in_metres() for loop in named)
 
     @model_validator(mode="after")
     def _possible(self) -> FormFoundTable:
@@ -295,12 +296,13 @@ class MeshTable(Table):
     kind: Literal["mesh"]
     file: Annotated[str, file_name(MESH_FILES)] = Field(
         max_length=1000,
-        description="Mesh of triangles or quads (.obj, .ply, .stl or .3dm), relative to the project file.",
+        description="Mesh of triangles or quads (.obj, .off, .ply, .stl or .3dm), relative to the project file.",
         examples=["surface.obj"],
     )
     unit: Unit | None = Field(
         default=None,
-        description="Unit of the file; when not given m, of a .3dm file the one in its header.",
+        description="Unit of the file; when not given m, of a .3dm file the one in its header. A file of a size "
+        "that no building has is refused where it is not given.",
         examples=["mm"],
     )
     mean_curvature: Literal["fit", "varying"] | float = number(

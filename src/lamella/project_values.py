@@ -123,6 +123,8 @@ Name = Annotated[str, AfterValidator(one_line)]
 """Text for people, which goes into files and messages: without control characters."""
 
 Unit = Literal["m", "mm", "cm", "dm", "ft", "in"]
+METRES: dict[str, float] = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "ft": 0.3048, "in": 0.0254}
+"""Metres per unit, by the names a project file uses."""
 
 
 def list_of_tables(value: Any, name: str, most: int) -> Any:

@@ -108,15 +108,16 @@ def test_asymptotic_lines_of_a_hyperbolic_paraboloid(tmp_path: Path) -> None:
 
 
 def test_lamellas_less_straight_than_promised_are_told_of(tmp_path: Path) -> None:
-    """Off by up to two thousandths of the curvature scale, says docs/getting-started.md, and so does the ruler."""
-    for n, warned in ((20, True), (80, False)):
+    """Off by up to 2e-3 of the curvature scale, says docs/getting-started.md: no less than the ruler finds."""
+    for n, warned in ((8, True), (40, False)):
         write_grid(tmp_path / "m.obj", hypar, (-2, 2), (-2, 2), n, n)
         results = run_on(tmp_path / "m.obj", normal_curvature=0.0, cells=10)
         told, scale = results.summary["network"], results.summary["surface"]["curvature_scale"]
         messages = [m for m in results.summary["warnings"] if "the normal curvature of the lamellas" in m]
         assert bool(messages) == warned == (told["normal_curvature_deviation_max"] > 2e-3 * scale)
         figures = ruled(results.network)
-        assert (figures["normal_curvature_error_p95"] > 1e-3 * figures["curvature_scale"]) == warned
+        assert figures["normal_curvature_error_p95"] <= told["normal_curvature_deviation_p95"]
+        assert warned or figures["normal_curvature_error_p95"] < 1e-3 * figures["curvature_scale"]
         if warned:
             most, usual = (told[f"normal_curvature_deviation_{key}"] for key in ("max", "p95"))
             assert f"off by up to {most:.2g} 1/m, {most / scale:.1e} of the curvature scale" in messages[0]

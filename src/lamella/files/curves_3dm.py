@@ -11,8 +11,8 @@ import rhino3dm
 from lamella.files.rhino_file import TOLERANCE, RhinoFile
 from lamella.files.text import require_finite
 from lamella.files.whole import write_whole
+from lamella.project_values import METRES
 from lamella.surface.boundary.curve import Loop
-from lamella.surface.boundary.units import METRES
 
 UNITS = {"m": "Meters", "mm": "Millimeters", "cm": "Centimeters", "dm": "Decimeters", "ft": "Feet", "in": "Inches"}
 """Names of openNURBS."""

@@ -18,10 +18,11 @@ from lamella.projection.unknowns import Floats
 from lamella.surface.imported.raw_mesh import Polygons
 from lamella.surface.imported.read_3dm import METRES as RHINO_METRES
 from lamella.surface.imported.read_3dm import read_3dm
-from lamella.surface.imported.read_mesh import LARGEST_FILE, LARGEST_SIZE, SMALLEST_SIZE, check_polygons
+from lamella.surface.imported.read_mesh import LARGEST_FILE, LARGEST_SIZE, check_polygons
 from lamella.surface.imported.read_obj import read_obj
 from lamella.surface.imported.read_ply import read_ply
 from lamella.surface.imported.units import METRES, name_of
+from lamella.unit_doubt import SMALLEST
 from lamella.wording import counted, one_line
 
 READERS = {".obj": read_obj, ".ply": read_ply, ".3dm": read_3dm}
@@ -137,7 +138,7 @@ def _check_size(mesh: QuadMesh, metres: float) -> tuple[str, ...]:
             f"the mesh is {size:,.0f} m large in {name_of(metres)} (at most {LARGEST_SIZE:,.0f} m)",
             f"say its unit: with --unit mm it is {size / metres * 1e-3:,.4g} m large",
         )
-    return (f"the mesh is {size:.3g} m large: is its unit, {name_of(metres)}, right?",) if size < SMALLEST_SIZE else ()
+    return (f"the mesh is {size:.3g} m large: is its unit, {name_of(metres)}, right?",) if size < SMALLEST else ()
 
 
 def _require_connected(mesh: QuadMesh) -> None:

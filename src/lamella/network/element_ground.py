@@ -45,6 +45,9 @@ class ElementGround:
         there = self.surface.measured(where)
         return there.mean_curvature, there.deviator
 
+    def uncertain(self, where: Places) -> Floats:
+        return self.surface.uncertain(where)
+
     def reach(self, where: Places) -> Floats:
         return np.full(len(where), self._STEP)
 
@@ -113,6 +116,7 @@ class ElementGround:
         return loop, start, span, lengths
 
     def rim_places(self, where: Places) -> RimPlaces:
+        where = self._on_rim_elements(where)
         barycentric = _barycentric(where.local)
         beyond = self._connectivity.neighbours[where.element[:, None], (np.arange(3) + 1) % 3]
         edge = (np.where(beyond < 0, barycentric, np.inf).argmin(1) + 1) % 3
@@ -124,6 +128,21 @@ class ElementGround:
         tangent = along[:, :1] * first + along[:, 1:] * second
         tangent /= np.linalg.norm(tangent, axis=1)[:, None]
         return RimPlaces(loop[vertex], start[vertex] + share * span[vertex], tangent)
+
+    def _on_rim_elements(self, where: Places) -> Places:
+        """The same places, those at a vertex of the rim in the element whose rim edge begins there."""
+        connectivity = self._connectivity
+        inside = (connectivity.neighbours[where.element] >= 0).all(1)
+        if not inside.any():
+            return where
+        row = np.full(int(connectivity.faces.max()) + 1, -1)
+        row[connectivity.rim_nodes[:, 0]] = np.arange(len(connectivity.rim_elements))
+        element, local = where.element.copy(), where.local.copy()
+        corner = _barycentric(local[inside]).argmax(1)
+        at = row[connectivity.faces[element[inside], corner]]
+        element[inside] = np.where(at >= 0, connectivity.rim_elements[at], element[inside])
+        local[inside] = np.where((at >= 0)[:, None], _CORNERS[connectivity.rim_edges[at]], local[inside])
+        return Places(element, local)
 
     def _around(self, loop: int, count: int) -> Places:
         rim = element_rims(self._connectivity, self.surface.nodes, self.surface.rim_loop)[loop]

@@ -78,6 +78,9 @@ class Ground(Protocol):
     def measured(self, where: Places) -> tuple[Floats, Complexes]:
         """H and deviator at n places from positions alone, 1/m, each (n,), in the frames of `look`."""
 
+    def uncertain(self, where: Places) -> Floats:
+        """How far normal curvatures at n places may be off those of the surface that is meant, 1/m, (n,)."""
+
     def settle(self, where: Places) -> Places:
         """The same points of the surface, seen from the elements they are in."""
 

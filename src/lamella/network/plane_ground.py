@@ -46,6 +46,9 @@ class PlaneGround:
         look = self.look(where)
         return look.mean, look.deviator
 
+    def uncertain(self, where: Places) -> Floats:
+        return np.zeros(len(where))
+
     def reach(self, where: Places) -> Floats:
         return np.full(len(where), self._size / PARTS)
 

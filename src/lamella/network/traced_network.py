@@ -65,8 +65,8 @@ class TracedNetwork:
     inner_ends : int
         Lamellas' ends inside the surface, where directions stop being real.
     missed : (float, float)
-        Difference of the normal curvature from the one asked for, by the surface's second derivatives alone, at most
-        and at 95 % of the samples, 1/m.
+        Bound of the difference of the normal curvature from the one of the project, at most and at 95 % of the samples,
+        1/m: what the surface's second derivatives miss, and how far these may be off those of the surface a mesh means.
     scale : float
         Curvature scale of the surface, 1/m.
     """
@@ -109,7 +109,7 @@ class TracedNetwork:
         most, usual = self.missed
         if wanted is not None and most > PROMISED * self.scale:
             yield (
-                f"the normal curvature of the lamellas, measured on the surface, is off by up to {most:.2g} 1/m, "
+                f"the normal curvature of the lamellas is off by up to {most:.2g} 1/m, "
                 f"{most / self.scale:.1e} of the curvature scale (at 95 % of the samples by {usual / self.scale:.1e}; "
                 f"limit {PROMISED:g}): a finer and smoother mesh, or a smaller surface.tolerance where there "
                 "are vertices enough for it, tells directions better"
@@ -244,7 +244,7 @@ def _network(
     darboux = Darboux(look.mean + turned.real, turning(tangents, sideways, s, offsets, closed), -turned.imag)
     # lines follow the continuous shape operator; what the positions alone say of them is told
     mean, deviator = ground.measured(where)
-    missed = np.abs(mean - look.mean + ((deviator - look.deviator) * heading**2).real)
+    missed = np.abs(mean - look.mean + ((deviator - look.deviator) * heading**2).real) + ground.uncertain(where)
     node_sample = np.empty(len(kinds), np.int64)
     node_sample[node[::-1]] = stop_sample[::-1]
     faces = faces_of(

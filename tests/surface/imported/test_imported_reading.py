@@ -133,7 +133,7 @@ def test_3dm_hidden_objects_and_layers_are_left_out(read):
             attributes.Visible, attributes.LayerIndex = visible, layer_number
             model.Objects.AddMesh(mesh, attributes)
 
-    mesh = read("a.3dm", rhino_bytes([("roof", POINTS, FACES)], extra=hide))
+    mesh = read("a.3dm", rhino_bytes([("roof", POINTS, FACES)], extra=hide), "m")
     assert len(mesh.faces) == len(FACES)
     assert "2 hidden objects left out" in mesh.notes
 
@@ -182,12 +182,22 @@ def test_units(read):
     text = obj_text(1000 * POINTS, FACES)
     np.testing.assert_allclose(read("a.obj", text, "mm").points, POINTS, rtol=1e-14, atol=1e-14)
     np.testing.assert_allclose(read("a.obj", obj_text(POINTS, FACES), "ft").points, 0.3048 * POINTS)
-    assert any("taken as metres" in note for note in read("a.obj", text).notes)
-    assert any("is its unit, mm, right" in note for note in read("a.obj", obj_text(POINTS, FACES), "mm").notes)
+    assert any("taken as metres" in note for note in read("a.obj", obj_text(POINTS, FACES)).notes)
+    for factor, unit in ((1200, "m"), (1000, "m")):
+        with pytest.raises(InputError) as caught:
+            read("a.obj", obj_text(factor * POINTS, FACES))
+        assert caught.value.where == "surface.unit"
+        assert f'unit = "{unit}"' in caught.value.remedy
+        assert len(read("a.obj", obj_text(factor * POINTS, FACES), unit).points) == len(POINTS)
     with pytest.raises(InputError, match=r"surface.unit: unit 'furlong' is not known\n.*mm, cm"):
         read("a.obj", text, "furlong")
-    with pytest.raises(InputError, match="the file says that its unit is mm, the project says m"):
-        read("a.3dm", rhino_bytes([("a", POINTS, FACES)]), "m")
+    # a metre drawn where the file says millimetres: the project's word counts, and is the remedy
+    with pytest.raises(InputError) as caught:
+        read("a.3dm", rhino_bytes([("a", POINTS, FACES)]))
+    assert 'unit = "m"' in caught.value.remedy
+    assert any(
+        "not mm as the file says" in note for note in read("a.3dm", rhino_bytes([("a", POINTS, FACES)]), "m").notes
+    )
     assert read("a.3dm", rhino_bytes([("a", 1000 * POINTS, FACES)], "None"), "mm").points.max() == pytest.approx(1)
     with pytest.raises(InputError, match=r'9,000 m large .*in mm it would be 9 m\n.*unit = "mm"'):
         read("a.obj", obj_text(9000 * POINTS, FACES))

@@ -11,6 +11,7 @@ from lamella.errors import InputError
 from lamella.project import LEAST_LENGTH
 from lamella.surface.boundary.crossings import Touch, closest_touch
 from lamella.surface.boundary.curve import Loop, Slide, place
+from lamella.surface.boundary.knots import is_knotted
 
 MOST_SIZE = 5000.0
 """m. No gridshell is that large, a drawing in millimetres is."""
@@ -63,6 +64,12 @@ def check_loops(loops: Sequence[Loop]) -> None:
     touch = closest_touch(loops, LEAST_DISTANCE)
     if touch:
         raise _touching(loops, touch)
+    if len(loops) == 1 and is_knotted(loops[0]):
+        raise InputError(
+            f"the loop {loops[0].name!r} is knotted: no surface without holes that does not cross itself spans a knot",
+            "undo the knot: let the curve pass over itself where it passes below, or draw it without the crossing",
+            _key(0),
+        )
 
 
 def _key(k: int) -> str:

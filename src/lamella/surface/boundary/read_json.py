@@ -23,11 +23,11 @@ import orjson
 from lamella.byte_order import unmarked
 from lamella.errors import InputError
 from lamella.project import Refusal, read_points
+from lamella.project_values import METRES
 from lamella.surface.boundary.file_curves import CurveFile, FileCurve
 from lamella.surface.boundary.pieces import lines
 from lamella.surface.boundary.point_list import clean_points
 from lamella.surface.boundary.splines import closed_spline
-from lamella.surface.boundary.units import METRES
 from lamella.wording import cut, shown
 
 _REMEDY = 'write {"unit": "m", "curves": {"NAME": {"points": [[x, y, z], ...]}}}'

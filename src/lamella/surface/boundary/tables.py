@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lamella.errors import InputError
+from lamella.project_values import METRES
 from lamella.surface.boundary.arcs import arc_through, circle
 from lamella.surface.boundary.checks import check_loops
 from lamella.surface.boundary.choosing import choose_loop
@@ -21,8 +22,9 @@ from lamella.surface.boundary.read_dxf import read_dxf
 from lamella.surface.boundary.read_json import read_json
 from lamella.surface.boundary.smooth_polyline import smooth_curve, vertices
 from lamella.surface.boundary.splines import closed_spline, open_spline
-from lamella.surface.boundary.units import METRES, metres_per_unit
+from lamella.surface.boundary.units import metres_per_unit, name_of
 from lamella.surface.boundary.waves import waved
+from lamella.unit_doubt import SMALLEST, refuse_doubtful
 
 if TYPE_CHECKING:
     from lamella.project import BoundaryTable, FormFoundTable, PartTable, PlaceTable, SlideTable
@@ -105,7 +107,7 @@ def _as_drawn(table: BoundaryTable, folder: Path, where: str) -> Loop:
     else:
         # numbers of a damaged file may be of any size; what comes out of them is looked at afterwards
         with np.errstate(all="ignore"):
-            pieces, remarks = _from_file(table, folder, f"{where}.file")
+            pieces, remarks = _from_file(table, folder, where)
     sliding = () if table.slide is None else (_sliding(table.slide, 0, pieces.count),)
     return make_loop(table.name, pieces, sliding, remarks=remarks, where=where)
 
@@ -124,18 +126,19 @@ def _placed(loop: Loop, place: PlaceTable, where: str) -> Loop:
     return make_loop(loop.name, pieces, drawn=drawn, remarks=loop.remarks, where=where)
 
 
-def _from_file(table: BoundaryTable, folder: Path, where: str) -> tuple[Pieces, tuple[str, ...]]:
+def _from_file(table: BoundaryTable, folder: Path, table_key: str) -> tuple[Pieces, tuple[str, ...]]:
     """The curve of a file, m, and remarks on it."""
     assert table.file is not None
+    where = f"{table_key}.file"
     path = folder / table.file
     suffix = path.suffix.lower()
     if not path.is_file():
         raise InputError(f"{path}: no such file", "paths are relative to the project file's folder", where)
     try:
-        size = path.stat().st_size
-        if size > MOST_BYTES:
+        count = path.stat().st_size
+        if count > MOST_BYTES:
             raise InputError(
-                f"{path} has {size / 1e6:,.0f} MB; at most {MOST_BYTES / 1e6:g} MB of curves are read",
+                f"{path} has {count / 1e6:,.0f} MB; at most {MOST_BYTES / 1e6:g} MB of curves are read",
                 "save the boundary curves alone in a file of their own",
                 where,
             )
@@ -148,6 +151,11 @@ def _from_file(table: BoundaryTable, folder: Path, where: str) -> tuple[Pieces, 
         unit = metres_per_unit(table.unit, content.metres_per_unit, _HEADERS[suffix], where)
         chosen = choose_loop(content, table.layer, table.id, where, unit)
         pieces, remarks = chosen.pieces.transformed(unit, np.zeros(3)), chosen.remarks
+        size = pieces.extent
+        # a hole may be small
+        if table.unit is None:
+            outer = table_key.endswith("[0]")
+            refuse_doubtful("the curve", size if outer else max(size, SMALLEST), unit, name_of(unit), where)
         # curves of a .json say themselves how their points are joined
         corners = None if suffix == ".json" else vertices(pieces, table.interpolation, where)
         if corners is not None:

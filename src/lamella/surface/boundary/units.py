@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from lamella.errors import InputError
-
-METRES: dict[str, float] = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "ft": 0.3048, "in": 0.0254}
-"""Metres per unit, by the names a project file uses."""
+from lamella.project_values import METRES
 
 
 def metres_per_unit(asked: str | None, in_header: float | None, header: str, where: str) -> float:
@@ -34,3 +32,8 @@ def metres_per_unit(asked: str | None, in_header: float | None, header: str, whe
             f"the file does not say its unit ({header})", 'add unit = "mm", or the one it was drawn in, here', where
         )
     return in_header
+
+
+def name_of(metres: float) -> str:
+    """Name of a unit given in metres."""
+    return next((name for name, value in METRES.items() if abs(value / metres - 1) < 1e-9), f"{metres:g} m")

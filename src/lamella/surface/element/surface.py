@@ -78,6 +78,10 @@ class ElementSurface:
     constant: ClassVar[bool] = True
     """Whether the mean curvature is constant."""
 
+    def uncertain(self, places: Places) -> Floats:
+        """How far normal curvatures at n places may be off those of the surface that is meant, 1/m, (n,)."""
+        return np.zeros(len(places))
+
     @cached_property
     def rim_starts(self) -> Floats:
         """Where each boundary loop begins, (loops, 3), m."""

@@ -6,19 +6,37 @@ the shape operator is -dn of these, with its own mean curvature.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.geometry import smooth_normals
+from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.points import Floats
 
+# of a triangle of the mesh
+CORNERS = 3
 
+
+@dataclass(frozen=True)
 class VaryingSurface(ElementSurface):
-    """See `ElementSurface`; `mean_curvature` is the mean of H over the area, 1/m."""
+    """See `ElementSurface`; `mean_curvature` is the mean of H over the area, 1/m.
+
+    Attributes
+    ----------
+    vertices : (v, 3), optional
+        Of the mesh, m.
+    vertex_errors : (v,), optional
+        How far normal curvatures may be off those of the surface that the mesh means, 1/m.
+    """
+
+    vertices: Floats | None = None
+    vertex_errors: Floats | None = None
 
     constant: ClassVar[bool] = False
 
@@ -33,6 +51,13 @@ class VaryingSurface(ElementSurface):
 
     def _mean(self, uu: Floats, vv: Floats) -> Floats:
         return np.asarray((uu + vv) / 2)
+
+    def uncertain(self, places: Places) -> Floats:
+        """The largest error at the corners around each of n places, 1/m, (n,)."""
+        if self.vertices is None or self.vertex_errors is None:
+            return np.zeros(len(places))
+        _, near = cKDTree(self.vertices).query(self.at(places).position, k=min(CORNERS, len(self.vertices)))
+        return np.asarray(self.vertex_errors[near].reshape(len(places), -1).max(axis=1))
 
     def singular_orders(self) -> tuple[int, ...]:
         """None: only on surfaces of constant mean curvature are umbilics nodes of a net."""

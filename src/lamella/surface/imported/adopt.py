@@ -44,6 +44,11 @@ CRUMPLED = 0.8
 FAR = 0.05
 # typical distance between them, over the size, that the user is warned of
 OFF = 2e-4
+# the way that a mesh of varying mean curvature has
+KEEP = (
+    'to keep the mesh\'s own surface write mean_curvature = "varying", and under [network] kind = "principal" (lines '
+    "of principal curvature) or a normal_curvature"
+)
 
 
 def surface_of_table(table: MeshTable, folder: Path, progress: Progress = silent) -> ElementSurface:
@@ -156,7 +161,7 @@ def _not_constant(fit: Fit, limit: float, nearest: str = "") -> InputError:
         f"the mesh is not of constant mean curvature: H = {fit.mean_curvature:.4g} 1/m fits best, its vertices are "
         f"off by {fit.deviation:.2g} of the curvature scale {fit.scale:.4g} 1/m (limit {limit:g}, "
         f"largest {fit.deviation_max:.2g})",
-        f"mend the mesh, or raise deviation to take the nearest surface{nearest}",
+        f"{KEEP}; or mend the mesh, or raise deviation to take the nearest surface{nearest}",
         "surface.file",
     )
 
@@ -181,7 +186,7 @@ def _refuse_far(distance: Floats, here: Equilibrium) -> None:
         raise InputError(
             f"the nearest surface of H = {here.mean_curvature:.4g} 1/m is up to {distance.max():.4g} m away from the "
             f"mesh (limit {FAR * size:.4g} m, {FAR:.0%} of its size): the mesh does not mean it",
-            "give another mean_curvature, or mend the mesh",
+            f"{KEEP}; or give another mean_curvature, or mend the mesh",
             "surface.file",
         )
 
@@ -262,6 +267,6 @@ def _near(film: Film, mean_curvature: float, free: bool, progress: Progress) -> 
         f"({'; '.join(reasons)})",
         "give another mean_curvature (its sign is that of the mesh's normals, see the fit above), or mend the mesh"
         if not free
-        else "give mean_curvature, or mend the mesh",
+        else f"{KEEP}; or give mean_curvature, or mend the mesh",
         "surface.mean_curvature",
     )

@@ -19,6 +19,8 @@ from lamella.wording import loop_names
 MOST_BORDER_POINTS = 240
 # samples of a border's curve between two of its vertices
 SAMPLES = 24
+# Newton's steps from the nearest sample to a vertex's foot point on its curve
+FOOT_STEPS = 6
 
 
 def border_loops(mesh: CleanMesh, corner_angle: float) -> tuple[tuple[Loop, ...], tuple[str, ...]]:
@@ -47,7 +49,12 @@ def _parameters(points: Floats, loop: Loop) -> Floats:
     """Increasing parameters of border vertices on their loop."""
     fine = np.arange(SAMPLES * len(points)) / (SAMPLES * len(points))
     _, near = cKDTree(loop.at(fine)).query(points)
-    t = np.unwrap(fine[near], period=1.0)
+    t = fine[near]
+    # to the foot point itself: a vertex on the curve stays where it is
+    for _ in range(FOOT_STEPS):
+        step = ((points - loop.at(t)) * loop.tangent(t)).sum(1) / loop.length
+        t = t + np.clip(step, -1 / len(fine), 1 / len(fine))
+    t = np.unwrap(t, period=1.0)
     if t[-1] < t[0]:
         raise InputError("a border runs against its own curve", "mend the mesh's border", "surface.file")
     # where the curve passes near itself, or was smoothed, a vertex may be out of order: it goes between its neighbours

@@ -119,9 +119,9 @@ def vertex_curvatures(points: Floats, faces: Integers) -> tuple[Floats, Floats]:
     """Mean (1/m) and Gaussian (1/m^2) curvature at each vertex, (n,) each, one-sided at the border."""
     normals = vertex_normals(points, faces)
     mean, gaussian = np.zeros(len(points)), np.zeros(len(points))
-    for vertices, neighbours, present in _stencils(faces, len(points)):
+    for vertices, neighbours, present in stencils(faces, len(points)):
         normal = normals[vertices]
-        first, second = _tangents(normal)
+        first, second = tangents(normal)
         offset = points[neighbours] - points[vertices][:, None, :]
         same_side = present & (np.einsum("vkj,vj->vk", normals[neighbours], normal) > SAME_SIDE)
         # A crumpled mesh has no such neighbours; a wild value there shows in the deviation.
@@ -155,7 +155,7 @@ def _monomials(x: Floats, y: Floats) -> Floats:
     return np.stack((*terms, xx * xx, xx * xy, xx * yy, xy * yy, yy * yy), axis=2)
 
 
-def _tangents(normals: Floats) -> tuple[Floats, Floats]:
+def tangents(normals: Floats) -> tuple[Floats, Floats]:
     """Two unit vectors at right angles to each normal and to one another, (n, 3) each."""
     helper = np.eye(3)[least_axis(normals)]
     first = np.cross(helper, normals)
@@ -163,11 +163,13 @@ def _tangents(normals: Floats) -> tuple[Floats, Floats]:
     return first, np.cross(normals, first)
 
 
-def _stencils(faces: Integers, count: int) -> list[tuple[Integers, Integers, Booleans]]:
+def stencils(faces: Integers, count: int, neighbours: int = 0) -> list[tuple[Integers, Integers, Booleans]]:
     """Vertices in blocks (v,), vertices around them (v, k), and which of these are there rather than filling, (v, k).
 
-    A vertex is among those around it.
+    A vertex is among those around it; there are as many rings of them as have more than `neighbours`, by default
+    `NEIGHBOURS` or `COARSE_NEIGHBOURS`.
     """
+    fewest = neighbours or (NEIGHBOURS if count >= COARSE else COARSE_NEIGHBOURS)
     ends = find_edges(faces).ends
     rows, columns = np.concatenate((ends[:, 0], ends[:, 1])), np.concatenate((ends[:, 1], ends[:, 0]))
     ring = csr_array((np.ones(len(rows), dtype=np.int32), (rows, columns)), shape=(count, count))
@@ -178,7 +180,7 @@ def _stencils(faces: Integers, count: int) -> list[tuple[Integers, Integers, Boo
     for rings in range(2, MOST_RINGS + 1):
         reach = csr_array(reach @ ring)
         reach.data[:] = 1
-        enough = np.diff(reach.indptr) > (NEIGHBOURS if count >= COARSE else COARSE_NEIGHBOURS)
+        enough = np.diff(reach.indptr) > min(fewest, count - 1)
         if rings == MOST_RINGS:
             enough[:] = True
         if enough.any():

@@ -34,6 +34,9 @@ from lamella.surface.found.no_film import NoFilmError
 from lamella.surface.imported.as_film import as_film
 from lamella.surface.imported.clean import CleanMesh
 from lamella.surface.imported.edges import vertex_areas
+from lamella.surface.imported.raw_mesh import Integers
+from lamella.surface.imported.vertex_fits import VertexFits, disagreement, fit_vertices, through_vertices
+from lamella.surface.imported.vertex_noise import without_scatter
 from lamella.surface.points import Floats
 
 if TYPE_CHECKING:
@@ -50,6 +53,13 @@ AIM = 0.2
 MOST_STEPS, LAST_MOVE = 12, 1e-7
 # elements at least, and of the sizes that loops and bend ask for, the share of each round
 LEAST_ELEMENTS, SHARES = 8, (1.0, 0.6, 0.36, 0.22)
+# of the curvature scale: elements through the vertices whose curvature jumps by more are smoothed, or given up; a
+# disagreement of the fits around vertices by more is scatter where they scatter
+SMOOTH, ROUGH = 0.1, 0.05
+# most of elements whose nodes are moved to the least jumps: of order 4 these leave too much open
+RELAXED_ORDER = 3
+# Newton's steps to the least jumps: nearly linear, for nodes are moved little
+RELAXING = 3
 # of the curvature scale: a mesh whose curvature jumps by more is refused
 ROUGHEST = 0.5
 
@@ -232,6 +242,63 @@ def _scale(film: Film) -> float:
     return max(float(np.sqrt(square)), 0.01 / film.size)
 
 
+def through_film(
+    mesh: CleanMesh, flat: Film, loops: tuple[Loop, ...], fits: VertexFits, table: MeshTable, progress: Progress
+) -> Kept | None:
+    """Elements on the mesh's own triangles, through its vertices; None: these scatter, or are too many.
+
+    They are blended from the fits around the vertices. Where the mesh is so coarse that these disagree, the nodes
+    between the vertices move to the least jumps of slope and curvature.
+    """
+    if len(mesh.faces) * table.order**2 / 2 > table.most_nodes:
+        return None
+    film = through_vertices(flat, loops, fits, table.order)
+    jump = curvature_jump(film)
+    if jump > SMOOTH:
+        film = through_vertices(flat, loops, fits, min(table.order, RELAXED_ORDER))
+        film = _relaxed(film, len(mesh.points), progress)
+        jump = curvature_jump(film)
+    progress(
+        f"  {len(film.connectivity.faces):,} elements through the vertices: curvature jumps by {jump:.2g} of its scale"
+    )
+    if jump > SMOOTH:
+        return None
+    return Kept(film, np.linalg.norm(film.nodes[: len(mesh.points)] - mesh.points, axis=1), jump)
+
+
+def _relaxed(film: Film, vertices: int, detail: Progress) -> Film:
+    """The film of the least jumps whose first nodes, the vertices, and whose rim are held."""
+    free = film.connectivity.inner_unknowns >= 0
+    free[:vertices] = False
+    for step in range(RELAXING):
+        directions = film.directions()
+        jumps, weights, now = _jumps(film, directions)
+        matrix = csr_array(jumps.T @ diags_array(weights) @ jumps)[free][:, free].tocsc()
+        matrix = (matrix + diags_array(np.full(matrix.shape[0], 1e-12 * matrix.diagonal().max()))).tocsc()
+        shift = np.zeros(len(free))
+        shift[free] = -splu(matrix).solve((jumps.T @ (weights * now))[free])
+        film = film.at(film.nodes + shift[:, None] * directions)
+        detail(f"    least jumps, step {step + 1}: largest shift {np.abs(shift).max():.2e} m")
+    return film
+
+
+def vertex_errors(film: Film, fits: VertexFits, faces: Integers) -> Floats:
+    """How far normal curvatures of a film may be off at each vertex of its mesh, 1/m, (v,).
+
+    What the fits around neighbouring vertices disagree by is what they are off themselves, and the film may depart
+    from them.
+    """
+    connectivity = film.connectivity
+    places, _ = ClosestPoint(connectivity, film.nodes)(fits.points)
+    there = element_points(connectivity, film.nodes[connectivity.elements[places.element]], places.local, True)
+    mean, re, im = there.mean_curvature, there.deviator.real, there.deviator.imag
+    own = np.array([[mean + re, -im], [-im, mean - re]])
+    axes = np.array([there.e_u, there.e_v])
+    vertex = np.arange(len(fits.points))
+    off = np.einsum("abn,anc,bnd->ncd", own, axes, axes) - fits.second_forms(vertex, fits.points)
+    return np.asarray(disagreement(fits, faces) + np.linalg.norm(off, axis=(1, 2)))
+
+
 def kept_surface(
     mesh: CleanMesh,
     loops: tuple[Loop, ...],
@@ -248,7 +315,22 @@ def kept_surface(
         The mesh is so rough that it has no curvature to speak of.
     """
     progress("  laying smooth elements through the vertices")
-    kept = kept_film(mesh, loops, table.order, table.tolerance, table.most_nodes, progress)
+    flat = as_film(mesh, loops)
+    # the border's vertices are where their curves are
+    points = flat.nodes
+    smoothed = without_scatter(points, mesh.faces, flat.mesh.loop >= 0)
+    fits = fit_vertices(points, mesh.faces)
+    kept = through_film(mesh, flat, loops, fits, table, progress)
+    scatter = float(np.sqrt((disagreement(fits, mesh.faces) ** 2).mean()))
+    if smoothed is not None and (kept is None or scatter > ROUGH * _scale(kept.film)):
+        fits = fit_vertices(smoothed.points, mesh.faces)
+        kept = through_film(mesh, flat, loops, fits, table, progress)
+        notes += (
+            f"its vertices scatter by {1000 * smoothed.scatter:.2g} mm about a smooth surface; that was taken, which "
+            f"moves vertices by up to {1000 * smoothed.move:.2g} mm",
+        )
+    if kept is None:
+        kept = kept_film(mesh, loops, table.order, table.tolerance, table.most_nodes, progress)
     film, scale = kept.film, _scale(kept.film)
     if kept.jump > ROUGHEST:
         raise InputError(
@@ -259,11 +341,14 @@ def kept_surface(
         )
     for note in (*mesh.notes, *notes):
         progress(f"  {note}")
+    errors = vertex_errors(film, fits, mesh.faces)
+    typical = float(np.sqrt(np.average(errors**2, weights=vertex_areas(mesh.points, mesh.faces)))) / scale
     doubts: tuple[str, ...] = ()
-    if kept.jump > table.tolerance:
+    if typical > table.tolerance:
         doubts = (
-            f"the mesh tells its curvature to {kept.jump:.2g} of the curvature scale only (surface.tolerance = "
-            f"{table.tolerance:g}): so much jumps between elements; a smoother or a finer mesh tells more",
+            f"the mesh tells its curvature to {typical:.2g} of the curvature scale only (surface.tolerance = "
+            f"{table.tolerance:g}): by so much the surfaces around neighbouring vertices differ; a smoother or a finer "
+            "mesh tells more",
         )
     rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
     figures = {
@@ -272,14 +357,23 @@ def kept_surface(
         "elements": len(film.connectivity.elements),
         "curvature_scale": scale,
         "curvature_jump": kept.jump,
+        "curvature_error": typical,
         "source": source,
         "treatment": [*mesh.notes, *notes],
         "distance_max": float(kept.distance.max()),
         "distance_rms": float(np.sqrt((kept.distance**2).mean())),
         "tolerance": table.tolerance,
     }
+    mean = _mean(film)
+    basis = film.connectivity
+    return VaryingSurface(
+        "mesh", mean, basis, film.nodes, rim_loop, figures, doubts, vertices=mesh.points, vertex_errors=errors
+    )
+
+
+def _mean(film: Film) -> float:
+    """Mean of H over the area, 1/m."""
     points, weights = triangle_rule(6)
     there = element_points(film.connectivity, film.nodes[film.connectivity.elements], points, False)
     area = np.tile(weights, len(film.connectivity.elements)) / np.linalg.det(there.to_local)
-    mean = float(np.average(there.mean_curvature, weights=area))
-    return VaryingSurface("mesh", mean, film.connectivity, film.nodes, rim_loop, figures, doubts)
+    return float(np.average(there.mean_curvature, weights=area))

@@ -7,28 +7,28 @@ from pathlib import Path
 import numpy as np
 
 from lamella.byte_order import unmarked
+from lamella.surface.imported.covering import covered_faces, second_diagonals
 from lamella.surface.imported.polygons import split_polygons
 from lamella.surface.imported.raw_mesh import MAXIMUM_FACES, Polygons, RawMesh, mesh_error
 from lamella.surface.imported.read_3dm import read_3dm
 from lamella.surface.imported.read_obj import read_obj
+from lamella.surface.imported.read_off import read_off
 from lamella.surface.imported.read_ply import read_ply
 from lamella.surface.imported.read_stl import read_stl
 from lamella.surface.imported.units import METRES, metres_of, name_of
+from lamella.unit_doubt import refuse_doubtful
 from lamella.wording import counted
 
-READERS = {".obj": read_obj, ".ply": read_ply, ".stl": read_stl, ".3dm": read_3dm}
+READERS = {".obj": read_obj, ".off": read_off, ".ply": read_ply, ".stl": read_stl, ".3dm": read_3dm}
 LARGEST_FILE = 250_000_000
 """Bytes; text of `MAXIMUM_FACES` triangles with normals has 160 million, and takes some twenty seconds."""
 
 LARGEST_SIZE = 5000.0
 """m; a larger "gridshell" was drawn in millimetres."""
 
-SMALLEST_SIZE = 0.05
-"""m; a smaller one is read, with a note."""
-
 
 def read_mesh(path: Path, unit: str | None = None) -> RawMesh:
-    """Read a mesh from .obj, .ply, .stl or .3dm and split its faces into triangles.
+    """Read a mesh from .obj, .off, .ply, .stl or .3dm and split its faces into triangles.
 
     Parameters
     ----------
@@ -51,17 +51,22 @@ def read_mesh(path: Path, unit: str | None = None) -> RawMesh:
     asked = None if unit is None else metres_of(unit)
     reader = READERS.get(path.suffix.lower())
     if reader is None:
-        raise mesh_error(f"{path.name}: the format {path.suffix!r} is not known", "take .obj, .ply, .stl or .3dm")
+        raise mesh_error(f"{path.name}: the format {path.suffix!r} is not known", "take .obj, .off, .ply, .stl or .3dm")
     found = reader(_bytes(path))
     check_polygons(found)
     metres, notes = _metres(found, asked)
     with np.errstate(over="ignore"):
         points = found.points * metres
-    _check_size(points[found.corners], metres, path.suffix.lower() == ".3dm")
+    _check_size(points[found.corners], metres)
     size = float(np.ptp(points[found.corners], axis=0).max())
-    if size < SMALLEST_SIZE:
-        notes += (f"the mesh is {size:.3g} m large: is its unit, {name_of(metres)}, right?",)
-    faces = split_polygons(points, found.sizes, found.corners)
+    if asked is None:
+        refuse_doubtful("the mesh", size, metres, name_of(metres), "surface.unit")
+    covered = covered_faces(points, found.sizes, found.corners)
+    faces = split_polygons(points, found.sizes[~covered], found.corners[np.repeat(~covered, found.sizes)])
+    twice = second_diagonals(np.unique(points, axis=0, return_inverse=True)[1].reshape(-1)[faces])
+    faces = faces[~twice]
+    if covered.any() or twice.any():
+        notes += (f"{counted(int(covered.sum() + twice.sum()), 'face')} that lie on others left out",)
     source = (
         f"{path.name}: {len(points)} vertices, {len(found.sizes)} faces"
         f"{_kinds(found)}, unit {name_of(metres)}, {size:.4g} m large"
@@ -74,7 +79,7 @@ def _bytes(path: Path) -> bytes:
         if not path.exists():
             raise mesh_error(f"{path} does not exist", "a relative path starts at the project file's folder")
         if not path.is_file():
-            raise mesh_error(f"{path} is not a file", "name a file .obj, .ply, .stl or .3dm")
+            raise mesh_error(f"{path} is not a file", "name a file .obj, .off, .ply, .stl or .3dm")
         length = path.stat().st_size
         if length > LARGEST_FILE:
             raise mesh_error(
@@ -123,16 +128,13 @@ def _metres(found: Polygons, asked: float | None) -> tuple[float, tuple[str, ...
     """Metres of the file's unit."""
     told = found.metres_per_unit
     if told is not None and asked is not None and abs(told / asked - 1) > 1e-9:
-        raise mesh_error(
-            f"the file says that its unit is {name_of(told)}, the project says {name_of(asked)}",
-            "leave surface.unit out, or change the units of the file in Rhino",
-        )
+        return asked, (f"unit {name_of(asked)} of the project, not {name_of(told)} as the file says",)
     if told is None and asked is None:
         return 1.0, ("the file says no unit: taken as metres",)
-    return told or asked or 1.0, ()
+    return asked or told or 1.0, ()
 
 
-def _check_size(corners: np.ndarray[tuple[int, int], np.dtype[np.float64]], metres: float, has_unit: bool) -> None:
+def _check_size(corners: np.ndarray[tuple[int, int], np.dtype[np.float64]], metres: float) -> None:
     with np.errstate(over="ignore"):
         size = float(np.ptp(corners, axis=0).max())
     if not size > 0:
@@ -142,7 +144,7 @@ def _check_size(corners: np.ndarray[tuple[int, int], np.dtype[np.float64]], metr
             (unit for unit in ("mm", "cm") if METRES[unit] < metres and size / metres * METRES[unit] < LARGEST_SIZE),
             "mm",
         )
-        mend = "change the units of the file in Rhino" if has_unit else f'set unit = "{smaller}"'
+        mend = f'set unit = "{smaller}"'
         raise mesh_error(
             f"the mesh is {size:,.0f} m large (at most {LARGEST_SIZE:,.0f} m); in {smaller} it would be "
             f"{size / metres * METRES[smaller]:,.4g} m",
