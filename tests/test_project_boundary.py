@@ -136,7 +136,7 @@ def loops_of(text: str) -> tuple[Loop, ...]:
             ["surface.boundary[0].circle.radus: unknown key", "p.toml:6: surface.boundary[1].circle.radius: 0 m"],
         ),
         (MESH.replace('file = "a.obj"\n', ""), 1, ["surface.file: missing: Mesh of", "add file = 'surface.obj'"]),
-        (MESH.replace(".obj", ".step"), 3, ["'a.step' is no file that can be read", ".obj, .ply, .stl, .3dm"]),
+        (MESH.replace(".obj", ".step"), 3, ["'a.step' is no file that can be read", ".obj, .off, .ply, .stl, .3dm"]),
         (
             MESH + "mean_curvature = 'fitt'\n",
             4,
