@@ -100,7 +100,7 @@ def refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capt
         (bytes(range(256)) * 10, "p.toml", ["not a text file in UTF-8 (byte 128)", "TOML text"]),
         (b"\x00\x00\x01", "p.toml:1", ["not valid TOML"]),
         ('name = "größer"'.encode("latin-1"), "p.toml", ["not a text file in UTF-8 (byte 10)", "saved as UTF-8"]),
-        (UNDULOID.encode("utf-16"), "p.toml", ["not a text file in UTF-8 (byte 0)"]),
+        (UNDULOID.encode("utf-16-le"), "p.toml:1", ["not valid TOML"]),
         (UNDULOID + "height = [0, 1]\n", "p.toml:7", ["the same key is there twice", "keep one"]),
         (UNDULOID + "[surface]\nkind = 'nodoid'\n", "p.toml:7", ["the table [surface] is there twice", "keep one"]),
         ("a = " + "[" * 3000 + "]" * 3000, "p.toml", ["nested too deep"]),

@@ -376,8 +376,8 @@ SEAMS = (
 MISSED = r"\d of \d umbilics are no nodes of the net \(at [-\d., e;]+ m\): lamellas pass around them; " + OTHERWISE
 SMALL = r"\d+ cell edges? (is|are) shorter than a tenth of the strip's height \([^)]*\), down to .*"
 BENT = (
-    r"the normal curvature of the lamellas, measured on the surface, is off by up to \S+ 1/m, [23]\.\de-03 of the "
-    r"curvature scale \(at 95 % of the samples by [4-6]\.\de-04; limit 0\.002\): .*"
+    r"the normal curvature of the lamellas is off by up to \S+ 1/m, [23]\.\de-03 of the curvature scale "
+    r"\(at 95 % of the samples by 1\.\de-03; limit 0\.002\): .*"
 )
 FACES = (
     r"\d+ faces? of more than six corners between lamellas and rim left out \(near .* m\): more cells make them smaller"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -233,7 +234,8 @@ def test_a_failing_writer_leaves_nothing(
 def test_the_name_is_in_every_project_copy(tmp_path: Path) -> None:
     for name in ("a\nb", "a\x01\x00b", "#", '"""', "'" * 10, "\\n", "[surface]"):
         lamella.write(compute(parse_project(PROJECT | {"name": name}), until="surface"), tmp_path / "o")
-        assert read_project(tmp_path / "o" / "project.toml").name == name
+        # without control characters
+        assert read_project(tmp_path / "o" / "project.toml").name == " ".join(re.split(r"[\x00-\x1f]+", name))
         head = (tmp_path / "o" / "project.toml").read_text(encoding="utf-8").split("\n")[0]
         assert head.startswith("# ")
         assert head.endswith(f"lamella {lamella.__version__}")

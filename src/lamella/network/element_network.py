@@ -413,4 +413,6 @@ def _named(piece: Transition, mesh: NetMesh, names: tuple[str, ...]) -> str:
         kind = "the singular node" if end in mesh.umbilics else "the seam"
         return f"{kind} at ({x:.4g}, {y:.4g}, {z:.4g}) m"
 
-    return f"between {one(piece.ends[0])} and {one(piece.ends[1])}"
+    # nodes first, then loops in the project's order: which end the cut came from means nothing
+    first, second = sorted(piece.ends, reverse=True)
+    return f"between {one(first)} and {one(second)}"

@@ -220,6 +220,9 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     frames, mean, deviator = surface.shape_at(every)
     for number, names, z in around:
         plane, order = planes[number], int(umbilics.orders[number])
+        if order == 1:
+            # an error moves a simple zero, and only splits those of higher order: nothing between is noise
+            continue
         turn = plane.turn(frames.e_u[names])
         sure = _without_noise(surface, plane, order, complex(leading[number]), z, deviator[names] / turn)
         deviator[names] = sure * turn
