@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from lamella.drawing_origin import coordinates
 from lamella.network.cell_sizes import MOST_RATIO, large_cells, small_cells
 from lamella.network.density import LEAST_CELLS
 from lamella.network.network import Network
@@ -92,16 +93,14 @@ def network_cautions(network: Network, height: float, closing: str = "open", *, 
             else "1 lamella shorter than network.minimum_length is left out"
         )
     if len(network.faces_left_out):
-        places = "; ".join(
-            ", ".join(f"{x:.3g}" for x in point) for point in network.node_points[network.faces_left_out[:3]]
-        )
+        places = "; ".join(coordinates(point, 3) for point in network.node_points[network.faces_left_out[:3]])
         yield (
             f"{counted(len(network.faces_left_out), 'face')} of more than six corners between lamellas and rim left "
             f"out (near {places} m): more cells make them smaller"
         )
     count, large = large_cells(network)
     if large:
-        places = "; ".join(f"{one.edge:.3g} m at ({', '.join(f'{x:.3g}' for x in one.point)}) m" for one in large)
+        places = "; ".join(f"{one.edge:.3g} m at ({coordinates(one.point, 3)}) m" for one in large)
         yield (
             f"{count} cell edge{'s are' if count > 1 else ' is'} over {MOST_RATIO:g} x the median, up to "
             f"{large[0].ratio:.3g} x ({places}): {_why_large(network, traced)}"
@@ -127,9 +126,7 @@ def _small_cells(network: Network, height: float) -> Iterator[str]:
     """Nodes so close to each other that no two slots fit."""
     count, small = small_cells(network, SMALL * height)
     if small:
-        places = "; ".join(
-            f"{1000 * one.edge:.2g} mm at ({', '.join(f'{x:.3g}' for x in one.point)}) m" for one in small
-        )
+        places = "; ".join(f"{1000 * one.edge:.2g} mm at ({coordinates(one.point, 3)}) m" for one in small)
         are = "is" if count == 1 else "are"
         yield (
             f"{counted(count, 'cell edge')} {are} shorter than a tenth of the strip's height ({100 * height:.3g} mm), "
@@ -165,7 +162,7 @@ def lamella_cautions(
     worst = int(np.argmax(lamellas.utilisation))
     if lamellas.utilisation[worst] > 1:
         lamella = int(np.searchsorted(network.sample_offsets, worst, "right")) - 1
-        point = ", ".join(f"{x:.3g}" for x in network.sample_points[worst])
+        point = coordinates(network.sample_points[worst], 3)
         over = int((np.add.reduceat(lamellas.utilisation > 1, network.sample_offsets[:-1]) > 0).sum())
         yield (
             f"utilisation reaches {lamellas.utilisation[worst]:.2f} in lamella {network.ids[lamella]} at ({point}) m "
@@ -217,7 +214,7 @@ def layer_cautions(network: Network, lamellas: Lamellas, material: Material) -> 
     worst = int(np.argmax(share))
     if share[worst] > LAYER_SHARE:
         over = int((np.maximum.reduceat(share, starts) > LAYER_SHARE).sum())
-        point = ", ".join(f"{x:.3g}" for x in network.sample_points[worst])
+        point = coordinates(network.sample_points[worst], 3)
         yield (
             f"layers {np.abs(section.layer_offsets).max() * 1000:.3g} mm beside the centre line are bent about their "
             f"strong axis, up to {lamellas.layer[worst] / 1e6:.3g} MPa at ({point}) m, by more than {LAYER_SHARE:.0%} "

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from lamella.cautions import order_caution
+from lamella.drawing_origin import drawing_origin, told_from
 from lamella.errors import InputError
 from lamella.network.lines import is_traced
 from lamella.pipeline import Clock, Planned, Results, complete, plan
@@ -122,7 +123,7 @@ def _laid(project: Project, surface: Surface[Any], progress: Progress) -> tuple[
     """Cells and nodes of a net, about, without tracing it."""
     from lamella.weaving import lay, lay_traced
 
-    with unit_first(surface):
+    with unit_first(surface), told_from(drawing_origin(surface)):
         if is_traced(surface, project.network.pattern):
             lines = lay_traced(surface, project)
             return lines.cells, lines.estimated_nodes

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
 
 from lamella import __version__
+from lamella.drawing_origin import Origin
 from lamella.fabrication import write_drawings, write_schedule
 from lamella.files.curves_3dm import write_curves_3dm
 from lamella.files.lamellas_json import write_lamellas
@@ -14,8 +18,10 @@ from lamella.files.mesh_files import write_network_obj, write_surface_obj, write
 from lamella.files.model_3dm import write_model
 from lamella.files.network_json import write_network
 from lamella.files.nodes_csv import write_nodes_csv
+from lamella.files.rhino_file import Frame
 from lamella.files.surface_3dm import write_surface_3dm
 from lamella.files.whole import write_whole
+from lamella.network.network import Network
 from lamella.project_file import moved
 from lamella.surface.boundary.tables import boundary_loops, drawing_unit
 from lamella.surface.element.surface import ElementSurface
@@ -25,6 +31,8 @@ from lamella.wording import one_line
 
 if TYPE_CHECKING:
     from lamella.pipeline import Results
+
+Drawn = TypeVar("Drawn", SurfaceMesh, Network)
 
 COARSE_MESH = 7_500
 """Vertices below which the report's mesh of a surface of curved elements is made anew, with `REPORT_SAG`."""
@@ -43,7 +51,12 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
     progress : callable
         Is told each file's name.
     """
-    project, network, lamellas = results.project, results.network, results.lamellas
+    project, lamellas = results.project, results.lamellas
+    frame = Frame(project.files.unit, results.origin)
+    mesh, network = (
+        in_drawing(results.mesh, results.origin),
+        results.network and in_drawing(results.network, results.origin),
+    )
     signed: Any = {"name": project.name, "version": __version__}
 
     def put(file: str, write: Callable[..., object], *content: Any, **more: Any) -> None:
@@ -58,18 +71,18 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
         put("adjusted.toml", write_whole, (told + moved(own, results.folder, folder).to_toml()).encode())
         unit = drawing_unit(results.adjusted.table, results.folder)
         if unit:
-            put(
-                "adjusted.3dm", write_curves_3dm, boundary_loops(results.adjusted.table, results.folder), unit, **signed
-            )
-    put("surface.obj", write_surface_obj, results.mesh, **signed)
-    put("surface.ply", write_surface_ply, results.mesh, **signed)
+            loops = boundary_loops(results.adjusted.table, results.folder)
+            put("adjusted.3dm", write_curves_3dm, loops, Frame(unit, results.origin), **signed)
+    put("surface.obj", write_surface_obj, mesh, **signed)
+    put("surface.ply", write_surface_ply, mesh, **signed)
     if isinstance(results.surface, ElementSurface):
-        put("surface.3dm", write_surface_3dm, results.surface, **signed)
+        put("surface.3dm", write_surface_3dm, results.surface, frame, **signed)
     if network:
         put("network.json", write_network, network, **signed)
         put("network.obj", write_network_obj, network, **signed)
         put("nodes.csv", write_nodes_csv, network, **signed)
-        put("model.3dm", write_model, surface=results.mesh, network=network, lamellas=lamellas, **signed)
+        content = {"surface": results.mesh, "network": results.network, "lamellas": lamellas, "frame": frame}
+        put("model.3dm", write_model, **content, **signed)
     if network and lamellas:
         put("lamellas.json", write_lamellas, network, lamellas, **signed)
     if network and lamellas and results.parts and results.nesting:
@@ -78,6 +91,14 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
         write_drawings(folder / "fabrication", results.parts, results.nesting, **signed)
         put("fabrication/schedule.csv", write_schedule, results.parts, results.nesting, network, lamellas, **signed)
     put("report.html", write_report, report_data(results))
+
+
+def in_drawing(points: Drawn, origin: Origin) -> Drawn:
+    """A mesh or a network in the drawing's coordinates."""
+    if not any(origin):
+        return points
+    own = ("node_points", "sample_points") if isinstance(points, Network) else ("points",)
+    return replace(points, **{key: getattr(points, key) + np.array(origin) for key in own})
 
 
 def report_data(results: Results) -> ReportData:
@@ -124,6 +145,8 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
     add("Surface", "Smallest k2", s["k2_min"], "1/m")
     if "volume" in s:
         add("Surface", "Volume, with lids over the loops", s["volume"], "m³")
+    if "origin" in s:
+        figures.append(("Surface", "Measured from, in the drawing", ", ".join(f"{x:.10g}" for x in s["origin"]), "m"))
     if s["stability"]:
         figures.append(("Surface", "Stability", str(s["stability"]), ""))
     if "jacobi_eigenvalue" in s:

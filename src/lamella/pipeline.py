@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lamella import __version__, cautions, summary
+from lamella.drawing_origin import Origin, drawing_origin, told_from, with_drawn_points
 from lamella.errors import InputError
 from lamella.fabrication import Nesting, Parts, make_parts, nest
 from lamella.fabrication.rules import LEAST_END, LEAST_HUB, Rules, clear_hub, edge_scale
@@ -46,6 +47,8 @@ LAST_STAGE = "fabrication"
 class Results:
     """Everything a run has computed; what was not asked for is None.
 
+    Points are measured from `origin`, those of files and of the summary from the drawing's own.
+
     Attributes
     ----------
     project : Project
@@ -75,6 +78,11 @@ class Results:
     summary: dict[str, Any] = field(repr=False)
     folder: Path = Path()
     adjusted: Adjusted | None = None
+
+    @property
+    def origin(self) -> Origin:
+        """Point of the drawing that points are measured from, m; not 0 where it is in survey coordinates."""
+        return drawing_origin(self.surface)
 
 
 class Clock:
@@ -224,7 +232,10 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
         hub_radius = max(LEAST_HUB, clear_hub(rays, strip.layers, strip.offset, strip.thickness))
     measures = {"slot_width": slot_width, "end_distance": float(end_distance), "hub_radius": hub_radius}
     filled = cut.model_copy(update=measures)
-    return project.model_copy(update={"fabrication": filled})
+    update: dict[str, Any] = {"fabrication": filled}
+    if any(drawing_origin(surface)):
+        update["surface"] = project.surface.model_copy(update={"origin": drawing_origin(surface)})
+    return project.model_copy(update=update)
 
 
 def _check_layers(project: Project, surface: Surface[Any], depth: int) -> None:
@@ -282,6 +293,11 @@ def compute(
 
 def complete(project: Project, planned: Planned, clock: Clock, *, until: str | None, folder: Path) -> Results:
     """The stages of a project whose surface is there, see `compute`; the clock runs for the surface already."""
+    with told_from(drawing_origin(planned[0])):
+        return _complete(project, planned, clock, until=until, folder=folder)
+
+
+def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | None, folder: Path) -> Results:
     depth, progress = _last_of(project, until), clock.progress
     warnings: list[str] = []
     if depth < STAGES.index("lamellas") and until is None:
@@ -367,7 +383,7 @@ def complete(project: Project, planned: Planned, clock: Clock, *, until: str | N
     content: dict[str, Any] = {"schema": SCHEMA, "version": __version__, "name": project.name}
     content |= {stage: figures.get(stage) for stage in STAGES}
     content |= {"warnings": warnings, "seconds": clock.seconds}
-    content = summary.cleaned(content)
+    content = summary.cleaned(with_drawn_points(content, drawing_origin(surface)))
     return Results(project, surface, mesh, network, lamellas, parts, nesting, content, folder, adjusted)
 
 

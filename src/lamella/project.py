@@ -18,7 +18,18 @@ from lamella.project_boundary import (
     SlideTable,
 )
 from lamella.project_surface import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
-from lamella.project_values import LEAST_LENGTH, Name, Range, Refusal, Table, length, number, read_points, two_numbers
+from lamella.project_values import (
+    LEAST_LENGTH,
+    Name,
+    Range,
+    Refusal,
+    Table,
+    Unit,
+    length,
+    number,
+    read_points,
+    two_numbers,
+)
 from lamella.strip.material import MATERIALS, Material, find_material
 from lamella.wording import is_byte, shown
 
@@ -262,6 +273,11 @@ class FabricationTable(Table):
 
 class FilesTable(Table):
     """What is written."""
+
+    unit: Unit = Field(
+        default="m",
+        description="Unit of model.3dm and surface.3dm, in their headers and coordinates. Other files are in metres.",
+    )
 
     mesh_tolerance: float = number(
         "Largest distance between the faces of surface.obj and surface.ply and the surface, over the diagonal of its "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
@@ -13,7 +14,9 @@ from lamella.project_values import (
     Point,
     Points,
     Refusal,
+    Shift,
     Table,
+    Triple,
     Unit,
     file_name,
     length,
@@ -133,9 +136,9 @@ class AdjustTable(Table):
 class PlaceTable(Table):
     """Where a curve is put: turned and scaled about its middle, the centroid of its length, then shifted and waved."""
 
-    shift: Point = number("Shift [x, y, z].", "m", default=(0.0, 0.0, 0.0), examples=[[0.5, 0.0, 0.0]])
+    shift: Shift = number("Shift [x, y, z].", "m", default=(0.0, 0.0, 0.0), examples=[[0.5, 0.0, 0.0]])
     scale: float = number("Size over that in the file.", "", gt=0, le=1e6, default=1.0, examples=[1.05])
-    turn: Point = number(
+    turn: Shift = number(
         "Turn, as a vector along its axis, counter-clockwise.",
         "degrees",
         default=(0.0, 0.0, 0.0),
@@ -262,33 +265,40 @@ class BoundaryTable(Table):
         if self.unit is None or self.file is not None:
             return self
         scale = METRES[self.unit]
+        ring = self.circle and self.circle.model_copy(update={"radius": self.circle.radius * scale})
+        table = self.model_copy(update={"circle": ring, "unit": None})
+        return table._with_points(lambda point: (point[0] * scale, point[1] * scale, point[2] * scale))
+
+    def measured_from(self, origin: Triple) -> BoundaryTable:
+        """The same curve with points, circle, parts and sliding planes measured from a point; of a file as it is."""
+        if not any(origin):
+            return self
+        x, y, z = origin
+        return self._with_points(lambda point: (point[0] - x, point[1] - y, point[2] - z))
+
+    def _with_points(self, change: Callable[[Triple], Triple]) -> BoundaryTable:
+        """The curve with each of its points changed; shifts and directions stay."""
         changed = {
-            "points": _scaled(self.points, scale),
-            "circle": _scaled_keys(self.circle, ("center", "radius"), scale),
-            "slide": _scaled_keys(self.slide, ("point",), scale),
-            "part": self.part and tuple(_scaled_part(part, scale) for part in self.part),
+            "points": self.points and tuple(map(change, self.points)),
+            "circle": _with_keys(self.circle, ("center",), change),
+            "slide": _with_keys(self.slide, ("point",), change),
+            "part": self.part and tuple(_part_with(part, change) for part in self.part),
         }
-        return self.model_copy(update=changed | {"unit": None})
+        return self.model_copy(update=changed)
 
 
-def _scaled(value: Any, scale: float) -> Any:
-    """Numbers, and lists of them, times a factor; None stays None."""
-    if isinstance(value, tuple):
-        return tuple(_scaled(one, scale) for one in value)
-    return None if value is None else value * scale
-
-
-def _scaled_keys(table: Any, keys: tuple[str, ...], scale: float) -> Any:
-    """A table with the lengths of some of its keys times a factor; None stays None."""
+def _with_keys(table: Any, keys: tuple[str, ...], change: Callable[[Triple], Triple]) -> Any:
+    """A table with the points of some of its keys changed; None stays None."""
     if table is None:
         return None
-    return table.model_copy(update={key: _scaled(getattr(table, key), scale) for key in keys})
+    given = {key: getattr(table, key) for key in keys}
+    return table.model_copy(update={key: change(point) for key, point in given.items() if point is not None})
 
 
-def _scaled_part(part: PartTable, scale: float) -> PartTable:
+def _part_with(part: PartTable, change: Callable[[Triple], Triple]) -> PartTable:
     changed = {
-        "points": _scaled(part.points, scale),
-        "arc": _scaled_keys(part.arc, ("start", "middle", "end"), scale),
-        "slide": _scaled_keys(part.slide, ("point",), scale),
+        "points": part.points and tuple(map(change, part.points)),
+        "arc": _with_keys(part.arc, ("start", "middle", "end"), change),
+        "slide": _with_keys(part.slide, ("point",), change),
     }
     return part.model_copy(update=changed)

@@ -7,10 +7,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
+from lamella.drawing_origin import FAR
 from lamella.project_boundary import BoundaryTable
 from lamella.project_values import (
     LEAST_LENGTH,
     MOST_LENGTH,
+    Point,
     Range,
     Refusal,
     Table,
@@ -205,6 +207,17 @@ def _most_nodes() -> Any:
     )
 
 
+def _origin() -> Any:
+    return number(
+        "Point of the drawing [x, y, z] that the program measures from. When not given a round point beside the "
+        f"drawing where that is more than {FAR:g} times its size away (survey coordinates), else the drawing's own "
+        "origin. Files, summary and messages are in the drawing's coordinates in any case.",
+        "m",
+        default=None,
+        examples=[[4500000.0, 5300000.0, 0.0]],
+    )
+
+
 class FormFoundTable(Table):
     """Surface of constant mean curvature in a boundary: a soap film (H = 0) or an inflated one."""
 
@@ -234,6 +247,7 @@ class FormFoundTable(Table):
         default="stable", description="Which surface, where there are two: the stable film or the unstable one."
     )
     most_nodes: int = _most_nodes()
+    origin: Point | None = _origin()
     adjust_mean_curvature: float = number(
         'How far mean_curvature may be changed where network.closing = "adjust".', "1/m", ge=0, le=1e6, default=0.0
     )
@@ -318,6 +332,7 @@ class MeshTable(Table):
     order: int = _order()
     tolerance: float = _tolerance()
     most_nodes: int = _most_nodes()
+    origin: Point | None = _origin()
     deviation: float = number(
         "Largest departure of the mesh from constant mean curvature that is still taken to mean one, over the "
         "curvature scale.",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
@@ -11,6 +12,8 @@ from lamella.wording import one_line, shown
 
 # m; a thousand times smaller and larger than any model or building, so that no figure can overflow
 LEAST_LENGTH, MOST_LENGTH = 1e-6, 1e6
+# in the unit of a table: survey coordinates in millimetres
+MOST_COORDINATE = 1e11
 # of one list; a curve drawn by hand has hundreds
 MOST_POINTS = 10_000
 
@@ -49,7 +52,7 @@ def two_numbers(value: Any, names: str, of: str) -> tuple[float, float]:
     return float(value[0]), float(value[1])
 
 
-def three_numbers(value: Any, called: str = "", most: float = MOST_LENGTH) -> tuple[float, float, float]:
+def three_numbers(value: Any, called: str = "", most: float = MOST_COORDINATE) -> tuple[float, float, float]:
     """Three finite numbers of a list; a message calls the list by its name."""
     called = f"{called} " if called else ""
     if not isinstance(value, list | tuple):
@@ -66,13 +69,13 @@ def three_numbers(value: Any, called: str = "", most: float = MOST_LENGTH) -> tu
         if abs(x) > most:
             raise Refusal(
                 f"{at} m is out of range: has to be at most {most:g} m",
-                "lengths are in metres; measure from a point of the project, not in survey coordinates",
+                "lengths are in metres",
             )
     return float(value[0]), float(value[1]), float(value[2])
 
 
-def read_points(value: Any, most: float = MOST_LENGTH) -> tuple[tuple[float, float, float], ...]:
-    """A list of points.
+def read_points(value: Any, most: float = MOST_COORDINATE) -> tuple[tuple[float, float, float], ...]:
+    """A list of points, which may be in survey coordinates but not further apart than the largest length.
 
     Raises
     ------
@@ -83,7 +86,16 @@ def read_points(value: Any, most: float = MOST_LENGTH) -> tuple[tuple[float, flo
         raise Refusal(f"{shown(value)} is not a list of points", "write [[x, y, z], [x, y, z], ...]")
     if len(value) > MOST_POINTS:
         raise Refusal(f"{len(value):,} points are too many (limit {MOST_POINTS:,})", "leave points out")
-    return tuple(three_numbers(point, f"points[{k}]", most) for k, point in enumerate(value))
+    points = tuple(three_numbers(point, f"points[{k}]", most) for k, point in enumerate(value))
+    for k, point in enumerate(points):
+        for c, (x, first) in enumerate(zip(point, points[0], strict=True)):
+            if most < math.inf and abs(x - first) > MOST_LENGTH:
+                raise Refusal(
+                    f"points[{k}][{c}] = {shown(x)} m is out of range: has to be within {MOST_LENGTH:g} m of that of "
+                    "the first point",
+                    "lengths are in metres",
+                )
+    return points
 
 
 def direction(value: Any) -> tuple[float, float, float]:
@@ -117,6 +129,7 @@ class Table(BaseModel):
 Range = Annotated[tuple[float, float], Field(strict=False)]
 Triple = Annotated[tuple[float, float, float], Field(strict=False)]
 Point = Annotated[Triple, BeforeValidator(three_numbers)]
+Shift = Annotated[Triple, BeforeValidator(partial(three_numbers, most=MOST_LENGTH))]
 Direction = Annotated[Triple, BeforeValidator(direction)]
 Points = Annotated[tuple[tuple[float, float, float], ...], Field(strict=False), BeforeValidator(read_points)]
 Name = Annotated[str, AfterValidator(one_line)]

@@ -8,27 +8,24 @@ from pathlib import Path
 import numpy as np
 import rhino3dm
 
-from lamella.files.rhino_file import TOLERANCE, RhinoFile
+from lamella.files.rhino_file import Frame, RhinoFile
 from lamella.files.text import require_finite
 from lamella.files.whole import write_whole
 from lamella.project_values import METRES
 from lamella.surface.boundary.curve import Loop
 
-UNITS = {"m": "Meters", "mm": "Millimeters", "cm": "Centimeters", "dm": "Decimeters", "ft": "Feet", "in": "Inches"}
-"""Names of openNURBS."""
-
 COLOUR = (60, 60, 60)
 
 
-def write_curves_3dm(path: Path, loops: Sequence[Loop], unit: str, *, name: str, version: str) -> None:
+def write_curves_3dm(path: Path, loops: Sequence[Loop], frame: Frame, *, name: str, version: str) -> None:
     """Write closed NURBS curves, exactly; each is named after its loop.
 
     Parameters
     ----------
     path : Path
     loops : sequence of Loop
-    unit : str
-        Of the file, one of `METRES`.
+    frame : Frame
+        Unit of the file, and where in the drawing the loops are measured from.
     name, version : str
         Of the project and of the program.
 
@@ -37,18 +34,17 @@ def write_curves_3dm(path: Path, loops: Sequence[Loop], unit: str, *, name: str,
     OSError
         It cannot be written whole.
     """
-    rhino = RhinoFile("curves", name, version)
-    rhino.file.Settings.ModelUnitSystem = getattr(rhino3dm.UnitSystem, UNITS[unit])
-    rhino.file.Settings.ModelAbsoluteTolerance = TOLERANCE / METRES[unit]
+    rhino = RhinoFile("curves", name, version, frame)
     rhino.add_layers({"boundary": COLOUR})
     for loop in loops:
-        rhino.file.Objects.AddCurve(_curve(loop, METRES[unit]), rhino.attributes("boundary", loop.name))
+        rhino.file.Objects.AddCurve(_curve(loop, frame), rhino.attributes("boundary", loop.name))
     write_whole(path, rhino.encoded())
 
 
-def _curve(loop: Loop, metres: float) -> rhino3dm.NurbsCurve:
+def _curve(loop: Loop, frame: Frame) -> rhino3dm.NurbsCurve:
     """A loop as one NURBS curve in the file's unit, its pieces joined by full knots, its parameter the arc length."""
-    pieces = loop.course.pieces.transformed(1 / metres, loop.course.origin / metres)
+    metres = METRES[frame.unit]
+    pieces = loop.course.pieces.transformed(1 / metres, (loop.course.origin + np.array(frame.origin)) / metres)
     degree = pieces.degree
     # homogeneous (w x, w y, w z, w); a joint is one point, its weight that of the piece it ends: pieces are rescaled
     controls = pieces.controls.copy()

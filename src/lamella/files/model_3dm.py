@@ -1,4 +1,4 @@
-"""model.3dm: surface, centre lines, strips, nodes on named layers, in metres, for Rhino and Grasshopper."""
+"""model.3dm: surface, centre lines, strips, nodes on named layers, for Rhino and Grasshopper."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import rhino3dm
 from numpy.typing import NDArray
 
-from lamella.files.rhino_file import RhinoFile, nurbs_curve
+from lamella.files.rhino_file import IN_METRES, Frame, RhinoFile, nurbs_curve
 from lamella.files.splines import RELATIVE_TOLERANCE, fit_spline
 from lamella.files.text import require_finite
 from lamella.files.whole import write_whole
@@ -41,7 +41,13 @@ POINT_OBJECTS = 20_000
 
 
 def model_bytes(
-    *, name: str, version: str, surface: SurfaceMesh, network: Network, lamellas: Lamellas | None = None
+    *,
+    name: str,
+    version: str,
+    surface: SurfaceMesh,
+    network: Network,
+    lamellas: Lamellas | None = None,
+    frame: Frame = IN_METRES,
 ) -> bytes:
     """Return the Rhino model.
 
@@ -59,6 +65,9 @@ def model_bytes(
         Twisted strips go to "strips A" and "strips B" as surfaces of degree 3 x 1, ruled along the normals; where a
         lamella has several layers, each of these to "layers A" and "layers B", named A1-1, A1-2, ... from the right one
         (u = n x t is left) to the left one.
+    frame : Frame
+        The file's unit, and where in the drawing points are measured from. Lengths in user text are in metres, as
+        their keys say.
 
     Returns
     -------
@@ -67,7 +76,7 @@ def model_bytes(
     """
     require_finite(network.sample_points, network.sample_normals, network.sample_tangents)
     require_finite(network.sample_arclengths, network.node_points, surface.points, surface.normals)
-    return _Model(name, version).filled(surface, network, lamellas).encoded()
+    return _Model(name, version, frame).filled(surface, network, lamellas).encoded()
 
 
 def write_model(
@@ -78,9 +87,10 @@ def write_model(
     surface: SurfaceMesh,
     network: Network,
     lamellas: Lamellas | None = None,
+    frame: Frame = IN_METRES,
 ) -> None:
     """Write `model_bytes`; OSError if it cannot be written whole."""
-    content = model_bytes(name=name, version=version, surface=surface, network=network, lamellas=lamellas)
+    content = model_bytes(name=name, version=version, surface=surface, network=network, lamellas=lamellas, frame=frame)
     # rhino3dm's own Write says nothing of a full disk.
     write_whole(path, content)
 
@@ -88,9 +98,9 @@ def write_model(
 class _Model:
     """A .3dm file being filled."""
 
-    def __init__(self, name: str, version: str) -> None:
+    def __init__(self, name: str, version: str, frame: Frame) -> None:
         self.version = version
-        self.rhino = RhinoFile("model.3dm", name, version)
+        self.rhino = RhinoFile("model.3dm", name, version, frame)
         self.file = self.rhino.file
 
     def filled(self, surface: SurfaceMesh, network: Network, lamellas: Lamellas | None) -> _Model:
@@ -133,7 +143,7 @@ class _Model:
             length_m=repr(length),
             version=self.version,
         )
-        self.file.Objects.AddCurve(nurbs_curve(3, spline.knots[1:-1], spline.controls), attributes)
+        self.rhino.add_curve(3, spline.knots[1:-1], spline.controls, attributes)
 
     def _add_layers(self, network: Network, lamellas: Lamellas) -> None:
         layers, section = lamellas.layers, lamellas.section
@@ -167,11 +177,12 @@ class _Model:
         arclengths = network.sample_arclengths[span] - network.sample_arclengths[span.start]
         length = float(arclengths[-1])
         spline = fit_spline(arclengths, edges, slopes, RELATIVE_TOLERANCE * length / 3**0.5)
+        knots, place, metres = spline.knots[1:-1], self.rhino.placed, self.rhino.metres
         lower, upper = (
-            nurbs_curve(3, spline.knots[1:-1], spline.controls[:, side]) for side in (slice(0, 3), slice(3, 6))
+            nurbs_curve(3, knots / metres, place(spline.controls[:, side])) for side in (slice(0, 3), slice(3, 6))
         )
         strip = rhino3dm.NurbsSurface.CreateRuledSurface(lower, upper)
-        strip.SetDomain(1, rhino3dm.Interval(-section.height / 2, section.height / 2))
+        strip.SetDomain(1, rhino3dm.Interval(-section.height / 2 / metres, section.height / 2 / metres))
         family = str(network.families[k])
         name = f"{network.ids[k]}-{layer}" if layer else network.ids[k]
         told = {"side": SIDES[section.layers][layer - 1]} if layer else {}
@@ -189,7 +200,7 @@ class _Model:
         self.file.Objects.AddSurface(strip, attributes)
 
     def _add_nodes(self, network: Network) -> None:
-        points = network.node_points.tolist()
+        points = self.rhino.placed(network.node_points).tolist()
         for kind, kind_name in enumerate(NODE_KINDS):
             members = np.flatnonzero(network.node_kinds == kind).tolist()
             layer = f"nodes {kind_name}"

@@ -5,11 +5,14 @@ from __future__ import annotations
 import base64
 import uuid
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import rhino3dm
 from numpy.typing import NDArray
 
+from lamella.drawing_origin import NOWHERE, Origin
+from lamella.project_values import METRES
 from lamella.surface.mesh import SurfaceMesh
 from lamella.wording import one_line
 
@@ -19,8 +22,33 @@ TOLERANCE = 1e-5
 """m; what Rhino joins within: far above rounding, far below what can be built."""
 
 
+UNITS = {"m": "Meters", "mm": "Millimeters", "cm": "Centimeters", "dm": "Decimeters", "ft": "Feet", "in": "Inches"}
+"""Names of openNURBS."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Coordinates of a file.
+
+    Attributes
+    ----------
+    unit : str
+        One of `METRES`.
+    origin : (3,) of float
+        Point of the drawing that what is written is measured from, m.
+    """
+
+    unit: str = "m"
+    origin: Origin = NOWHERE
+
+
+IN_METRES = Frame()
+
+
 class RhinoFile:
-    """An empty model in metres, with project and version as text.
+    """An empty model with project and version as text.
+
+    What is put into it is in metres from the origin; `placed` makes the file's coordinates of it.
 
     Parameters
     ----------
@@ -28,10 +56,13 @@ class RhinoFile:
         Name of the file, which its ids depend on.
     name, version : str
         Of the project and of the program; kept as document text ``lamella\\project``, ``lamella\\version``.
+    frame : Frame
+        The file's unit, and where in the drawing points are measured from.
     """
 
-    def __init__(self, kind: str, name: str, version: str) -> None:
+    def __init__(self, kind: str, name: str, version: str, frame: Frame = IN_METRES) -> None:
         self.name, self.version = name, version
+        self.metres, self._origin = METRES[frame.unit], np.array(frame.origin)
         self._names = uuid.uuid5(uuid.NAMESPACE_URL, f"lamella/{kind}")
         self.file = rhino3dm.File3dm()
         self.layers: dict[str, int] = {}
@@ -41,9 +72,17 @@ class RhinoFile:
         self.file.Revision = 1
         self.say(project=name, version=version)
         settings = self.file.Settings
-        settings.ModelUnitSystem = rhino3dm.UnitSystem.Meters
+        settings.ModelUnitSystem = getattr(rhino3dm.UnitSystem, UNITS[frame.unit])
         settings.PageUnitSystem = rhino3dm.UnitSystem.Millimeters
-        settings.ModelAbsoluteTolerance = TOLERANCE
+        settings.ModelAbsoluteTolerance = TOLERANCE / self.metres
+
+    def placed(self, points: Floats) -> Floats:
+        """Points (..., 3) in the file's unit and the drawing's coordinates."""
+        return np.asarray((points + self._origin) / self.metres)
+
+    def add_curve(self, degree: int, knots: Floats, controls: Floats, attributes: rhino3dm.ObjectAttributes) -> None:
+        """Add a curve by arc length, see `nurbs_curve`, m."""
+        self.file.Objects.AddCurve(nurbs_curve(degree, knots / self.metres, self.placed(controls)), attributes)
 
     def say(self, **text: str) -> None:
         """Put document text ``lamella\\key``."""
@@ -78,7 +117,7 @@ class RhinoFile:
         mesh = rhino3dm.Mesh()
         vertices, normals, faces = mesh.Vertices, mesh.Normals, mesh.Faces
         vertices.UseDoublePrecisionVertices = True
-        for x, y, z in surface.points.tolist():
+        for x, y, z in self.placed(surface.points).tolist():
             vertices.AddPoint3d(x, y, z)
         for x, y, z in surface.normals.tolist():
             normals.Add(x, y, z)

@@ -1,4 +1,4 @@
-"""surface.3dm: a surface of curved elements as NURBS patches, with its boundary curves, in metres, for Rhino.
+"""surface.3dm: a surface of curved elements as NURBS patches, with its boundary curves, for Rhino.
 
 A polynomial of order p on a triangle, taken along a bilinear quadrilateral inside it, is a polynomial of degree p in
 each of the quadrilateral's two parameters. Cut at its centroid and at the midpoints of its edges, a curved triangle is
@@ -16,7 +16,7 @@ import numpy as np
 import rhino3dm
 from numpy.typing import NDArray
 
-from lamella.files.rhino_file import RhinoFile, nurbs_curve
+from lamella.files.rhino_file import IN_METRES, Frame, RhinoFile
 from lamella.files.text import require_finite
 from lamella.files.whole import write_whole
 from lamella.surface.element.lagrange import lagrange, subdivision
@@ -40,13 +40,15 @@ SAG_PLACES = 6
 COLOURS = {"surface": (170, 190, 210), "boundary": (60, 60, 60)}
 
 
-def write_surface_3dm(path: Path, surface: ElementSurface, *, name: str, version: str) -> None:
+def write_surface_3dm(
+    path: Path, surface: ElementSurface, frame: Frame = IN_METRES, *, name: str, version: str
+) -> None:
     """Write `surface_3dm_bytes`; OSError if it cannot be written whole."""
     # rhino3dm's own Write says nothing of a full disk.
-    write_whole(path, surface_3dm_bytes(surface, name=name, version=version))
+    write_whole(path, surface_3dm_bytes(surface, frame, name=name, version=version))
 
 
-def surface_3dm_bytes(surface: ElementSurface, *, name: str, version: str) -> bytes:
+def surface_3dm_bytes(surface: ElementSurface, frame: Frame = IN_METRES, *, name: str, version: str) -> bytes:
     """Return the Rhino model of a surface.
 
     Layer "surface" holds three patches an element, in one group, or one mesh above `MOST_PATCHES`; layer "boundary"
@@ -56,6 +58,8 @@ def surface_3dm_bytes(surface: ElementSurface, *, name: str, version: str) -> by
     Parameters
     ----------
     surface : ElementSurface
+    frame : Frame
+        The file's unit, and where in the drawing the surface is measured from.
     name, version : str
         Of the project and of the program.
 
@@ -65,7 +69,7 @@ def surface_3dm_bytes(surface: ElementSurface, *, name: str, version: str) -> by
         The same for the same input: ids of layers and objects come from project name, layer and object name.
     """
     require_finite(surface.nodes)
-    model = _Model(name, version, surface)
+    model = _Model(name, version, surface, frame)
     count = 3 * len(surface.connectivity.elements)
     if count <= MOST_PATCHES:
         model.add_patches()
@@ -204,18 +208,18 @@ def sag(surface: ElementSurface, parts: int) -> float:
 class _Model:
     """A .3dm file being filled."""
 
-    def __init__(self, name: str, version: str, surface: ElementSurface) -> None:
+    def __init__(self, name: str, version: str, surface: ElementSurface, frame: Frame) -> None:
         self.version, self.surface = version, surface
         self.diagonal = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
-        self.rhino = RhinoFile("surface.3dm", name, version)
-        self.file = self.rhino.file
+        self.rhino = RhinoFile("surface.3dm", name, version, frame)
+        self.file, self.origin = self.rhino.file, np.array(frame.origin)
         self.rhino.say(mean_curvature=repr(float(surface.mean_curvature)))
         self.rhino.add_layers(COLOURS)
 
     def add_patches(self) -> None:
         controls = patches(self.surface)
         p = controls.shape[1] - 1
-        tolerance = RELATIVE_TOLERANCE * max(self.diagonal, float(np.abs(self.surface.nodes).max()))
+        tolerance = RELATIVE_TOLERANCE * max(self.diagonal, float(np.abs(self.surface.nodes + self.origin).max()))
         self.rhino.say(
             tolerance_m=f"{tolerance:.1e}",
             surface=f"{len(controls)} Bezier patches of degree {p} x {p}, three to a curved triangle of the program: "
@@ -228,7 +232,7 @@ class _Model:
         patch = _bezier_patch(p)
         points = patch.Points
         places = [(i, j) for i in range(p + 1) for j in range(p + 1)]
-        for k, net in enumerate(controls.reshape(len(controls), -1, 3).tolist()):
+        for k, net in enumerate(self.rhino.placed(controls).reshape(len(controls), -1, 3).tolist()):
             attributes = self._attributes("surface", f"{k // 3}.{k % 3}")
             attributes.AddToGroup(0)
             for place, (x, y, z) in zip(places, net, strict=True):
@@ -255,7 +259,7 @@ class _Model:
         for number, curve in enumerate(boundary_curves(self.surface), 1):
             attributes = self._attributes("boundary", f"boundary {number}", loop=str(curve.loop + 1))
             knots = np.repeat(curve.breaks, curve.degree)
-            self.file.Objects.AddCurve(nurbs_curve(curve.degree, knots, curve.controls), attributes)
+            self.rhino.add_curve(curve.degree, knots, curve.controls, attributes)
 
     def _attributes(self, layer: str, name: str, **text: str) -> rhino3dm.ObjectAttributes:
         shared = {"mean_curvature": repr(float(self.surface.mean_curvature)), "version": self.version} if text else {}

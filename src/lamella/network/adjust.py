@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lamella.drawing_origin import NOWHERE, measured_from, told_from
 from lamella.errors import InputError
 from lamella.network.adjustable_films import Films, FollowError
 from lamella.network.between_umbilics import between_umbilics, keeps_apart
@@ -27,7 +28,7 @@ from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.progress import Progress, patient
 from lamella.surface.boundary.curve import Loop
 from lamella.surface.boundary.freedom import Freedom, refuse_held
-from lamella.surface.boundary.tables import boundary_loops
+from lamella.surface.boundary.tables import boundary_loops, with_origin
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.points import Complexes, Floats
 
@@ -107,6 +108,21 @@ def adjust_boundary(
     InputError
         There is no such film, nothing may change, or the net does not close within what is allowed.
     """
+    table = with_origin(table, folder)
+    with told_from(table.origin or NOWHERE):
+        return _adjusted(table, folder, cells, spacing, progress, pattern)
+
+
+def _adjusted(
+    table: FormFoundTable,
+    folder: Path,
+    cells: int | None,
+    spacing: float | None,
+    progress: Progress,
+    pattern: Pattern,
+) -> Adjusted:
+    if table.origin:
+        progress(f"  {measured_from(table.origin)}")
     freedom = Freedom(table)
     refuse_held(freedom)
     films = Films(table, folder, freedom, pattern)

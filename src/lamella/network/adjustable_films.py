@@ -8,6 +8,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from lamella.drawing_origin import origin_figure
 from lamella.network.film_net import FilmNet
 from lamella.network.pattern import Pattern
 from lamella.network.shift_rates import curvature_rates_of_volume, jacobi_fields, shift_rates
@@ -71,7 +72,7 @@ class Films:
             most_nodes=table.most_nodes,
         )
         notes = remarks_on(loops) + notes_on(found, given_curvature=table.volume is None)
-        surface = found.surface("form-found", notes, tolerance=table.tolerance)
+        surface = found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
         return FilmNet.of(shares, found.equilibrium, surface, self.pattern)
 
     def first(self, tolerance: float) -> FilmNet:

@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.drawing_origin import coordinates
 from lamella.errors import InputError
 from lamella.network.cell_map import CellMap
 from lamella.network.closing_steps import CLOSES
@@ -134,7 +135,7 @@ class ElementNetwork:
             )
         missed = [umbilic for umbilic in self.describe()["umbilics"] if not umbilic["node"] and not umbilic["boundary"]]
         if missed:
-            places = "; ".join(", ".join(f"{x:.3g}" for x in umbilic["point"]) for umbilic in missed)
+            places = "; ".join(coordinates(umbilic["point"], 3) for umbilic in missed)
             yield (
                 f"{len(missed)} of {len(self.umbilics.orders)} umbilics are no nodes of the net (at {places} m): "
                 f"lamellas pass around them; {self._remedy()}"
@@ -152,10 +153,9 @@ class ElementNetwork:
         far = off > ASTRAY
         if far.any():
             worst = network.sample_points[off.argmax()]
-            x, y, z = worst
             yield (
                 f"the normal curvature of lamellas is off by up to {off.max():.2g} of the curvature scale near "
-                f"({x:.3g}, {y:.3g}, {z:.3g}) m (by more than {ASTRAY:g} at {far.mean():.2%} of the samples): "
+                f"({coordinates(worst, 3)}) m (by more than {ASTRAY:g} at {far.mean():.2%} of the samples): "
                 + self._why_astray(worst)
             )
 
@@ -396,8 +396,7 @@ def _rounded(iso: Isothermic, raw: CellMap, lattice: Lattice) -> tuple[Isothermi
     assert folded
     worst = float(_largest_part(raw.shifts - ways[0]).max())
     raise InputError(
-        f"closing the net by rounding takes up to {worst:.2g} cells, and folds it near "
-        f"({', '.join(f'{x:.4g}' for x in folded.place)}) m",
+        f"closing the net by rounding takes up to {worst:.2g} cells, and folds it near ({coordinates(folded.place)}) m",
         'raise network.cells, change the boundary, or choose closing = "open"',
         "network.closing",
     )
@@ -409,9 +408,8 @@ def _named(piece: Transition, mesh: NetMesh, names: tuple[str, ...]) -> str:
     def one(end: int) -> str:
         if end < 0:
             return f"the loop {names[-1 - end]!r}" if -1 - end < len(names) else "the rim"
-        x, y, z = mesh.nodes[end]
         kind = "the singular node" if end in mesh.umbilics else "the seam"
-        return f"{kind} at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+        return f"{kind} at ({coordinates(mesh.nodes[end])}) m"
 
     # nodes first, then loops in the project's order: which end the cut came from means nothing
     first, second = sorted(piece.ends, reverse=True)

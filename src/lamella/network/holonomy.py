@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.drawing_origin import coordinates
 from lamella.errors import InputError
 from lamella.network.isothermic import Isothermic, Transition
 from lamella.network.net_mesh import NetMesh
@@ -81,10 +82,9 @@ def vertex_relations(
             continue
         sign, factors = around_vertex(mesh, pieces, across, vertex)
         if sign != 1:
-            x, y, z = mesh.nodes[vertex]
             raise InputError(
-                f"the principal directions of the surface are not told well enough for a net: near ({x:.4g}, {y:.4g}, "
-                f"{z:.4g}) m they turn differently on both sides",
+                f"the principal directions of the surface are not told well enough for a net: near "
+                f"({coordinates(mesh.nodes[vertex])}) m they turn differently on both sides",
                 "round the corners of its boundary (a spline or an arc), or write a smaller tolerance",
                 "surface.boundary",
             )

@@ -9,6 +9,7 @@ import pytest
 
 from lamella import parse_project
 from lamella.files.curves_3dm import write_curves_3dm
+from lamella.files.rhino_file import Frame
 from lamella.project import FormFoundTable
 from lamella.surface.boundary.arcs import circle
 from lamella.surface.boundary.curve import Loop, make_loop
@@ -99,7 +100,7 @@ def test_the_same_curve_comes_back_from_a_drawing(unit: str, tmp_path: Path) -> 
     for name in DRAWN:
         pieces, drawn = waved(make_loop(name, DRAWN[name]), SHIFTS)
         loops += [make_loop(name, DRAWN[name]), make_loop(f"{name} waved", pieces, drawn=drawn)]
-    write_curves_3dm(tmp_path / "a.3dm", loops, unit, name="x", version="1")
+    write_curves_3dm(tmp_path / "a.3dm", loops, Frame(unit), name="x", version="1")
     t = np.arange(300) / 300
     for loop in loops:
         boundary = [{"file": "a.3dm", "id": loop.name}]
@@ -111,7 +112,7 @@ def test_the_same_curve_comes_back_from_a_drawing(unit: str, tmp_path: Path) -> 
 
 
 def test_a_file_is_read_once_where_a_boundary_is_built_many_times(tmp_path: Path) -> None:
-    write_curves_3dm(tmp_path / "a.3dm", [make_loop("rim", DRAWN["circle"])], "mm", name="x", version="1")
+    write_curves_3dm(tmp_path / "a.3dm", [make_loop("rim", DRAWN["circle"])], Frame("mm"), name="x", version="1")
     boundary = [{"file": "a.3dm", "adjust": {"points": 0.1}}]
     table = parse_project({"surface": {"kind": "form-found", "boundary": boundary}}).surface
     assert isinstance(table, FormFoundTable)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lamella.drawing_origin import coordinates
 from lamella.errors import InputError
 from lamella.surface.boundary.course import Course
 from lamella.surface.boundary.pieces import Floats, Integers, Pieces
@@ -274,7 +275,7 @@ def _check_moving(called: str, course: Course, where: str) -> None:
 def place(point: Floats) -> str:
     """A point in a message."""
     # nanometres are rounding
-    return "({:.6g}, {:.6g}, {:.6g}) m".format(*(np.round(point, 9) + 0.0))
+    return f"({coordinates(np.round(point, 9) + 0.0, 6)}) m"
 
 
 def angle_between(a: Floats, b: Floats) -> Floats:

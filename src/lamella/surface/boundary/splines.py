@@ -8,6 +8,7 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.linalg import LinAlgError, LinAlgWarning
 
+from lamella.drawing_origin import origin_of
 from lamella.errors import InputError
 from lamella.surface.boundary.pieces import Floats, Pieces, lines
 
@@ -50,6 +51,9 @@ def open_spline(points: Floats, *, where: str = "") -> Pieces:
 
 
 def _interpolate(points: Floats, degree: int, where: str, *, closed: bool) -> Pieces:
+    # a drawing far from its origin has no digits left in products
+    origin = np.array(origin_of(points))
+    points = points - origin
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     chords = np.concatenate([[0.0], np.cumsum(steps)])
     miss = np.inf
@@ -78,7 +82,8 @@ def _interpolate(points: Floats, degree: int, where: str, *, closed: bool) -> Pi
             remedy,
             where,
         )
-    return bezier(spline.t, degree, spline.c)
+    pieces = bezier(spline.t, degree, spline.c)
+    return pieces.transformed(1.0, origin) if origin.any() else pieces
 
 
 def bezier(knots: Floats, degree: int, controls: Floats) -> Pieces:

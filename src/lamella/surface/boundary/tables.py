@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from lamella.drawing_origin import NOWHERE, Origin, origin_of
 from lamella.errors import InputError
 from lamella.project_values import METRES
 from lamella.surface.boundary.arcs import arc_through, circle
@@ -56,7 +57,7 @@ def boundary_loops(table: FormFoundTable, folder: Path, drawn: Drawn | None = No
     Returns
     -------
     tuple of Loop
-        The outer one first.
+        The outer one first, measured from the table's `origin`.
 
     Raises
     ------
@@ -64,9 +65,36 @@ def boundary_loops(table: FormFoundTable, folder: Path, drawn: Drawn | None = No
         Whatever is wrong with them, with the key of the table.
     """
     drawn = {} if drawn is None else drawn
-    loops = tuple(_loop(one, folder, f"surface.boundary[{k}]", drawn) for k, one in enumerate(table.boundary))
+    origin = table.origin or NOWHERE
+    loops = tuple(_loop(one, origin, folder, f"surface.boundary[{k}]", drawn) for k, one in enumerate(table.boundary))
     check_loops(loops)
     return loops
+
+
+def with_origin(table: FormFoundTable, folder: Path) -> FormFoundTable:
+    """The table with the point of the drawing that is measured from: its own, or one beside the outer loop."""
+    if table.origin is not None:
+        return table
+    outer, where = table.boundary[0], "surface.boundary[0]"
+    shift = np.zeros(3) if outer.place is None else np.array(outer.place.shift)
+    origin = origin_of(_points_on(outer, folder, where) + shift)
+    return table.model_copy(update={"origin": origin}) if any(origin) else table
+
+
+def _points_on(table: BoundaryTable, folder: Path, where: str) -> Floats:
+    """Points on a curve or beside it, as far apart as it is large, m, (n, 3)."""
+    if table.file is not None:
+        with np.errstate(all="ignore"):
+            pieces, unit, _ = _chosen(table, folder, where)
+        return np.asarray(pieces.hull * unit)
+    if table.circle is not None:
+        return np.array(table.circle.center) + table.circle.radius * np.array([[-1.0], [1.0]])
+    if table.points is not None:
+        return np.array(table.points)
+    arcs = [(part.arc.start, part.arc.middle, part.arc.end) for part in table.part or () if part.arc]
+    return np.array(
+        [point for points in [*arcs, *(part.points or () for part in table.part or ())] for point in points]
+    )
 
 
 def drawing_unit(table: FormFoundTable, folder: Path) -> str | None:
@@ -84,16 +112,16 @@ def drawing_unit(table: FormFoundTable, folder: Path) -> str | None:
     return next((name for name, length in METRES.items() if length == metres), "m")
 
 
-def _loop(table: BoundaryTable, folder: Path, where: str, drawn: Drawn) -> Loop:
+def _loop(table: BoundaryTable, origin: Origin, folder: Path, where: str, drawn: Drawn) -> Loop:
     as_drawn = table.model_copy(update={"place": None})
-    loop = drawn.get(as_drawn) or _as_drawn(table, folder, where)
+    loop = drawn.get(as_drawn) or _as_drawn(table.measured_from(origin), origin, folder, where)
     if table.file is not None:
         drawn[as_drawn] = loop
     return loop if table.place is None else _placed(loop, table.place, where)
 
 
-def _as_drawn(table: BoundaryTable, folder: Path, where: str) -> Loop:
-    """A loop before it is placed."""
+def _as_drawn(table: BoundaryTable, origin: Origin, folder: Path, where: str) -> Loop:
+    """A loop before it is placed; numbers of the table are measured from the origin already, those of files not yet."""
     if table.part is not None:
         return _composed(table.name, table.part, where)
     remarks: tuple[str, ...] = ()
@@ -107,7 +135,7 @@ def _as_drawn(table: BoundaryTable, folder: Path, where: str) -> Loop:
     else:
         # numbers of a damaged file may be of any size; what comes out of them is looked at afterwards
         with np.errstate(all="ignore"):
-            pieces, remarks = _from_file(table, folder, where)
+            pieces, remarks = _from_file(table, origin, folder, where)
     sliding = () if table.slide is None else (_sliding(table.slide, 0, pieces.count),)
     return make_loop(table.name, pieces, sliding, remarks=remarks, where=where)
 
@@ -126,12 +154,10 @@ def _placed(loop: Loop, place: PlaceTable, where: str) -> Loop:
     return make_loop(loop.name, pieces, drawn=drawn, remarks=loop.remarks, where=where)
 
 
-def _from_file(table: BoundaryTable, folder: Path, table_key: str) -> tuple[Pieces, tuple[str, ...]]:
-    """The curve of a file, m, and remarks on it."""
-    assert table.file is not None
+def _chosen(table: BoundaryTable, folder: Path, table_key: str) -> tuple[Pieces, float, tuple[str, ...]]:
+    """The curve of a file in its own unit, that unit in metres, and remarks on the curve."""
     where = f"{table_key}.file"
-    path = folder / table.file
-    suffix = path.suffix.lower()
+    path = folder / str(table.file)
     if not path.is_file():
         raise InputError(f"{path}: no such file", "paths are relative to the project file's folder", where)
     try:
@@ -146,18 +172,30 @@ def _from_file(table: BoundaryTable, folder: Path, table_key: str) -> tuple[Piec
             file.read(1)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}", "check its permissions", where) from None
+    suffix = path.suffix.lower()
     content = _READERS[suffix](path, where)
     try:
         unit = metres_per_unit(table.unit, content.metres_per_unit, _HEADERS[suffix], where)
         chosen = choose_loop(content, table.layer, table.id, where, unit)
-        pieces, remarks = chosen.pieces.transformed(unit, np.zeros(3)), chosen.remarks
+    except InputError as error:
+        raise InputError(f"{path}: {error.message}", error.remedy, where) from None
+    return chosen.pieces, unit, chosen.remarks
+
+
+def _from_file(table: BoundaryTable, origin: Origin, folder: Path, table_key: str) -> tuple[Pieces, tuple[str, ...]]:
+    """The curve of a file, measured from the origin, m, and remarks on it."""
+    where = f"{table_key}.file"
+    path = folder / str(table.file)
+    drawn, unit, remarks = _chosen(table, folder, table_key)
+    pieces = drawn.transformed(unit, -np.array(origin))
+    try:
         size = pieces.extent
         # a hole may be small
         if table.unit is None:
             outer = table_key.endswith("[0]")
             refuse_doubtful("the curve", size if outer else max(size, SMALLEST), unit, name_of(unit), where)
         # curves of a .json say themselves how their points are joined
-        corners = None if suffix == ".json" else vertices(pieces, table.interpolation, where)
+        corners = None if path.suffix.lower() == ".json" else vertices(pieces, table.interpolation, where)
         if corners is not None:
             pieces, remark = smooth_curve(corners, table.interpolation, where)
             remarks += (remark,) if remark else ()

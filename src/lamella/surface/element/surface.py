@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.drawing_origin import NOWHERE, Origin
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.curvature import ElementFrames, ElementPoints, element_points, frames
@@ -77,6 +78,12 @@ class ElementSurface:
 
     constant: ClassVar[bool] = True
     """Whether the mean curvature is constant."""
+
+    @property
+    def origin(self) -> Origin:
+        """Point of the drawing that nodes are measured from, m."""
+        origin: Origin = self.figures.get("origin", NOWHERE)
+        return origin
 
     def uncertain(self, places: Places) -> Floats:
         """How far normal curvatures at n places may be off those of the surface that is meant, 1/m, (n,)."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from lamella.drawing_origin import NOWHERE, coordinates, measured_from, origin_figure, told_from
 from lamella.errors import InputError
 from lamella.progress import Progress, patient, silent
 from lamella.surface.element.surface import ElementSurface
@@ -50,8 +51,18 @@ def surface_of_table(table: FormFoundTable, folder: Path, progress: Progress = s
     ------
     InputError
     """
+    from lamella.surface.boundary import with_origin
+
+    table = with_origin(table, folder)
+    with told_from(table.origin or NOWHERE):
+        return _of_table(table, folder, progress)
+
+
+def _of_table(table: FormFoundTable, folder: Path, progress: Progress) -> ElementSurface:
     from lamella.surface.boundary import boundary_loops
 
+    if table.origin:
+        progress(f"  {measured_from(table.origin)}")
     loops = boundary_loops(table, folder)
     remarks = remarks_on(loops)
     for remark in remarks:
@@ -67,7 +78,7 @@ def surface_of_table(table: FormFoundTable, folder: Path, progress: Progress = s
         progress=progress,
     )
     notes = remarks + notes_on(found, given_curvature=table.volume is None)
-    return found.surface("form-found", notes, tolerance=table.tolerance)
+    return found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
 
 
 def remarks_on(loops: tuple[BoundaryLoop, ...]) -> tuple[str, ...]:
@@ -104,9 +115,9 @@ def notes_on(found: Found, *, given_curvature: bool = True) -> tuple[str, ...]:
         notes.append(hanging)
     crossing = self_crossing(found.equilibrium.film)
     if crossing is not None:
-        x, y, z = crossing[np.linalg.norm(crossing - crossing.mean(0), axis=1).argmin()]
+        place = crossing[np.linalg.norm(crossing - crossing.mean(0), axis=1).argmin()]
         notes.append(
-            f"the surface passes through itself, as near ({x:.4g}, {y:.4g}, {z:.4g}) m: it is a surface of this "
+            f"the surface passes through itself, as near ({coordinates(place)}) m: it is a surface of this "
             "boundary, but cannot be built"
         )
     return tuple(notes)

@@ -7,6 +7,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from lamella.drawing_origin import coordinates
 from lamella.errors import InputError
 from lamella.surface.found.adapting import Deviation, deviation_of, refined_sizes
 from lamella.surface.found.film import Film
@@ -148,8 +149,7 @@ def _at_rest(
 
 def _place(film: Film, off: Floats) -> str:
     """Where the worst element is."""
-    x, y, z = film.nodes[film.connectivity.faces[off.argmax()]].mean(0)
-    return f"near ({x:.4g}, {y:.4g}, {z:.4g}) m"
+    return f"near ({coordinates(film.nodes[film.connectivity.faces[off.argmax()]].mean(0))}) m"
 
 
 def _rounded_up(value: float) -> float:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lamella.drawing_origin import measured_from, origin_figure, told_from
 from lamella.errors import InputError
 from lamella.progress import Progress, silent
 from lamella.surface.boundary import Loop, check_loops
@@ -24,7 +25,7 @@ from lamella.surface.imported.edges import face_normals, find_edges, vertex_area
 from lamella.surface.imported.fit import Fit, fit_mean_curvature
 from lamella.surface.imported.keep import kept_surface
 from lamella.surface.imported.nearest import nearest_of_family
-from lamella.surface.imported.raw_mesh import Floats
+from lamella.surface.imported.raw_mesh import Floats, RawMesh
 from lamella.surface.imported.read_mesh import read_mesh
 
 if TYPE_CHECKING:
@@ -66,13 +67,21 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = silent
     InputError
         The mesh cannot be read, or does not mean a surface of constant mean curvature.
     """
-    raw = read_mesh(folder / table.file, table.unit)
+    raw = read_mesh(folder / table.file, table.unit, table.origin)
+    if any(raw.origin):
+        progress(f"  {measured_from(raw.origin)}")
+    with told_from(raw.origin):
+        return _meant(raw, table, progress)
+
+
+def _meant(raw: RawMesh, table: MeshTable, progress: Progress) -> ElementSurface:
     mesh = clean(raw)
     progress(f"  {raw.source}: {len(mesh.points):,} vertices, {len(mesh.faces):,} triangles")
     loops, notes = border_loops(mesh, table.corner_angle)
     check_loops(loops)
     if table.mean_curvature == "varying":
-        return kept_surface(mesh, loops, table, raw.source, notes, progress)
+        kept = kept_surface(mesh, loops, table, raw.source, notes, progress)
+        return replace(kept, figures=kept.figures | origin_figure(raw.origin))
     fit = fit_mean_curvature(mesh.points, mesh.faces)
     given = None if table.mean_curvature == "fit" else float(table.mean_curvature)
     progress(
@@ -114,6 +123,7 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = silent
         distance_max=float(distance.max()),
         distance_rms=float(np.sqrt((distance**2).mean())),
         tolerance=table.tolerance,
+        **origin_figure(raw.origin),
     )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.drawing_origin import NOWHERE, Origin, coordinates
 from lamella.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -56,19 +57,22 @@ class RawMesh:
     Attributes
     ----------
     points : (n, 3)
-        m.
+        m, measured from `origin`.
     faces : (m, 3) int
         Vertex indices, in the file's own orientation.
     source : str
         File name, format, numbers of vertices and faces, unit: for the summary.
     notes : tuple of str
         What the reader left out or decided.
+    origin : tuple of float
+        Point of the drawing, m.
     """
 
     points: Floats
     faces: Integers
     source: str = ""
     notes: tuple[str, ...] = ()
+    origin: Origin = NOWHERE
 
 
 def mesh_error(message: str, remedy: str = "") -> InputError:
@@ -101,5 +105,4 @@ def blocks(text: bytes, ends: bytes) -> Iterator[bytes]:
 
 def place(point: Floats) -> str:
     """A point (3,) in m, for messages."""
-    x, y, z = (round(float(value), 4) + 0.0 for value in point)
-    return f"({x:g}, {y:g}, {z:g})"
+    return f"({coordinates(np.round(point, 4) + 0.0, 6)})"

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from lamella.byte_order import unmarked
+from lamella.drawing_origin import Origin, origin_of
 from lamella.surface.imported.covering import covered_faces, second_diagonals
 from lamella.surface.imported.polygons import split_polygons
 from lamella.surface.imported.raw_mesh import MAXIMUM_FACES, Polygons, RawMesh, mesh_error
@@ -27,7 +28,7 @@ LARGEST_SIZE = 5000.0
 """m; a larger "gridshell" was drawn in millimetres."""
 
 
-def read_mesh(path: Path, unit: str | None = None) -> RawMesh:
+def read_mesh(path: Path, unit: str | None = None, origin: Origin | None = None) -> RawMesh:
     """Read a mesh from .obj, .off, .ply, .stl or .3dm and split its faces into triangles.
 
     Parameters
@@ -37,11 +38,13 @@ def read_mesh(path: Path, unit: str | None = None) -> RawMesh:
     unit : str, optional
         Unit of the file's numbers: mm, cm, dm, m, km, in, ft or yd. A .3dm says its own; metres for the others if
         nothing is said.
+    origin : tuple of float, optional
+        Point of the drawing to measure from, m; one beside the mesh where it is far away for its size.
 
     Returns
     -------
     RawMesh
-        Points in m; nothing mended.
+        Points in m from its `origin`; nothing mended.
 
     Raises
     ------
@@ -61,6 +64,8 @@ def read_mesh(path: Path, unit: str | None = None) -> RawMesh:
     size = float(np.ptp(points[found.corners], axis=0).max())
     if asked is None:
         refuse_doubtful("the mesh", size, metres, name_of(metres), "surface.unit")
+    origin = origin_of(points[found.corners]) if origin is None else origin
+    points = points - np.array(origin)
     covered = covered_faces(points, found.sizes, found.corners)
     faces = split_polygons(points, found.sizes[~covered], found.corners[np.repeat(~covered, found.sizes)])
     twice = second_diagonals(np.unique(points, axis=0, return_inverse=True)[1].reshape(-1)[faces])
@@ -71,7 +76,7 @@ def read_mesh(path: Path, unit: str | None = None) -> RawMesh:
         f"{path.name}: {len(points)} vertices, {len(found.sizes)} faces"
         f"{_kinds(found)}, unit {name_of(metres)}, {size:.4g} m large"
     )
-    return RawMesh(points, faces, source, found.notes + notes)
+    return RawMesh(points, faces, source, found.notes + notes, origin)
 
 
 def _bytes(path: Path) -> bytes:
