@@ -52,6 +52,9 @@ def test_a_double_umbilic_splits_with_its_symmetry() -> None:
     corners = skew_polygon(2)
     corners[[0, 4], 2] += 0.3
     umbilics = results_in(corners, 20, "surface").surface.umbilics
-    assert umbilics.orders.tolist() == [1, 1]
-    assert np.linalg.norm(umbilics.position[:, :2].sum(0)) < 1e-3
-    assert np.abs(umbilics.position[:, :2]).min(1) == pytest.approx(0, abs=1e-3)
+    # without those that elements put next to the beams' corners, which are no nodes of a net
+    inside = np.linalg.norm(umbilics.position[:, :2], axis=1) < 2
+    assert umbilics.orders[inside].tolist() == [1, 1]
+    plan = umbilics.position[inside, :2]
+    assert np.linalg.norm(plan.sum(0)) < 1e-3
+    assert np.abs(plan).min(1) == pytest.approx(0, abs=1e-3)
