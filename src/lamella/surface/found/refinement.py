@@ -10,7 +10,7 @@ import numpy as np
 from lamella.drawing_origin import coordinates
 from lamella.errors import InputError
 from lamella.surface.found.adapting import Deviation, deviation_of, refined_sizes
-from lamella.surface.found.film import Film
+from lamella.surface.found.film import Film, harmonic_over_itself
 from lamella.surface.found.found_film import Found
 from lamella.surface.found.meshing import is_worn, renewed, straightened, with_sizes
 from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError
@@ -59,7 +59,7 @@ def adapted(
         The surface is not there on finer elements.
     """
     try:
-        here = settled(_on_sound_elements(first.film))
+        here = _on_sound_elements(first, settled)
     except NoFilmError as error:
         raise InputError(
             f"the surface found on coarse elements breaks on finer ones: {error}",
@@ -85,11 +85,11 @@ def adapted(
             shortfall = f"elements as small as that asks for would need more than most_nodes = {most_nodes:,} nodes"
             break
         try:
-            here = settled(with_sizes(here.film, size))
+            here = _settled_anew(with_sizes(here.film, size), here.mean_curvature, settled)
         except NoFilmError as error:
             progress(f"    on finer elements: {error}")
             try:
-                here = settled(straightened(renewed(here.film, 0.6)))
+                here = _settled_anew(straightened(renewed(here.film, 0.6)), here.mean_curvature, settled)
             except NoFilmError as again:
                 shortfall = f"on finer elements Newton's method fails ({again})"
                 break
@@ -118,16 +118,29 @@ def adapted(
     )
 
 
-def _on_sound_elements(film: Film) -> Film:
+def _on_sound_elements(first: Equilibrium, settled: Callable[[Film], Equilibrium]) -> Equilibrium:
     """A film ready to be refined.
 
     Elements that a path has drawn out tell nothing of where smaller ones are needed, and magnify rounding.
     """
-    if is_worn(film):
-        # what cannot be made anew may still do as it is
+    if is_worn(first.film):
+        # what is no film on elements made anew may still do as it is
         with suppress(NoFilmError):
-            return renewed(film)
-    return straightened(film)
+            return _settled_anew(renewed(first.film), first.mean_curvature, settled)
+    return settled(straightened(first.film))
+
+
+def _settled_anew(film: Film, mean_curvature: float, settled: Callable[[Film], Equilibrium]) -> Equilibrium:
+    """The film on new elements laid over it, of about a mean curvature (1/m).
+
+    Where its normal turns much within an element, as at a reflex corner of its boundary, new nodes along the normals of
+    the old elements crowd, and an element folds in the first steps. A film's coordinates solve Laplace x = 2 H n over
+    the film itself: solved once, that spreads the nodes and changes the surface by no more than the elements are off.
+    """
+    try:
+        return settled(film)
+    except NoFilmError:
+        return settled(harmonic_over_itself(film, mean_curvature))
 
 
 def _at_rest(
