@@ -17,6 +17,9 @@ from lamella.network.network import SINGULAR
 from lamella.pipeline import Results
 from measure_network import measure
 
+# of films, by default
+TOLERANCE = 2e-3
+
 
 def skew_polygon(order: int, radius: float = 4.0, height: float = 3.0) -> np.ndarray:
     count = 2 * (order + 2)
@@ -43,7 +46,9 @@ def test_one_umbilic_in_a_skew_polygon(order, limit) -> None:
     figures = measure(json.loads(network_bytes(net, name="x", version="0")))
     # DESIGN section 9: published nets of this kind are off by 0.47 degrees
     assert figures["node_angle_deviation_max_deg"] < limit
-    assert figures["normal_curvature_error_rel_max"] < 5e-3
+    # where a lamella goes over an element's edge, the kink there is read as curvature over the samples next to it: up
+    # to 2.1 times what H is off (2.8e-3 at 1.3e-3 for order 1; 1.6e-4 at 2.2e-4 with tolerance = 0.0005)
+    assert figures["normal_curvature_error_rel_max"] < 2 * TOLERANCE
 
 
 @pytest.mark.slow
