@@ -144,7 +144,7 @@ def test_the_comments_of_a_new_project_are_its_defaults(
     text = capsys.readouterr().out
     plain = tomllib.loads(text)
     # all keys active but those that exclude another, and the ones without a default
-    others = "spacing|slot_width|end_distance|hub_radius|volume|unit|normal_curvature"
+    others = "spacing|slot_width|end_distance|hub_radius|volume|unit|origin|normal_curvature"
     uncommented = re.sub(rf"^# (?!{others})([a-z]\w* = )", r"\1", text, flags=re.M)
     uncommented = uncommented.replace('# [materials."my steel"]', '[materials."my steel"]')
     assert parse_project(tomllib.loads(uncommented)).model_dump(exclude={"materials"}) == parse_project(
