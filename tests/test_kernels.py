@@ -9,7 +9,7 @@ from conftest import run_of_example
 from kernels import EXAMPLES, KERNELS, differences, same_text, summary_under
 
 # examples that take about a second; the others are larger draws
-QUICK = {"03_catenoid", "06_scherk", "08_two_rings", "10_saddle", "15_vault"}
+QUICK = {"06_scherk", "10_saddle"}
 NAMES = [
     pytest.param(path.stem, marks=[] if path.stem in QUICK else pytest.mark.slow)
     for path in sorted(EXAMPLES.glob("*.toml"))

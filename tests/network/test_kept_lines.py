@@ -142,6 +142,7 @@ def test_asymptotic_lines_of_a_hyperboloid(tmp_path: Path) -> None:
     assert errors[1] < 5e-4
 
 
+@pytest.mark.slow
 def test_asymptotic_lines_of_a_torus(tmp_path: Path) -> None:
     """(R + r cos v) cos v du^2 + r dv^2 = 0, from the fundamental forms of the torus."""
     fine = np.linspace(2.1, 4.1, 4001)

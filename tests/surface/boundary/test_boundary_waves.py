@@ -67,6 +67,7 @@ def tables(**adjust: float | bool) -> FormFoundTable:
     return table
 
 
+@pytest.mark.slow
 def test_curves_of_parts_and_circles_have_waves() -> None:
     table = tables(points=0.2, keep_height=True, move=0.1)
     freedom = Freedom(table)
