@@ -90,6 +90,8 @@ def test_off_files(tmp_path: Path, head: str) -> None:
         "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n",
         "OFF\n9999999999 1 0\n",
         "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n",
+        "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-1 0 1 2\n",
+        "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n99999999999999999999 0 1 2\n",
         "OFF\n-3 1 0\n",
         "OFF\n3 1 0\n0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
     ],

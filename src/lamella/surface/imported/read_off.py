@@ -43,14 +43,15 @@ def read_off(data: bytes) -> Polygons:
     try:
         points = np.array([words[:3] for words in lines[1 : 1 + vertices]], dtype=np.float64).reshape(vertices, 3)
         rows = [
-            [int(word) for word in words[: 1 + int(words[0])]] for words in lines[1 + vertices : 1 + vertices + faces]
+            [int(word) for word in words[: 1 + max(int(words[0]), 0)]]
+            for words in lines[1 + vertices : 1 + vertices + faces]
         ]
     except (ValueError, OverflowError):
         raise mesh_error("a line of the .off is not the numbers it should be", AGAIN) from None
-    sizes: Integers = np.array([row[0] for row in rows], dtype=np.int64)
     short = [number for number, row in enumerate(rows, 1) if row[0] < 3 or len(row) != 1 + row[0]]
     if short:
         raise mesh_error(f"face {short[0]} of the .off has fewer corners than it says, or fewer than 3", AGAIN)
+    sizes: Integers = np.array([row[0] for row in rows], dtype=np.int64)
     try:
         corners = np.array([corner for row in rows for corner in row[1:]], dtype=np.int64)
     except OverflowError:
