@@ -93,6 +93,16 @@ def same(one: Network, other: Network, motion: Motion | None = None) -> float:
     return worst / size_of(one)
 
 
+def on_a_margin(one: Network, other: Network) -> bool:
+    """Whether nets differ by one end of a lamella, about as near the next one as ends are one node.
+
+    `lamella.network.rim_ends` takes crossings within 0.005 cells of the rim for one node; coarse elements are off by a
+    fifth of that.
+    """
+    near = min(float(net.cell_edges.min() / np.median(net.cell_edges)) for net in (one, other))
+    return abs(len(one.node_points) - len(other.node_points)) == 1 and len(one.ids) == len(other.ids) and near < 0.02
+
+
 def waving(seed: int, count: int = 20) -> np.ndarray:
     """A closed waving curve of about 6 m radius."""
     rng = np.random.default_rng(seed)
@@ -289,7 +299,7 @@ def drawn(seed: int) -> Case:
 @pytest.mark.slow
 def test_nets_of_random_surfaces_go_with_them() -> None:
     """Where a net meets itself it is one and the same; where it does not, its seam lies along the elements."""
-    alike, seams = 0, 0
+    alike, seams, ties = 0, 0, 0
     for seed in range(15):
         case = drawn(seed)
         surface = film(case)
@@ -300,10 +310,17 @@ def test_nets_of_random_surfaces_go_with_them() -> None:
             seams += 1
             continue
         assert off(crossings, double.node_points) < 1e-9 * size_of(network), seed
-        others = [(film(case, 2e-3), None)] + [(film(case, motion=move), move) for move in MOTIONS.values()]
-        worst = max(same(network, element_network(there, cells=case.cells).network, move) for there, move in others)
+        nets = [(element_network(film(case, 2e-3), cells=case.cells).network, None)]
+        nets += [
+            (element_network(film(case, motion=move), cells=case.cells).network, move) for move in MOTIONS.values()
+        ]
+        if any(on_a_margin(network, net) for net, _ in nets):
+            ties += 1
+            continue
+        worst = max(same(network, net, move) for net, move in nets)
         print(seed, len(network.node_points), f"{worst:.1e}")
         assert worst < ACCURACY, seed
         alike += 1
-    print(f"{alike} alike, {seams} with seams")
+    print(f"{alike} alike, {seams} with seams, {ties} with an end on a margin")
     assert alike >= 9
+    assert ties <= 1
