@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 BESIDE = 0.02
 # tolerance of the elements on which other films than the one asked for are tried
 COARSE = 2e-2
+# Newton steps spent on other films before no further one is tried: some seconds, whatever the boundary
+MOST_TRIED = 120
 # of the film's size: it hangs where it is this much lower than its whole boundary, and nowhere higher by as much
 HANGS = 0.01
 
@@ -182,12 +184,20 @@ def find_film(
     unstable = branch == "unstable"
     coarse = max(tolerance, COARSE)
 
+    tried = 0
+
     def finds(others: tuple[Loop, ...], value: float, unstable: bool = False) -> bool:
+        nonlocal tried
+        if tried > MOST_TRIED:
+            return False
         progress(f"  trying mean_curvature = {value:g} 1/m")
+        search = FirstFilm(others, order, silent, short=True)
         try:
-            _found(others, value, None, order, coarse, unstable, most_nodes, silent)
+            _found(others, value, None, order, coarse, unstable, most_nodes, silent, search)
         except (InputError, SearchError):
             return False
+        finally:
+            tried += search.steps
         return True
 
     refuse_afloat(loops)

@@ -63,6 +63,8 @@ class FirstFilm:
         Volume at which that of the films followed turns back, m^3.
     unstable : Equilibrium or None
         An unstable film of the wanted mean curvature that was found on the way to a stable one.
+    short : bool
+        Leave out the long way from flat loops.
     """
 
     loops: tuple[Loop, ...]
@@ -74,6 +76,7 @@ class FirstFilm:
     calm: bool = False
     most: float | None = None
     unstable: Equilibrium | None = None
+    short: bool = False
 
     def of_curvature(self, mean_curvature: float, *, unstable: bool = False) -> First:
         """The film of a mean curvature (1/m), the stable or the unstable one.
@@ -106,7 +109,7 @@ class FirstFilm:
                 minimal = False
                 yield calm
         yield from self._from_drawn(mean_curvature)
-        if minimal:
+        if minimal and not self.short:
             calm = self._minimal()
             if calm:
                 yield calm

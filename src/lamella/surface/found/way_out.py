@@ -85,7 +85,7 @@ class Tries:
         return None
 
     def _fold(self, wanted: float) -> float | None:
-        search = FirstFilm(self.loops, self.order, lambda _: None)
+        search = FirstFilm(self.loops, self.order, lambda _: None, short=True)
         try:
             search.of_curvature(wanted)
         except SearchError as error:
