@@ -5,8 +5,8 @@ BIN := .venv/bin
 ONE := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1
 
 # what can differ between processors: elements, films, examples and their page in the docs
-NUMERICS := tests/surface/element tests/surface/found tests/projection/test_star_measures.py tests/test_sparse.py \
-	tests/test_examples.py tests/test_docs.py
+NUMERICS := tests/surface/element tests/surface/found/test_last_bits.py tests/surface/found/test_rings.py \
+	tests/projection/test_star_measures.py tests/test_sparse.py tests/test_examples.py tests/test_docs.py
 
 .PHONY: demo test slow kernels lint types bench docs clean
 
