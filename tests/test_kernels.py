@@ -6,14 +6,10 @@ import orjson
 import pytest
 
 from conftest import run_of_example
-from kernels import EXAMPLES, KERNELS, differences, same_text, summary_under
+from kernels import KERNELS, differences, same_text, summary_under
 
-# examples that take about a second; the others are larger draws
-QUICK = {"06_scherk", "10_saddle"}
-NAMES = [
-    pytest.param(path.stem, marks=[] if path.stem in QUICK else pytest.mark.slow)
-    for path in sorted(EXAMPLES.glob("*.toml"))
-]
+# examples that take about a second; `python tests/kernels.py` compares all of them
+NAMES = ["06_scherk", "10_saddle"]
 
 
 @pytest.mark.parametrize("name", NAMES)
