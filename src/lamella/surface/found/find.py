@@ -191,7 +191,7 @@ def find_film(
         if tried > MOST_TRIED:
             return False
         progress(f"  trying mean_curvature = {value:g} 1/m")
-        search = FirstFilm(others, order, silent, short=True)
+        search = FirstFilm(others, order, silent, short=len(others) == 1)
         try:
             _found(others, value, None, order, coarse, unstable, most_nodes, silent, search)
         except (InputError, SearchError):
