@@ -115,6 +115,12 @@ def parse_project(values: dict[str, Any], *, source: str = "", text: str = "") -
     ------
     InputError
     """
+    if not isinstance(values, dict):
+        raise InputError(
+            f"the project is a {type(values).__name__}, not a table of keys and values",
+            "give a dictionary, as tomllib.loads makes it of a project's text; read_project takes the path of a file",
+            source,
+        )
     if not values:
         raise InputError("the project is empty", "write a starter project with: lamella new unduloid", source)
     try:
