@@ -15,7 +15,7 @@ from lamella.fabrication import write_drawings, write_schedule
 from lamella.files.curves_3dm import write_curves_3dm
 from lamella.files.lamellas_json import write_lamellas
 from lamella.files.mesh_files import write_network_obj, write_surface_obj, write_surface_ply
-from lamella.files.model_3dm import write_model
+from lamella.files.model_3dm import model_bytes
 from lamella.files.network_json import write_network
 from lamella.files.nodes_csv import write_nodes_csv
 from lamella.files.rhino_file import Frame
@@ -81,8 +81,9 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
         put("network.json", write_network, network, **signed)
         put("network.obj", write_network_obj, network, **signed)
         put("nodes.csv", write_nodes_csv, network, **signed)
-        content = {"surface": results.mesh, "network": results.network, "lamellas": lamellas, "frame": frame}
-        put("model.3dm", write_model, **content, **signed)
+        content: Any = {"surface": results.mesh, "network": results.network, "lamellas": lamellas, "frame": frame}
+        # rhino3dm's own Write says nothing of a full disk
+        put("model.3dm", lambda path: write_whole(path, model_bytes(**content, **signed)))
     if network and lamellas:
         put("lamellas.json", write_lamellas, network, lamellas, **signed)
     if network and lamellas and results.parts and results.nesting:

@@ -20,7 +20,7 @@ from scipy.interpolate import BSpline
 from test_files_samples import RADIUS, cylinder_mesh, cylinder_net, helix, inward
 
 from lamella.files import model_3dm
-from lamella.files.model_3dm import model_bytes, write_model
+from lamella.files.model_3dm import model_bytes
 from lamella.files.splines import RELATIVE_TOLERANCE, fit_spline
 
 NODE_LAYERS = ["nodes regular", "nodes boundary", "nodes singular", "nodes seam"]
@@ -214,11 +214,12 @@ def test_a_failed_write_raises_and_leaves_the_older_file(tmp_path: Path) -> None
 import resource, sys
 from pathlib import Path
 from test_files_samples import RADIUS, cylinder_mesh, cylinder_net
-from lamella.files.model_3dm import write_model
+from lamella.files.model_3dm import model_bytes
+from lamella.files.whole import write_whole
 network, lamellas = cylinder_net()
 resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
 try:
-    write_model(Path(sys.argv[1]), name="x", version="1", surface=cylinder_mesh(), network=network)
+    write_whole(Path(sys.argv[1]), model_bytes(name="x", version="1", surface=cylinder_mesh(), network=network))
 except OSError as error:
     print("OSError", error.errno)
 """
@@ -237,11 +238,11 @@ except OSError as error:
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_network_with_a_bad_number_is_not_written(tmp_path: Path) -> None:
+def test_a_network_with_a_bad_number_is_not_written() -> None:
     network, _ = cylinder_net()
     network.sample_tangents[3, 0] = np.nan
     with pytest.raises(ValueError, match="row 3"):
-        write_model(tmp_path / "m.3dm", name="x", version="1", surface=cylinder_mesh(), network=network)
+        model_bytes(name="x", version="1", surface=cylinder_mesh(), network=network)
 
 
 @pytest.mark.parametrize("count", [2, 3, 4, 5, 17, 200])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import rhino3dm
 from numpy.typing import NDArray
@@ -11,7 +9,6 @@ from numpy.typing import NDArray
 from lamella.files.rhino_file import IN_METRES, Frame, RhinoFile, nurbs_curve
 from lamella.files.splines import RELATIVE_TOLERANCE, fit_spline
 from lamella.files.text import require_finite
-from lamella.files.whole import write_whole
 from lamella.network.network import NODE_KINDS, Network
 from lamella.network.turning import derivative
 from lamella.strip.lamellas import Lamellas, Section, twisted_strip
@@ -77,22 +74,6 @@ def model_bytes(
     require_finite(network.sample_points, network.sample_normals, network.sample_tangents)
     require_finite(network.sample_arclengths, network.node_points, surface.points, surface.normals)
     return _Model(name, version, frame).filled(surface, network, lamellas).encoded()
-
-
-def write_model(
-    path: Path,
-    *,
-    name: str,
-    version: str,
-    surface: SurfaceMesh,
-    network: Network,
-    lamellas: Lamellas | None = None,
-    frame: Frame = IN_METRES,
-) -> None:
-    """Write `model_bytes`; OSError if it cannot be written whole."""
-    content = model_bytes(name=name, version=version, surface=surface, network=network, lamellas=lamellas, frame=frame)
-    # rhino3dm's own Write says nothing of a full disk.
-    write_whole(path, content)
 
 
 class _Model:

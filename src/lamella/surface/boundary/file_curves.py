@@ -6,15 +6,15 @@ import unicodedata
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
+from lamella.errors import InputError
 from lamella.surface.boundary.pieces import Pieces
 
 MOST_NESTED, MOST_INSTANCES, MOST_CURVES = 16, 20_000, 100_000
 """Blocks within blocks, block instances and curves of a file: more are a mistake, and would take for ever."""
-
-UNSOUND = "curve with impossible numbers"
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +82,53 @@ class CurveFile:
     metres_per_unit: float | None
     tolerance: float | None = None
     others: Mapping[str, int] = field(default_factory=Counter[str])
+
+
+class Gathering:
+    """What has been found in a file so far.
+
+    Attributes
+    ----------
+    curves : list of FileCurve
+    others : Counter of str
+        As in `CurveFile`.
+    """
+
+    def __init__(self, path: Path, where: str) -> None:
+        self.path, self.where = path, where
+        self.curves: list[FileCurve] = []
+        self.others: Counter[str] = Counter()
+        self._instances = 0
+
+    def put(self, curve: FileCurve) -> None:
+        """Add a curve; one with impossible numbers is only counted.
+
+        Raises
+        ------
+        InputError
+            There are `MOST_CURVES` already.
+        """
+        if not curve.pieces.sound:
+            self.others["curve with impossible numbers"] += 1
+            return
+        if len(self.curves) >= MOST_CURVES:
+            raise self._too_many(f"{MOST_CURVES:,} curves")
+        self.curves.append(curve)
+
+    def count_instance(self) -> None:
+        """Count an instance of a block.
+
+        Raises
+        ------
+        InputError
+            There are `MOST_INSTANCES` already.
+        """
+        self._instances += 1
+        if self._instances > MOST_INSTANCES:
+            raise self._too_many(f"{MOST_INSTANCES:,} block instances")
+
+    def _too_many(self, limit: str) -> InputError:
+        return InputError(f"{self.path} holds more than {limit}", "save the boundary alone", self.where)
 
 
 def _bare(name: str) -> str:

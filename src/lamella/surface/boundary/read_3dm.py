@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -12,14 +11,7 @@ import numpy as np
 from lamella.errors import InputError
 from lamella.files.rhino_model import RhinoCurve, RhinoModel, RhinoObject, read_rhino
 from lamella.surface.boundary.course import Course
-from lamella.surface.boundary.file_curves import (
-    MOST_CURVES,
-    MOST_INSTANCES,
-    MOST_NESTED,
-    UNSOUND,
-    CurveFile,
-    FileCurve,
-)
+from lamella.surface.boundary.file_curves import MOST_NESTED, CurveFile, FileCurve, Gathering
 from lamella.surface.boundary.joining import find_chains
 from lamella.surface.boundary.pieces import Floats, Pieces
 from lamella.surface.boundary.splines import bezier
@@ -80,18 +72,16 @@ class _Instance(NamedTuple):
     hidden: str
 
 
-class _Reading:
+class _Reading(Gathering):
     """Curves of a model, gathered from its objects and its blocks."""
 
     def __init__(self, model: RhinoModel, path: Path, where: str) -> None:
-        self._path, self._where, self._tolerance = path, where, model.tolerance
+        super().__init__(path, where)
+        self._tolerance = model.tolerance
         self._layers = {layer.index: layer for layer in model.layers}
         self._by_id = {layer.id: layer for layer in model.layers}
         self._blocks = {block.id: block for block in model.blocks}
         self._objects = {item.id: item for item in model.objects}
-        self.curves: list[FileCurve] = []
-        self.others: Counter[str] = Counter()
-        self._instances = 0
 
     def add(self, item: RhinoObject, matrix: Floats, instance: _Instance | None, depth: int) -> None:
         """Add an object of the model, or of a block that is put by a matrix (4, 4)."""
@@ -106,26 +96,14 @@ class _Reading:
             self._instance(item, matrix, _Instance(ids, hidden), depth)
         elif item.kind == "Curve":
             for pieces in filter(None, map(_pieces, item.curves)):
-                self._append(replace(about, pieces=pieces.mapped(matrix)))
+                self.put(replace(about, pieces=pieces.mapped(matrix)))
         elif item.kind in ("Brep", "Extrusion"):
             self._edges(item, matrix, about)
         else:
             self.others[_OTHERS.get(item.kind, item.kind or "unknown object")] += 1
 
-    def _append(self, curve: FileCurve) -> None:
-        if not curve.pieces.sound:
-            self.others[UNSOUND] += 1
-            return
-        if len(self.curves) >= MOST_CURVES:
-            limit = f"{self._path} holds more than {MOST_CURVES:,} curves"
-            raise InputError(limit, "save the boundary alone", self._where)
-        self.curves.append(curve)
-
     def _instance(self, reference: RhinoObject, matrix: Floats, instance: _Instance, depth: int) -> None:
-        self._instances += 1
-        if self._instances > MOST_INSTANCES:
-            limit = f"{self._path} holds more than {MOST_INSTANCES:,} block instances"
-            raise InputError(limit, "save the boundary alone", self._where)
+        self.count_instance()
         block = self._blocks.get(reference.block)
         before = len(self.curves)
         if block is not None and depth < MOST_NESTED:
@@ -151,7 +129,7 @@ class _Reading:
         rims = sorted([*closed, *(chain.pieces for chain in chains)], key=lambda rim: -Course(rim).length)
         for number, rim in enumerate(rims, 1):
             ids = (f"{about.ids[0]}/{number}", *about.ids) if len(rims) > 1 else about.ids
-            self._append(replace(about, ids=ids, pieces=rim, kind="naked edge", edge=True))
+            self.put(replace(about, ids=ids, pieces=rim, kind="naked edge", edge=True))
 
     def _layer(self, item: RhinoObject) -> str:
         layer = self._layers.get(item.layer)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
-from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -15,14 +14,7 @@ import numpy as np
 from lamella.errors import InputError
 from lamella.surface.boundary.arcs import bulge_arc, ellipse_arc
 from lamella.surface.boundary.dxf_document import dxf_damage, open_dxf
-from lamella.surface.boundary.file_curves import (
-    MOST_CURVES,
-    MOST_INSTANCES,
-    MOST_NESTED,
-    UNSOUND,
-    CurveFile,
-    FileCurve,
-)
+from lamella.surface.boundary.file_curves import MOST_NESTED, CurveFile, FileCurve, Gathering
 from lamella.surface.boundary.pieces import Floats, Pieces, lines, stack
 from lamella.surface.boundary.splines import bezier, closed_spline, open_spline
 from lamella.wording import cut
@@ -81,14 +73,12 @@ def read_dxf(path: Path, where: str) -> CurveFile:
     return CurveFile(tuple(reading.curves), metres, others=reading.others)
 
 
-class _Reading:
+class _Reading(Gathering):
     """Curves of a drawing, gathered from its model space and its blocks."""
 
     def __init__(self, drawing: Any, path: Path, where: str) -> None:
-        self._drawing, self._path, self._where = drawing, path, where
-        self.curves: list[FileCurve] = []
-        self.others: Counter[str] = Counter()
-        self._instances = 0
+        super().__init__(path, where)
+        self._drawing = drawing
 
     def read(self, entities: Iterable[Any], matrix: Floats, inherited: str | None, ids: str, depth: int) -> None:
         """Add what is drawn in model space or in a block.
@@ -111,26 +101,19 @@ class _Reading:
             if entity.dxftype() == "INSERT":
                 self._instance(entity, matrix, layer, ids, depth)
                 continue
-            about = f"{self._path}: {entity.dxftype()} {entity.dxf.handle} on layer {cut(plain(layer), 40)!r}"
-            with dxf_damage(about, self._where):
+            about = f"{self.path}: {entity.dxftype()} {entity.dxf.handle} on layer {cut(plain(layer), 40)!r}"
+            with dxf_damage(about, self.where):
                 try:
                     pieces = _pieces(entity)
                 except InputError as error:
-                    raise InputError(f"{about}: {error.message}", error.remedy, self._where) from None
+                    raise InputError(f"{about}: {error.message}", error.remedy, self.where) from None
             if pieces is None:
                 self.others[_OTHERS.get(entity.dxftype(), entity.dxftype())] += 1
                 continue
             pieces = pieces.mapped(matrix) if depth else pieces
-            if not pieces.sound:
-                self.others[UNSOUND] += 1
-            else:
-                if len(self.curves) >= MOST_CURVES:
-                    limit = f"{self._path} holds more than {MOST_CURVES:,} curves"
-                    raise InputError(limit, "save the boundary alone", self._where)
-                handle = str(entity.dxf.handle)
-                names = (ids + handle, handle, *ids.split("/")[:-1]) if depth else (handle,)
-                hidden = self._hidden(entity, layer)
-                self.curves.append(FileCurve(plain(layer), names, entity.dxftype(), pieces, hidden))
+            handle = str(entity.dxf.handle)
+            names = (ids + handle, handle, *ids.split("/")[:-1]) if depth else (handle,)
+            self.put(FileCurve(plain(layer), names, entity.dxftype(), pieces, self._hidden(entity, layer)))
 
     def _instance(self, instance: Any, matrix: Floats, layer: str, ids: str, depth: int) -> None:
         block = self._drawing.blocks.get(instance.dxf.get("name", ""))
@@ -142,10 +125,7 @@ class _Reading:
             return
         before = len(self.curves)
         for number, one in enumerate(instance.multi_insert() if instance.mcount > 1 else [instance]):
-            self._instances += 1
-            if self._instances > MOST_INSTANCES:
-                limit = f"{self._path} holds more than {MOST_INSTANCES:,} block instances"
-                raise InputError(limit, "save the boundary alone", self._where)
+            self.count_instance()
             # the library's points are rows
             put = one.matrix44()
             here = matrix @ np.array([put.get_row(row) for row in range(4)], float).T
