@@ -75,7 +75,11 @@ def check(seed: int) -> str:
         assert np.abs(counts - np.round(counts)).max(initial=0.0) < 1e-9, seed
         # a rounded net goes through every umbilic that is not on the rim
         assert all(umbilic["node"] or umbilic["boundary"] for umbilic in net.describe()["umbilics"]), seed
-    assert ruler(network)["family_sign_errors"] == 0, seed
+    measured = ruler(network)
+    assert measured["family_sign_errors"] == 0, seed
+    # lamellas turn sharply past umbilics that are no nodes, and are sampled finely there
+    assert measured["node_arclength_error_max"] < 2e-5 * measured["cell_edge_median"], seed
+    assert measured["node_angle_deviation_max_deg"] < 0.1 + 1.5 * np.abs(network.node_angles - 90).max(), seed
     # no lamella passes one node twice, but where a closed one comes back to its first
     for k in range(len(network.ids)):
         stops = network.stop_nodes[network.stop_offsets[k] : network.stop_offsets[k + 1]]

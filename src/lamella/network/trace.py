@@ -17,6 +17,7 @@ from lamella.network.faces import trace_faces
 from lamella.network.lattice import Lattice, build_lattice, ragged_ranges
 from lamella.network.leaning_band import LeaningBand, line_darboux
 from lamella.network.network import BOUNDARY, Network
+from lamella.network.sharp_turns import more_samples
 from lamella.surface.closed_form import ClosedForm
 from lamella.surface.darboux import Darboux, lamella_darboux, sideways_slope
 
@@ -154,10 +155,14 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
     count = np.maximum(np.ceil(segments.span / cells * per_cell - 1e-6), 1).astype(np.int64)
     # every segment gives the samples from its start on; a line's last segment also gives its end
     last = np.r_[segments.owner[1:] != segments.owner[:-1], True]
-    given = count + last
-    segment = np.repeat(np.arange(len(count)), given)
-    fraction = ragged_ranges(given) / count[segment]
-    samples = _sample(surface, segments, arcs, segment, fraction)
+    while True:
+        given = count + last
+        segment = np.repeat(np.arange(len(count)), given)
+        fraction = ragged_ranges(given) / count[segment]
+        samples = _sample(surface, segments, arcs, segment, fraction)
+        before, count = count, more_samples(count, given, samples.tangents)
+        if (count == before).all():
+            break
 
     lines_count = len(lines.family)
     offsets = np.r_[0, np.cumsum(np.bincount(segments.owner, given, minlength=lines_count).astype(np.int64))]

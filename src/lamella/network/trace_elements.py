@@ -27,6 +27,7 @@ from lamella.network.level_lines import (
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network, Period
 from lamella.network.numbering import numbered, rim_places
 from lamella.network.rim_ends import Ends, along_rim, settled_ends, within_tips
+from lamella.network.sharp_turns import more_samples
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
 from lamella.network.tracks import A, B, Tracks, make_tracks, rim_tips, singular_ends
 from lamella.network.turning import derivative, turning
@@ -166,19 +167,23 @@ def trace_elements(
     whole = np.minimum(np.bincount(chain, reach, chains), 1.0)[chain]
     number = np.maximum(np.ceil(reach / whole * per_cell - 1e-6), FEWEST).astype(np.int64)
     last = np.r_[chain[1:] != chain[:-1], True]
-    given = number + last
-    segment = np.repeat(np.arange(len(number)), given)
-    fraction = ragged_ranges(given) / number[segment]
-    parameter, near = arcs.parameter(segment, fraction)
-    # element by element
-    order = counted(near.element + 1, len(cells.value) + 1).astype(np.int64)
-    spots = segments.spots(segment, parameter)[order]
-    places, points, velocity = segments.velocity(spots, near[order])
-    tangents = velocity / lengths(velocity)[:, None]
+    while True:
+        given = number + last
+        segment = np.repeat(np.arange(len(number)), given)
+        fraction = ragged_ranges(given) / number[segment]
+        parameter, near = arcs.parameter(segment, fraction)
+        # element by element
+        order = counted(near.element + 1, len(cells.value) + 1).astype(np.int64)
+        back = np.empty(len(order), np.int64)
+        back[order] = np.arange(len(order))
+        spots = segments.spots(segment, parameter)[order]
+        places, points, velocity = segments.velocity(spots, near[order])
+        tangents = velocity / lengths(velocity)[:, None]
+        before, number = number, more_samples(number, given, tangents.take(back, 0))
+        if (number == before).all():
+            break
     points = onto(places.element, points)
     normals, tangents, bend, twist = _frames(cells, places, tangents)
-    back = np.empty(len(order), np.int64)
-    back[order] = np.arange(len(order))
     places, bend, twist = places[back], bend[back], twist[back]
     points, normals, tangents = (t.take(back, 0) for t in (points, normals, tangents))
 
@@ -187,9 +192,9 @@ def trace_elements(
     lamella_of[used] = np.arange(len(used))
     owner = lamella_of[chain]
     offsets = np.r_[0, np.cumsum(np.bincount(owner, given, minlength=len(used)).astype(np.int64))]
-    before = np.cumsum(arcs.length) - arcs.length
-    before -= before[np.searchsorted(owner, owner)]
-    arclengths = before[segment] + fraction * arcs.length[segment]
+    begun = np.cumsum(arcs.length) - arcs.length
+    begun -= begun[np.searchsorted(owner, owner)]
+    arclengths = begun[segment] + fraction * arcs.length[segment]
     kept = lamella_of[stops.chain] >= 0
     stop_chain, stop_node = lamella_of[stops.chain[kept]], stops.node[kept]
     segment_start = np.cumsum(given) - given

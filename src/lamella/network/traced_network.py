@@ -23,6 +23,7 @@ from lamella.network.meetings import Crossings, find_crossings
 from lamella.network.network import Network
 from lamella.network.pattern import Pattern
 from lamella.network.seeds import Seeded, seeded_lines
+from lamella.network.sharp_turns import more_samples
 from lamella.network.trace import COARSE, FINE, FINE_LIMIT
 from lamella.network.traced_stops import (
     SAME_NODE,
@@ -227,10 +228,14 @@ def _network(
     total = np.bincount(owner[first], length, flow.count)[owner[first]]
     count = np.maximum(np.ceil(length / np.minimum(total, spacing) * per_cell - 1e-6), FEWEST).astype(np.int64)
     last = np.r_[owner[first][1:] != owner[first][:-1], True]
-    given = count + last
-    segment = np.repeat(np.arange(len(count)), given)
-    s = stops.s[first[segment]] + ragged_ranges(given) / count[segment] * length[segment]
-    where, look, tangents = flow.at(owner[first[segment]], s)
+    while True:
+        given = count + last
+        segment = np.repeat(np.arange(len(count)), given)
+        s = stops.s[first[segment]] + ragged_ranges(given) / count[segment] * length[segment]
+        where, look, tangents = flow.at(owner[first[segment]], s)
+        before, count = count, more_samples(count, given, tangents)
+        if (count == before).all():
+            break
     begin = np.cumsum(given) - given
     stop_sample = np.empty(len(owner), np.int64)
     stop_sample[first] = begin
