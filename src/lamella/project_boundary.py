@@ -187,6 +187,14 @@ class BoundaryTable(Table):
         + ' Polylines of a .dxf or .3dm too: there "spline" keeps true corners, and when not given a polyline of many '
         "vertices that turn little is taken as a smooth curve.",
     )
+    corner_radius: float | None = length(
+        "Corners are rounded by fillets of this least radius of curvature (between straight sides; in m whatever the "
+        "unit). Curvature rises and falls smoothly along them, so they begin 1.3 times as far from the corner as an "
+        "arc would: at 2.2 radii where the sides meet at 60 degrees, 1.3 at 90, 0.75 at 120. Corners are kept when not "
+        "given, always where a part slides, and where they turn by less than 2 degrees.",
+        default=None,
+        examples=[0.4],
+    )
     circle: CircleTable | None = Field(default=None, description="A circle {center, radius, normal}.")
     file: Annotated[str | None, file_name(CURVE_FILES)] = Field(
         default=None,
@@ -245,6 +253,13 @@ class BoundaryTable(Table):
                     f'write "interpolation": "{self.interpolation}" beside the points in the file',
                     "interpolation",
                 )
+        splined = self.points is not None and self.interpolation == "spline"
+        if self.corner_radius is not None and (self.circle is not None or splined):
+            raise Refusal(
+                f"corner_radius goes with corners: a {'spline' if splined else 'circle'} has none",
+                'write interpolation = "polyline"' if splined else "leave corner_radius out",
+                "corner_radius",
+            )
         for key in ("layer", "id"):
             if getattr(self, key) is not None and self.file is None:
                 raise Refusal(f"{key} goes with file", f"leave {key} out", key)

@@ -68,11 +68,11 @@ class Loop:
         The exact curve.
     corners : (c,)
         t where the tangent jumps by more than `CORNER_ANGLE`, the curvature by more than `CURVATURE_JUMP`, its
-        derivative by more than `THIRD_JUMP`, or a sliding part begins or ends; sorted.
+        derivative by more than `THIRD_JUMP`, a fillet begins or ends, or a sliding part does; sorted.
     turns : (c,)
         Jump of the tangent at each corner, radians in 0..pi.
     smooth : (c,) bool
-        Which corners are none to the eye: only the curvature's derivative jumps there, and a film's curvature is
+        Which corners are none to the eye: at most the curvature's derivative jumps there, and a film's curvature is
         bounded.
     slides : tuple of Slide
     remarks : tuple of str
@@ -188,6 +188,7 @@ def make_loop(
     *,
     remarks: tuple[str, ...] = (),
     drawn: NDArray[np.bool_] | None = None,
+    kept: NDArray[np.bool_] | None = None,
     where: str = "",
 ) -> Loop:
     """A loop from pieces that join end to end, the last one with the first.
@@ -202,6 +203,8 @@ def make_loop(
         What was done to the curve.
     drawn : (m,) bool, optional
         Which pieces begin at a knot of the curve as it was drawn, where only some do.
+    kept : (m,) bool, optional
+        Which pieces no element runs into from the one before, however smooth the curve: smooth corners at least.
     where : str, optional
         Key for messages.
 
@@ -237,11 +240,13 @@ def make_loop(
     near = gap.copy()
     near[knots] = np.minimum(gap[knots], np.roll(gap[knots], 1))
     knot = ~corner & (bend * course.length**2 > THIRD_JUMP) & (near > KNOT_GAP)
+    if kept is not None:
+        knot |= kept
     marks = [(part.first, part.first + part.count) for part in sliding if part.count < m]
     for first, last in marks:
         corner[[first, last % m]] = True
     knot &= ~corner
-    kept = corner | knot
+    every = corner | knot
     slides = tuple(
         Slide(
             float(joints[part.first]),
@@ -252,7 +257,7 @@ def make_loop(
         )
         for part in sliding
     )
-    return Loop(name, course, joints[:-1][kept], turn[kept], knot[kept], slides, remarks)
+    return Loop(name, course, joints[:-1][every], turn[every], knot[every], slides, remarks)
 
 
 def _check_moving(called: str, course: Course, where: str) -> None:

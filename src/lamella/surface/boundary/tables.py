@@ -15,6 +15,7 @@ from lamella.surface.boundary.arcs import arc_through, circle
 from lamella.surface.boundary.checks import check_loops
 from lamella.surface.boundary.choosing import choose_loop
 from lamella.surface.boundary.curve import Loop, Sliding, make_loop
+from lamella.surface.boundary.fillets import rounded_loop
 from lamella.surface.boundary.joining import join_in_order
 from lamella.surface.boundary.pieces import Floats, Pieces, lines
 from lamella.surface.boundary.point_list import clean_points
@@ -113,11 +114,15 @@ def drawing_unit(table: FormFoundTable, folder: Path) -> str | None:
 
 
 def _loop(table: BoundaryTable, origin: Origin, folder: Path, where: str, drawn: Drawn) -> Loop:
-    as_drawn = table.model_copy(update={"place": None})
+    as_drawn = table.model_copy(update={"place": None, "corner_radius": None})
     loop = drawn.get(as_drawn) or _as_drawn(table.measured_from(origin), origin, folder, where)
     if table.file is not None:
         drawn[as_drawn] = loop
-    return loop if table.place is None else _placed(loop, table.place, where)
+    if table.place is not None:
+        loop = _placed(loop, table.place, where)
+    if table.corner_radius is not None:
+        loop = rounded_loop(loop, table.corner_radius, f"{where}.corner_radius")
+    return loop if table.place is None or not table.place.waves else _waved(loop, table.place, where)
 
 
 def _as_drawn(table: BoundaryTable, origin: Origin, folder: Path, where: str) -> Loop:
@@ -141,17 +146,22 @@ def _as_drawn(table: BoundaryTable, origin: Origin, folder: Path, where: str) ->
 
 
 def _placed(loop: Loop, place: PlaceTable, where: str) -> Loop:
-    """A held loop turned and scaled about the centroid of its length, and shifted, as a whole and in waves."""
+    """A held loop turned and scaled about the centroid of its length, and shifted."""
     middle = loop.at(np.arange(SAMPLES) / SAMPLES).mean(0)
     turn = Rotation.from_rotvec(np.radians(place.turn)).as_matrix()
     # the pieces of a course are measured from its origin
     shift = middle + np.array(place.shift) + place.scale * turn @ (loop.course.origin - middle)
     pieces = loop.course.pieces.transformed(place.scale, shift, turn)
-    placed = make_loop(loop.name, pieces, remarks=loop.remarks, where=where)
-    if not place.waves:
-        return placed
-    pieces, drawn = waved(placed, np.array(place.waves))
-    return make_loop(loop.name, pieces, drawn=drawn, remarks=loop.remarks, where=where)
+    return make_loop(loop.name, pieces, remarks=loop.remarks, where=where)
+
+
+def _waved(loop: Loop, place: PlaceTable, where: str) -> Loop:
+    """A held loop shifted in waves along it."""
+    pieces, drawn = waved(loop, np.array(place.waves))
+    kept = drawn.copy()
+    # where elements end stays so, whatever a wave smooths
+    kept[drawn] = np.isin(loop.course.joints / loop.length, loop.corners)
+    return make_loop(loop.name, pieces, drawn=drawn, kept=kept, remarks=loop.remarks, where=where)
 
 
 def _chosen(table: BoundaryTable, folder: Path, table_key: str) -> tuple[Pieces, float, tuple[str, ...]]:
