@@ -62,10 +62,7 @@ def test_less_curvature_or_a_smaller_boundary(wanted: float) -> None:
     [
         [ring(0, 2.0), ring(3.2, 2.0)],
         [ring(4.0, 1.5), ring(0, 2.0)],
-        pytest.param(
-            [ring(0, 2.0, 0.1), ring(5.5, 1.6, -0.1)],
-            marks=[pytest.mark.slow, pytest.mark.xfail(reason="none of the pressures that are tried has a film")],
-        ),
+        pytest.param([ring(0, 2.0, 0.1), ring(5.5, 1.6, -0.1)], marks=pytest.mark.slow),
     ],
     ids=["equal", "upside down", "leaning"],
 )
@@ -73,7 +70,8 @@ def test_a_tube_too_long_without_pressure(boundary: list[dict[str, Any]]) -> Non
     """A tube of the H that is offered exists, and one without pressure at the distance that is offered.
 
     The sign: the film lies to the left of the first loop, so over the lower ring its normal points outwards and a
-    tube has H < 0; seen from the upper ring it has H > 0.
+    tube has H < 0; seen from the upper ring it has H > 0. The leaning rings are nearly pi radii apart: of cylinders
+    this long no H but their own is stable, and of tubes like theirs a tenth of it.
     """
     error = refused(film(boundary))
     assert error.where == "surface.boundary"

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 
 from lamella.surface.found.enclosed import enclosed_volume
-from lamella.surface.found.family import MANY, Stretch, member_of, stretches
+from lamella.surface.found.family import MANY, Member, Stretch, member_of, stretches
 from lamella.surface.found.film import Film
 from lamella.surface.found.newton import Detail, Equilibrium, NoFilmError, Way, find_equilibrium
 
@@ -16,6 +17,9 @@ FAR = 5.0
 FAR_CALM = 2.0
 # negative eigenvalues more than at the start, with which no stable film is looked for any further on
 MORE = 1
+# of the first size: way along the family past a fold of the stable films, to where they may be stable again. Two films
+# that both keep near their loops are no farther apart than that
+BEYOND = 1.0
 
 
 class FoldError(ArithmeticError):
@@ -66,6 +70,11 @@ class Reached:
 def to_curvature(start: Equilibrium, target: float, detail: Detail, *, unstable: bool = False) -> Reached:
     """Follow a family to the film of a mean curvature (1/m).
 
+    Where the stable films turn back before it, the unstable ones are followed on: they may become stable again and then
+    go farther. So it is with boundaries like Enneper's, which have two stable films and an unstable one between them
+    (M. J. Beeson, A. J. Tromba, The cusp catastrophe of Thom in the bifurcation of minimal surfaces, Manuscripta
+    Mathematica 46 (1984) 273-308): which of the two a search begins with is left to its elements.
+
     Parameters
     ----------
     start : Equilibrium
@@ -78,7 +87,7 @@ def to_curvature(start: Equilibrium, target: float, detail: Detail, *, unstable:
     Raises
     ------
     FoldError
-        The stable films end before the target.
+        The stable films end before the target, and none was found past their fold.
     NoFilmError
         The path breaks.
     """
@@ -90,28 +99,70 @@ def to_curvature(start: Equilibrium, target: float, detail: Detail, *, unstable:
         sides = [first, first.backwards()]
     else:
         sides = [first if (away < 0) == (first.rise < 0) else first.backwards()]
-    ways = [stretches(side, detail, largest) for side in sides]
-    steps = [0] * len(ways)
-    ends: list[NoFilmError | FoldError] = []
+    ways = [_Side(side, stretches(side, detail, largest)) for side in sides]
+    on = list(ways)
     # both sides in turn: the nearer film comes first
-    while ways:
-        for k, way in reversed(list(enumerate(ways))):
+    while on:
+        for way in reversed(on.copy()):
             try:
-                stretch = next(way)
-                steps[k] = stretch.steps
+                stretch = next(way.rest)
+                way.steps = stretch.steps
                 found = _on_stretch(stretch, target, detail, unstable)
-                if not found and not unstable and stretch.second.negative > first.negative + MORE:
-                    raise NoFilmError("along the path films get less and less stable", stretch.second.film)
-            except (NoFilmError, FoldError) as error:
-                ends.append(error)
-                del ways[k]
-                continue
-            if found:
-                return Reached(found.equilibrium, sum(steps) + found.steps)
-    folds = [end for end in ends if isinstance(end, FoldError)]
-    if folds:
-        raise folds[0]
-    raise NoFilmError("; ".join(dict.fromkeys(map(str, ends))), first.film)
+                if found:
+                    return Reached(found.equilibrium, sum(way.steps for way in ways) + found.steps)
+                if not unstable:
+                    way.require_hope(stretch)
+            except NoFilmError as error:
+                way.end = error
+                on.remove(way)
+    steps = sum(way.steps for way in ways)
+    for way in ways:
+        if way.fold is not None:
+            raise FoldError(way.fold, steps)
+    raise NoFilmError("; ".join(dict.fromkeys(str(way.end) for way in ways)), first.film)
+
+
+@dataclass(eq=False)
+class _Side:
+    """One of the ways along a family.
+
+    Attributes
+    ----------
+    start : Member
+    rest : iterator of Stretch
+    steps : int
+        Newton steps so far.
+    fold : float or None
+        H at which the stable films turn back, 1/m.
+    beyond : float
+        Way past that, m.
+    end : NoFilmError or None
+        Why it is followed no further.
+    """
+
+    start: Member
+    rest: Iterator[Stretch]
+    steps: int = 0
+    fold: float | None = None
+    beyond: float = 0.0
+    end: NoFilmError | None = None
+
+    def require_hope(self, last: Stretch) -> None:
+        """Note whether the films are past their fold.
+
+        Raises
+        ------
+        NoFilmError
+            After the last stretch there is little hope of a stable film further on.
+        """
+        if last.second.negative > self.start.negative + MORE:
+            raise NoFilmError("along the path films get less and less stable", last.second.film)
+        if self.fold is not None:
+            self.beyond += last.step
+            if self.beyond > BEYOND * self.start.film.size:
+                raise NoFilmError("past their fold the films stay unstable", last.second.film)
+        elif not last.first.negative and last.second.negative:
+            self.fold = last.extreme()
 
 
 def _on_stretch(stretch: Stretch, target: float, detail: Detail, unstable: bool) -> Reached | None:
@@ -124,8 +175,6 @@ def _on_stretch(stretch: Stretch, target: float, detail: Detail, unstable: bool)
             steps += near.steps + found.steps
             if (found.negative > 0) == unstable and _between(stretch, found.film):
                 return Reached(found, steps)
-    if not unstable and not stretch.first.negative and stretch.second.negative:
-        raise FoldError(stretch.extreme(), stretch.steps + steps)
     return None
 
 

@@ -49,7 +49,7 @@ def not_found(
             f"the search did not arrive at a surface in this boundary; {MAY_EXIST}. {went}",
             "bring the held parts closer together, or give a mean_curvature or a volume"
             if any(loop.slides for loop in search.loops)
-            else _of_tube(tries, None) or "bring the loops closer together, or make them less bent",
+            else _of_tube(tries, 0.0) or "bring the loops closer together, or make them less bent",
             "surface.boundary",
         )
     if _again(search).exists(-mean_curvature):
@@ -69,7 +69,7 @@ def not_found(
         )
     return InputError(
         f"{wanted}: the search did not arrive at a surface; {MAY_EXIST}. {went}",
-        _of_tube(tries, None) or "give a volume instead: more films can be followed by their volume",
+        _of_tube(tries, mean_curvature) or "give a volume instead: more films can be followed by their volume",
         "surface.mean_curvature",
     )
 
@@ -81,7 +81,7 @@ def impossible(error: ImpossibleError, tries: Tries, mean_curvature: float, unst
         other = "" if value is None else f", or write mean_curvature = {value:g}"
         return InputError(error.message, f"leave branch out{other}", error.where)
     if not mean_curvature:
-        remedy = _of_tube(tries, error.limit) or "move the loops closer together, or make them larger"
+        remedy = _of_tube(tries, 0.0, error.limit) or "move the loops closer together, or make them larger"
         return InputError(error.message, remedy, error.where)
     largest = abs(error.limit or mean_curvature)
     wanted = min(abs(mean_curvature), largest) * (1 if mean_curvature > 0 else -1)
@@ -96,9 +96,9 @@ def _smaller(near: float, wanted: float) -> str:
     return f"write mean_curvature = {near:g}, the largest of which a film was found, or a boundary {scale:g} x as large"
 
 
-def _of_tube(tries: Tries, limit: float | None) -> str:
-    """A tube under pressure, or shorter; empty: neither was found."""
-    value, distance = tries.curvature_of_tube(), tries.closer(limit)
+def _of_tube(tries: Tries, mean_curvature: float, limit: float | None = None) -> str:
+    """A tube under another pressure, or a shorter one; empty: neither was found."""
+    value, distance = tries.curvature_of_tube(), tries.closer(mean_curvature, limit)
     ways = [f"write mean_curvature = {value:g}: a tube under pressure"] if value is not None else []
     if distance is not None:
         ways.append(f"move the loops along the line between their middles until these are {distance:g} m apart")
