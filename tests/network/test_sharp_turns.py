@@ -15,7 +15,7 @@ def test_pieces_that_turn_evenly() -> None:
         np.arange(5) * 0.06, 0.3 + np.arange(5) * 0.18, np.full(4, 1.2), 5 + np.arange(5) * 0.5
     ]  # fmt: skip
     tangents = np.column_stack([np.cos(heading), np.sin(heading), np.zeros(len(heading))])
-    wanted = more_samples(count, given, tangents)
+    wanted = more_samples(count, count, given, tangents)
     assert (wanted % count == 0).all()
     assert (angles / wanted <= TURN * (1 + 1e-6)).all()
     assert (angles / wanted >= TURN / 2).tolist() == [True, True, False, True]
@@ -23,8 +23,9 @@ def test_pieces_that_turn_evenly() -> None:
 
 
 def test_a_kink_has_no_end() -> None:
-    """Where the tangent jumps no number is enough: there are `MOST` times as many."""
-    tangents = np.array([[1, 0, 0], [1, 0, 0], [0, 1, 0], [0, 1, 0.0]])
-    assert more_samples(np.array([3]), np.array([4]), tangents).tolist() == [
-        3 * min(MOST, int(np.ceil(np.pi / 2 / TURN)))
-    ]
+    """Where the tangent jumps no number is enough: there are `MOST` times as many at most, however often it is asked."""
+    first = count = np.array([3])
+    for _ in range(4):
+        tangents = np.repeat([[1.0, 0, 0], [0, 1, 0]], [2, count[0] - 1], 0)
+        count = more_samples(first, count, count + 1, tangents)
+    assert count.tolist() == [3 * MOST]

@@ -10,17 +10,20 @@ from lamella.surface.vectors import crosses, dots, lengths
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-# angle between the tangents of following samples, and how many times more samples a piece may get for it
+# angle between the tangents of following samples, and how many times more samples a piece may get for it: at a kink, as
+# in a corner of the boundary, no number is enough
 TURN, MOST = 0.06, 32
 
 
-def more_samples(count: Integers, given: Integers, tangents: Floats) -> Integers:
+def more_samples(first: Integers, count: Integers, given: Integers, tangents: Floats) -> Integers:
     """Numbers of samples on pieces of lamella with which the tangent turns by no more than `TURN` from one to the next.
 
     Parameters
     ----------
+    first : (s,) int
+        Parts into which samples divide each piece where nothing turns.
     count : (s,) int
-        Parts into which the samples divide each piece.
+        Parts into which these samples divide them.
     given : (s,) int
         Samples each piece has in `tangents`: its start and what follows, and its end if no piece follows on it.
     tangents : (k, 3)
@@ -29,7 +32,7 @@ def more_samples(count: Integers, given: Integers, tangents: Floats) -> Integers
     Returns
     -------
     (s,) int
-        `count`, or whole multiples of it, at most `MOST` times as many.
+        At least `count`, and at most `MOST` times `first`.
     """
     if not len(tangents):
         return count
@@ -39,4 +42,5 @@ def more_samples(count: Integers, given: Integers, tangents: Floats) -> Integers
     # from the last sample of a lamella to the first one of the next nothing turns
     turn[end[given > count] - 1] = 0.0
     largest = np.maximum.reduceat(turn, end - given)
-    return count * np.clip(np.ceil(largest / TURN - 1e-6), 1, MOST).astype(np.int64)
+    times = np.maximum(np.ceil(largest / TURN - 1e-6), 1).astype(np.int64)
+    return np.minimum(count * times, np.maximum(MOST * first, count))

@@ -155,12 +155,13 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
     count = np.maximum(np.ceil(segments.span / cells * per_cell - 1e-6), 1).astype(np.int64)
     # every segment gives the samples from its start on; a line's last segment also gives its end
     last = np.r_[segments.owner[1:] != segments.owner[:-1], True]
+    first_count = count
     while True:
         given = count + last
         segment = np.repeat(np.arange(len(count)), given)
         fraction = ragged_ranges(given) / count[segment]
         samples = _sample(surface, segments, arcs, segment, fraction)
-        before, count = count, more_samples(count, given, samples.tangents)
+        before, count = count, more_samples(first_count, count, given, samples.tangents)
         if (count == before).all():
             break
 

@@ -167,6 +167,7 @@ def trace_elements(
     whole = np.minimum(np.bincount(chain, reach, chains), 1.0)[chain]
     number = np.maximum(np.ceil(reach / whole * per_cell - 1e-6), FEWEST).astype(np.int64)
     last = np.r_[chain[1:] != chain[:-1], True]
+    first_number = number
     while True:
         given = number + last
         segment = np.repeat(np.arange(len(number)), given)
@@ -179,7 +180,7 @@ def trace_elements(
         spots = segments.spots(segment, parameter)[order]
         places, points, velocity = segments.velocity(spots, near[order])
         tangents = velocity / lengths(velocity)[:, None]
-        before, number = number, more_samples(number, given, tangents.take(back, 0))
+        before, number = number, more_samples(first_number, number, given, tangents.take(back, 0))
         if (number == before).all():
             break
     points = onto(places.element, points)

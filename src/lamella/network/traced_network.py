@@ -228,12 +228,13 @@ def _network(
     total = np.bincount(owner[first], length, flow.count)[owner[first]]
     count = np.maximum(np.ceil(length / np.minimum(total, spacing) * per_cell - 1e-6), FEWEST).astype(np.int64)
     last = np.r_[owner[first][1:] != owner[first][:-1], True]
+    first_count = count
     while True:
         given = count + last
         segment = np.repeat(np.arange(len(count)), given)
         s = stops.s[first[segment]] + ragged_ranges(given) / count[segment] * length[segment]
         where, look, tangents = flow.at(owner[first[segment]], s)
-        before, count = count, more_samples(count, given, tangents)
+        before, count = count, more_samples(first_count, count, given, tangents)
         if (count == before).all():
             break
     begin = np.cumsum(given) - given
