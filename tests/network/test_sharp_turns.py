@@ -23,7 +23,7 @@ def test_pieces_that_turn_evenly() -> None:
 
 
 def test_a_kink_has_no_end() -> None:
-    """Where the tangent jumps no number is enough: there are `MOST` times as many at most, however often it is asked."""
+    """Where the tangent jumps no number is enough: `MOST` times as many, however often it is asked."""
     first = count = np.array([3])
     for _ in range(4):
         tangents = np.repeat([[1.0, 0, 0], [0, 1, 0]], [2, count[0] - 1], 0)

@@ -43,4 +43,4 @@ def more_samples(first: Integers, count: Integers, given: Integers, tangents: Fl
     turn[end[given > count] - 1] = 0.0
     largest = np.maximum.reduceat(turn, end - given)
     times = np.maximum(np.ceil(largest / TURN - 1e-6), 1).astype(np.int64)
-    return np.minimum(count * times, np.maximum(MOST * first, count))
+    return np.asarray(np.minimum(count * times, np.maximum(MOST * first, count)))
