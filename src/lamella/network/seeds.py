@@ -20,6 +20,7 @@ from lamella.network.ground import Ground, Look
 from lamella.network.lattice import ragged_ranges
 from lamella.network.line_field import LineField
 from lamella.surface.element.places import Places
+from lamella.surface.element.ties import MARGIN, nearest_whole
 from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
@@ -101,7 +102,8 @@ def _middle(ground: Ground, field: LineField, size: float) -> Places:
     centre = (look.position[usable] * area[usable, None]).sum(0) / area[usable].sum()
     off = np.linalg.norm(look.position - centre, axis=1) / size
     score = np.where(usable, depth / depth[usable].max() - off / OFF_MIDDLE, -np.inf)
-    return where[np.array([score.argmax()])]
+    # of equally good ones on a symmetric surface the first
+    return where[np.array([np.rint(score / MARGIN).argmax()])]
 
 
 @dataclass(frozen=True)
@@ -178,7 +180,9 @@ def seeded_lines(ground: Ground, field: LineField, guide: Guide, distance: float
 def _gaps(position: Floats, wide: Floats, apart: float) -> Integers:
     """The widest gaps, away from each other: rows of points (n, 3) whose share of a gap is above `GAP`."""
     chosen: list[int] = []
-    left = np.flatnonzero(wide > GAP)
+    # of gaps as wide as each other on a symmetric surface the first
+    wide = np.rint(wide / MARGIN)
+    left = np.flatnonzero(wide > GAP / MARGIN)
     while len(left) and len(chosen) < MOST_GAPS:
         row = left[wide[left].argmax()]
         chosen.append(int(row))
@@ -208,16 +212,17 @@ class _How:
         guides = finished(self.lines(places, ~is_a))
         back, ahead = guides.length.reshape(-1, 2).T
         if centred:
-            count = np.maximum(np.rint((back + ahead) / distance), 1).astype(np.int64)
+            count = np.maximum(nearest_whole((back + ahead) / distance), 1).astype(np.int64)
             first = (back + ahead - (count - 1) * distance) / 2
             middle = (back + ahead) / 2
         else:
-            before = np.floor(back / distance + 1e-9).astype(np.int64)
-            count = before + np.floor(ahead / distance + 1e-9).astype(np.int64) + 1
+            before = np.floor(back / distance + MARGIN).astype(np.int64)
+            count = before + np.floor(ahead / distance + MARGIN).astype(np.int64) + 1
             first, middle = back - before * distance, back
         guide = np.repeat(np.arange(len(places)), count)
         s = first[guide] + ragged_ranges(count) * distance
-        order = np.lexsort((np.abs(s - middle[guide]), guide))
+        # seeds on both sides are as far away as each other
+        order = np.lexsort((np.rint(np.abs(s - middle[guide]) / (MARGIN * distance)), guide))
         guide, s = guide[order], s[order]
         where, _, _ = guides.at(guide, s)
         return where, is_a[guide]

@@ -289,14 +289,25 @@ def vertex_errors(film: Film, fits: VertexFits, faces: Integers) -> Floats:
     from them.
     """
     connectivity = film.connectivity
-    places, _ = ClosestPoint(connectivity, film.nodes)(fits.points)
-    there = element_points(connectivity, film.nodes[connectivity.elements[places.element]], places.local, True)
+    vertex, element, local = _seen_at_vertices(film, fits.points, faces)
+    there = element_points(connectivity, film.nodes[connectivity.elements[element]], local, True)
     mean, re, im = there.mean_curvature, there.deviator.real, there.deviator.imag
     own = np.array([[mean + re, -im], [-im, mean - re]])
     axes = np.array([there.e_u, there.e_v])
-    vertex = np.arange(len(fits.points))
-    off = np.einsum("abn,anc,bnd->ncd", own, axes, axes) - fits.second_forms(vertex, fits.points)
-    return np.asarray(disagreement(fits, faces) + np.linalg.norm(off, axis=(1, 2)))
+    off = np.einsum("abn,anc,bnd->ncd", own, axes, axes) - fits.second_forms(vertex, fits.points[vertex])
+    result = np.zeros(len(fits.points))
+    np.maximum.at(result, vertex, np.linalg.norm(off, axis=(1, 2)))
+    return np.asarray(disagreement(fits, faces) + result)
+
+
+def _seen_at_vertices(film: Film, points: Floats, faces: Integers) -> tuple[Integers, Integers, Floats]:
+    """Vertices, elements at each of them (n,) and the places in these (n, 2)."""
+    if np.array_equal(film.connectivity.faces, faces):
+        # all elements that meet at a vertex: their curvatures differ, and none of them is the nearest one
+        corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        return faces.ravel(), np.repeat(np.arange(len(faces)), 3), np.tile(corners, (len(faces), 1))
+    places, _ = ClosestPoint(film.connectivity, film.nodes)(points)
+    return np.arange(len(points)), places.element, places.local
 
 
 def kept_surface(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.surface.element.ties import MARGIN
 from lamella.surface.imported.raw_mesh import Floats, Integers, mesh_error
 
 MAXIMUM_CORNERS = 256
@@ -16,9 +17,10 @@ EQUALLY_FLAT = np.radians(1.0)
 def split_polygons(points: Floats, sizes: Integers, corners: Integers) -> Integers:
     """Split faces into triangles that keep their orientation.
 
-    A quad is split along the diagonal that folds it less; along the shorter one when both fold it alike. The flatter
-    one is also the one inside, should the quad have a notch. Larger faces lose their best ear one after the other: the
-    ear with the shortest cut among those that hold no other corner.
+    A quad is split along the diagonal that folds it less; along the shorter one when both fold it alike, and through
+    its first corner when they are as long as each other. The flatter one is also the one inside, should the quad have a
+    notch. Larger faces lose their best ear one after the other: the ear with the shortest cut among those that hold no
+    other corner.
 
     Parameters
     ----------
@@ -57,7 +59,7 @@ def _split_quads(points: Floats, quads: Integers) -> Integers:
     """Two triangles of each quad, (q, 2, 3)."""
     a, b, c, d = (points[quads[:, k]] for k in range(4))
     fold_ac, fold_bd = _fold(a, b, c, d), _fold(b, c, d, a)
-    shorter_bd = np.linalg.norm(d - b, axis=1) < np.linalg.norm(c - a, axis=1)
+    shorter_bd = np.linalg.norm(d - b, axis=1) < (1 - MARGIN) * np.linalg.norm(c - a, axis=1)
     along_bd = np.where(np.abs(fold_ac - fold_bd) <= EQUALLY_FLAT, shorter_bd, fold_bd < fold_ac)
     return np.where(along_bd[:, None, None], quads[:, [[1, 2, 3], [1, 3, 0]]], quads[:, [[0, 1, 2], [0, 2, 3]]])
 
@@ -97,7 +99,8 @@ def _cut_ears_of(points: Floats, loops: Integers) -> Integers:
         worst = cut.max(axis=1, keepdims=True) + 1
         # Convex empty ears first, then convex ones (crossing outlines), then any, so that every polygon is used up.
         rank = cut + worst * (2 * (area <= 0) + blocked)
-        ear = rank.argmin(axis=1)
+        # the first of cuts as short as each other
+        ear = np.rint(rank / (MARGIN * worst)).argmin(axis=1)
         rows = np.arange(len(loops))
         found.append(np.stack((loops[rows, ear - 1], loops[rows, ear], loops[rows, (ear + 1) % size]), axis=1))
         keep = np.arange(size)[None, :] != ear[:, None]
