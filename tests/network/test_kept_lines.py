@@ -127,7 +127,7 @@ def test_lamellas_less_straight_than_promised_are_told_of(tmp_path: Path) -> Non
 def test_asymptotic_lines_of_a_hyperboloid(tmp_path: Path) -> None:
     """Straight rulings again, and a net that closes around the hole: as many lamellas as seeds around it."""
     errors = []
-    for n in (16, 32):
+    for n in (10, 20):
         write_grid(tmp_path / "m.obj", hyperboloid, (0, 2 * np.pi), (-0.4, 0.5), 4 * n, n, around=True)
         network = run_on(tmp_path / "m.obj", normal_curvature=0.0, cells=16).network
         is_sound(network)
@@ -188,11 +188,11 @@ def test_strips_and_parts_of_it(tmp_path: Path) -> None:
 
 
 def test_what_is_refused(tmp_path: Path) -> None:
-    write_grid(tmp_path / "m.obj", ellipsoid, (-0.6, 0.6), (0.2, 1.4), 24, 24)
+    write_grid(tmp_path / "m.obj", ellipsoid, (-0.6, 0.6), (0.2, 1.4), 14, 14)
     with pytest.raises(InputError, match="no direction of the surface has it") as refused:
         run_on(tmp_path / "m.obj", normal_curvature=0.0)
     low, high = (float(x) for x in refused.value.remedy.split("from ")[1].split(" 1/m")[0].split(" to "))
-    network = run_on(tmp_path / "m.obj", normal_curvature=(low + high) / 2, cells=12).network
+    network = run_on(tmp_path / "m.obj", normal_curvature=(low + high) / 2, cells=6).network
     is_sound(network)
     with pytest.raises(InputError, match="mean curvature varies") as refused:
         run_on(tmp_path / "m.obj", cells=12)
@@ -203,7 +203,7 @@ def test_what_is_refused(tmp_path: Path) -> None:
         assert refused.value.where == f"network.{key}"
     rng = np.random.default_rng(3)
     write_grid(
-        tmp_path / "m.obj", lambda u, v: (u, v, u * v / 4 + rng.normal(0, 0.02, len(u))), (-2, 2), (-2, 2), 24, 24
+        tmp_path / "m.obj", lambda u, v: (u, v, u * v / 4 + rng.normal(0, 0.04, len(u))), (-2, 2), (-2, 2), 12, 12
     )
     with pytest.raises(InputError, match="too rough"):
         run_on(tmp_path / "m.obj", normal_curvature=0.0)

@@ -28,7 +28,7 @@ from lamella.surface.vectors import crosses, dots, lengths
 
 # of the diagonal of the least squares, so that shifts that change next to nothing stay small
 DAMPING = 0.01
-# least diagonal that is damped by its own part, over the median; with 0.01 and less, shifts in directions of little bend
+# least diagonal that is damped by its own part, over the median: with 0.01 and less, shifts where there is little bend
 # grow from the rounding of the nodes, a thousandfold at each call
 FLOOR = 0.05
 TOLERANCE, MOST_STEPS = 1e-2, 60
