@@ -4,9 +4,9 @@ BIN := .venv/bin
 # a process a core: threads of their own would only wait for each other
 ONE := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1
 
-# what can differ between processors: elements, films, examples and their page in the docs
+# what can differ between processors, besides the examples: elements and films
 NUMERICS := tests/surface/element tests/surface/found/test_last_bits.py tests/surface/found/test_rings.py \
-	tests/projection/test_star_measures.py tests/test_sparse.py tests/test_examples.py tests/test_docs.py
+	tests/surface/imported/test_imported_last_bits.py tests/projection/test_star_measures.py tests/test_sparse.py
 
 .PHONY: demo test slow kernels lint types bench docs clean
 
@@ -21,8 +21,8 @@ slow: .venv/ready
 	$(ONE) $(BIN)/python -m pytest -m slow -n auto
 
 kernels: .venv/ready
-	$(BIN)/python tests/kernels.py --pytest -m "not slow" -n auto --dist loadfile $(NUMERICS) \
-		--deselect "tests/test_docs.py::test_generated_text_is_up_to_date[examples.md]"
+	$(BIN)/python tests/kernels.py
+	$(BIN)/python tests/kernels.py --pytest -m "not slow" -n auto --dist loadfile $(NUMERICS)
 
 lint: .venv/ready
 	$(BIN)/ruff check .

@@ -1,8 +1,8 @@
 """Other processors, by environment: which numerical kernels OpenBLAS and numpy take, and what a run then says.
 
 OpenBLAS takes the kernels of the core it is given; numpy leaves out the instructions it is told to. Run as a program,
-all examples (or those named) are computed under each setting and their summaries compared with the machine's own; and
-`python tests/kernels.py --pytest ARGUMENTS` runs tests under each of the others.
+all examples (or those named) are computed under each setting, and their summaries and what docs/examples.md shows of
+them compared with the machine's own; `python tests/kernels.py --pytest ARGUMENTS` runs tests under each of the others.
 """
 
 from __future__ import annotations
@@ -10,9 +10,11 @@ from __future__ import annotations
 import json
 import os
 import re
+import runpy
 import subprocess
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -122,12 +124,19 @@ def main(arguments: list[str]) -> int:
             run = subprocess.run([sys.executable, "-m", "pytest", *arguments[1:]], env=environment(kernel), cwd=ROOT)
             bad |= run.returncode
         return int(bool(bad))
-    for example in arguments or sorted(path.stem for path in EXAMPLES.glob("*.toml")):
-        own = summary_under("", example)
-        for kernel in KERNELS:
-            found = list(differences(own, summary_under(kernel, example), own))
-            print(f"{example} under {kernel}: {'; '.join(found) or 'the same'}", flush=True)
-            bad |= bool(found)
+    examples = arguments or sorted(path.stem for path in EXAMPLES.glob("*.toml"))
+    shown = runpy.run_path(str(ROOT / "docs" / "build.py"))["figures"]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = {(e, kernel): pool.submit(summary_under, kernel, e) for e in examples for kernel in ("", *KERNELS)}
+        for example in examples:
+            own = runs[example, ""].result()
+            for kernel in KERNELS:
+                other = runs[example, kernel].result()
+                found = list(differences(own, other, own))
+                pairs = zip(shown(own), shown(other), strict=True)
+                found += [f"{one} or {another}" for one, another in pairs if not same_text(one, another)]
+                print(f"{example} under {kernel}: {'; '.join(found) or 'the same'}", flush=True)
+                bad |= bool(found)
     return int(bad)
 
 
