@@ -75,8 +75,8 @@ class NetworkTable(Table):
     )
     cells: int | None = number(
         "Number of A lamellas that cross a loop once around the axis, or that end on the rim of the first hole (B "
-        "where these are more); on a simply connected surface, number of cells along its longest principal line. 24 "
-        "when spacing is not given either.",
+        "where these are more); on a simply connected surface, number of cells along its longest principal line (with "
+        "several umbilics of odd order: across a disc with as many cells). 24 when spacing is not given either.",
         "",
         ge=3,
         le=10**12,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ import pytest
 from scipy.integrate import cumulative_simpson
 
 from lamella import InputError, compute, parse_project
-from lamella.network.network import BOUNDARY
+from lamella.network.network import BOUNDARY, REGULAR
 from lamella.pipeline import Results
 from network.test_traced_network import is_sound, lamellas, ruled
 
@@ -211,3 +212,32 @@ def test_what_is_refused(tmp_path: Path) -> None:
     assert run_on(tmp_path / "m.obj", "surface").summary["surface"]["area"] == pytest.approx(16)
     with pytest.raises(InputError):
         run_on(tmp_path / "m.obj", normal_curvature=0.0)
+
+
+def half_ring(stretch: float, uneven: float) -> Map:
+    """A vault over an ellipse-shaped ring, higher in places: mirrored by two planes where it is even."""
+
+    def surface(u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, ...]:
+        away = 5 + 2 * np.cos(v)
+        height = 2 * np.sin(v) * (1 + 0.15 * np.cos(2 * u) + uneven * np.sin(u + 0.5))
+        return away * np.cos(u), stretch * away * np.sin(u), height
+
+    return surface
+
+
+@pytest.mark.parametrize(
+    ("stretch", "uneven"), [(0.9, 0.05), *(pytest.param(s, 0.0, marks=pytest.mark.slow) for s in (1.0, 0.8))]
+)
+def test_lines_that_wind_around_are_refused_with_a_normal_curvature_that_does(
+    tmp_path: Path, stretch: float, uneven: float
+) -> None:
+    """Closed principal lines, and spirals; the remedy followed to the letter gives a net."""
+    write_grid(tmp_path / "m.obj", half_ring(stretch, uneven), (0, 2 * np.pi), (0.2, np.pi - 0.2), 40, 10, around=True)
+    with pytest.raises(InputError) as refused:
+        run_on(tmp_path / "m.obj", kind="principal", cells=12)
+    assert refused.value.where == "network.kind"
+    value = re.search(r'kind = "(\w+)" and normal_curvature = (-?[0-9.e-]+)', refused.value.remedy)
+    assert value is not None
+    network = run_on(tmp_path / "m.obj", kind=value[1], normal_curvature=float(value[2]), cells=12).network
+    assert network is not None
+    assert (network.node_kinds == REGULAR).sum() > 50

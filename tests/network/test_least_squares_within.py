@@ -58,3 +58,15 @@ def test_optimality() -> None:
         gradient = system.T @ (right - system @ found)
         _, rest = nnls(normals.T, gradient, maxiter=10_000) if reached.any() else (0, np.linalg.norm(gradient))
         assert rest < 1e-2 * np.linalg.norm(system.T @ right)
+
+
+def test_nearest_point_of_a_ball_behind_a_plane() -> None:
+    """The foot of the point on the circle in which the plane cuts the ball."""
+    planes = np.array([[2.0, 0.0, 0.0]]), np.array([1.0])
+    found = least_squares_within(np.eye(3), np.array([3.0, 3.0, 0.0]), ball(3), planes)
+    assert np.allclose(found, [0.5, np.sqrt(0.75), 0.0], rtol=0, atol=1e-5)
+    # not reached, and beyond the middle
+    assert np.allclose(least_squares_within(np.eye(3), np.array([0.3, 0.1, 0.0]), ball(3), planes), [0.3, 0.1, 0.0])
+    behind = np.array([[1.0, 0.0, 0.0]]), np.array([-0.25])
+    found = least_squares_within(np.eye(3), np.array([0.5, 0.1, 0.0]), ball(3), behind)
+    assert np.allclose(found, [-0.25, 0.1, 0.0], rtol=0, atol=1e-5)

@@ -10,6 +10,8 @@ import pytest
 from lamella.files.network_json import network_bytes
 from lamella.network.beyond_rim import zeros_beyond_rim
 from lamella.network.make import make_network
+from lamella.network.network import SINGULAR
+from lamella.network.umbilic_depth import UmbilicDepths
 from lamella.summary import network_summary
 from measure_network import measure
 from surface.weierstrass import weierstrass
@@ -34,3 +36,26 @@ def test_angles_next_to_a_zero_beyond_the_rim(distance) -> None:
     figures = network_summary(net, "")
     assert ruler["node_angle_deviation_max_deg"] < 0.1
     assert figures["node_angle_deviation_max_deg"] == pytest.approx(ruler["node_angle_deviation_max_deg"], abs=0.05)
+
+
+@pytest.mark.parametrize("inside", [0.02, pytest.param(0.01, marks=pytest.mark.slow)])
+def test_a_singular_node_next_to_the_rim_has_all_its_rays(inside) -> None:
+    """Cells are large next to an umbilic: some of its rays reach the rim within a small part of one."""
+    net = make_network(weierstrass([(1 - inside) * np.exp(0.4j)], rings=10), cells=20, minimum_length=0.0)
+    (node,) = np.flatnonzero(net.node_kinds == SINGULAR)
+    a, b = net.node_degrees()
+    assert (a[node], b[node]) == (3, 3)
+
+
+@pytest.mark.parametrize("way", [1.0, 1.0j])
+def test_how_an_umbilic_moves_from_the_rim(way) -> None:
+    """To first order, against the zero of a surface that differs a little: towards the middle, and along the rim."""
+    zero, off = 0.9 * np.exp(0.4j), 2e-3
+    surface, moved = (weierstrass([zero - move * way * np.exp(0.4j)], rings=10) for move in (0.0, off))
+    depths = UmbilicDepths.of(surface)
+    rim = surface.nodes[np.unique(surface.connectivity.rim_nodes)]
+    position = surface.frames(moved.umbilics.places).position
+    nearest = np.linalg.norm(surface.frames(surface.umbilics.places).position - rim, axis=1).argmin()
+    away = np.linalg.norm(position[0] - rim[nearest]) - depths.depth[0]
+    # about half as large as the disc of the parameter
+    assert depths.change(surface, moved)[0] == pytest.approx(away, abs=0.03 * off / 2)

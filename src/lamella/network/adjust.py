@@ -56,6 +56,12 @@ SPACING = 0.1
 MOST_LOOKED_AT, MOST_TRIED = 60, 4
 # a whole step has to take this part of the misses away at least
 LEAST_GAIN = 0.1
+# of an umbilic's distance from the rim: what a step leaves of it at least, to first order. Where umbilics come or go
+# there are other whole numbers to be reached
+KEPT = 0.3
+# limits this many times as large are looked for, at most, where the given ones do not do; in so many halvings, from so
+# many of the places reached, and tried with a little more than what suffices to first order
+MOST_REACH, REACH_HALVINGS, MOST_WIDER, WIDER = 8.0, 6, 2, 1.15
 # how much more a miss of a cell (see `Isothermic.dirichlet`) weighs than a full range
 WEIGHT = 1e4
 SAMPLES = 2000
@@ -183,6 +189,8 @@ class _Search:
     def __init__(self, films: Films, progress: Progress) -> None:
         self.films, self.progress = films, patient(progress)
         self.steps = 0
+        # of the limits of what may change: 1, but where it is looked for how much would do
+        self.reach = 1.0
 
     def closed(self, first: FilmNet, lattice: Lattice) -> tuple[FilmNet, float, float]:
         """The net that closes, with the spacing of its lattice, sqrt(m), and what it still misses, cells.
@@ -208,12 +216,48 @@ class _Search:
             except _LostError as error:
                 lost.append(error)
         nearest = min(lost, key=lambda one: one.missed)
-        raise InputError(
+        message = (
             f"the net could not be closed within what the boundary may change: {nearest} "
-            f"({len(lost) - len(waiting)} ways tried in {self.steps} steps)",
-            'allow more change (adjust of the loops, adjust_mean_curvature), choose other cells, or closing = "open"',
+            f"({len(lost) - len(waiting)} ways tried in {self.steps} steps)"
+        )
+        enough = self._enough([one.aim for one in lost])
+        raise InputError(
+            message,
+            (f"write {enough}" if enough else "allow more change (adjust of the loops, adjust_mean_curvature)")
+            + ', choose other cells, or closing = "open"',
             "network.closing",
         )
+
+    def _enough(self, aims: list[_Aim]) -> str:
+        """What a project writes to allow a change with which the net closes, found by going there; empty: not found."""
+        wanted = [(reach, aim) for aim in aims if (reach := self._least_reach(aim)) <= MOST_REACH]
+        # to first order tells most where little is missed
+        for reach, aim in sorted(wanted, key=lambda one: one[0] * (1 + _worst(one[1].misses)))[:MOST_WIDER]:
+            self.reach, self.steps = reach * WIDER, 0
+            self.progress(f"  how much change would do: with {self.reach:.2g} times as much")
+            try:
+                there = self.descend(aim)
+            except _LostError:
+                continue
+            return self.films.freedom.enough(there.net.shares)
+        return ""
+
+    def _least_reach(self, aim: _Aim) -> float:
+        """By what the limits have to be multiplied for the misses to vanish to first order."""
+        rates = self.films.cell_rates(aim.net, aim.step)
+
+        def reaches(log: float) -> bool:
+            self.reach = float(np.exp(log))
+            change = self._solved(aim.net, rates, aim.misses)[0]
+            return aim.net.whole.size(aim.misses - rates @ change) < LEAST_GAIN * aim.size
+
+        low, high = 0.0, float(np.log(2 * MOST_REACH))
+        if not reaches(high):
+            return np.inf
+        for _ in range(REACH_HALVINGS):
+            middle = (low + high) / 2
+            low, high = (low, middle) if reaches(middle) else (middle, high)
+        return float(np.exp(high))
 
     def _targets(self, net: FilmNet, lattice: Lattice) -> list[Complexes]:
         """Whole shifts (t,) in the order of the change they ask for, to first order."""
@@ -283,7 +327,9 @@ class _Search:
         net = aim.net
         change = self._solved(net, rates, aim.misses)[0]
         if net.whole.size(aim.misses - rates @ change) > (1 - LEAST_GAIN) * aim.size:
-            raise _LostError(aim, "the boundary may not change by more")
+            beyond = self._solved(net, rates, aim.misses, kept=-np.inf)[0]
+            held = net.whole.size(aim.misses - rates @ beyond) > (1 - LEAST_GAIN) * aim.size
+            raise _LostError(aim, "the boundary may not change by more" if held else "umbilics would leave at the rim")
         change = self._shortened(net, change)
         # the least boundary that closes the net may be far from this one: then the nearest, and less and less of it
         nearest = self._shortened(net, self._solved(net, rates, aim.misses, net.shares)[0])
@@ -357,12 +403,17 @@ class _Search:
         return best.net, best.step, _worst(best.misses)
 
     def _solved(
-        self, net: FilmNet, cell_rates: Complexes, misses: Complexes, near: Floats | None = None
+        self,
+        net: FilmNet,
+        cell_rates: Complexes,
+        misses: Complexes,
+        near: Floats | None = None,
+        kept: float = KEPT,
     ) -> tuple[Floats, float]:
         """Change of the shares and of the logarithm of the spacing that undoes misses, to first order; what it costs.
 
         The least squares of the shares themselves, or of what they differ by from those that they shall be near, with
-        what they cannot undo weighing more.
+        what they cannot undo weighing more. Umbilics keep a share of their distance from the rim.
         """
         measured, missed = net.whole.measured(cell_rates), net.whole.measured(misses)
         rates = np.vstack([measured.real, measured.imag])
@@ -372,11 +423,14 @@ class _Search:
         system = np.vstack([WEIGHT * rates, np.eye(len(now))])
         middle = np.zeros(len(now)) if near is None else np.append(near, 0.0)
         right = np.concatenate([WEIGHT * (wanted + rates @ now), middle])
-        limited = self.films.freedom.limits
+        limited = self.films.freedom.limits / self.reach
         limits = np.zeros((len(limited) + 1, 3, len(now)))
         limits[:-1, :, :-1] = limited
         limits[-1, 0, -1] = 1
-        found = least_squares_within(system, right, limits)
+        normals, bounds = self.films.umbilics_inside(net, kept)
+        # the spacing moves no umbilic
+        normals = np.column_stack([normals, np.zeros(len(normals))])[np.isfinite(bounds)]
+        found = least_squares_within(system, right, limits, (normals, bounds[np.isfinite(bounds)]))
         change = found - now
         change[-1] *= SPACING
         return change, float(((system @ found - right) ** 2).sum() / 2)
@@ -398,19 +452,15 @@ class _Search:
 
 
 class _LostError(ArithmeticError):
-    """Whole shifts that are not reached; `missed` tells by how much, cells."""
+    """Whole shifts that are not reached; `aim` is how far it went, `missed` what is left, cells."""
 
     def __init__(self, aim: _Aim, reason: str) -> None:
-        self.missed = _worst(aim.misses)
+        self.aim, self.missed = aim, _worst(aim.misses)
         super().__init__(f"misses of up to {self.missed:.2g} cells are left ({reason})")
 
 
 class _StuckError(_LostError):
-    """Whole shifts on the way to which steps get shorter; `aim` is how far it went."""
-
-    def __init__(self, aim: _Aim, reason: str) -> None:
-        super().__init__(aim, reason)
-        self.aim = aim
+    """Whole shifts on the way to which steps get shorter."""
 
 
 def _worst(misses: Complexes) -> float:

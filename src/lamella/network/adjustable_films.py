@@ -11,7 +11,7 @@ import numpy as np
 from lamella.drawing_origin import origin_figure
 from lamella.network.film_net import FilmNet
 from lamella.network.pattern import Pattern
-from lamella.network.shift_rates import curvature_rates_of_volume, jacobi_fields, shift_rates
+from lamella.network.shift_rates import Rates, curvature_rates_of_volume, jacobi_fields, shift_rates
 from lamella.surface.boundary.curve import Loop
 from lamella.surface.boundary.freedom import Freedom
 from lamella.surface.boundary.tables import Drawn, boundary_loops
@@ -52,7 +52,7 @@ class Films:
     def __init__(self, table: FormFoundTable, folder: Path, freedom: Freedom, pattern: Pattern) -> None:
         self.table, self.folder, self.freedom, self.pattern = table, folder, freedom, pattern
         self._drawn: Drawn = {}
-        self._rates: WeakKeyDictionary[FilmNet, Complexes] = WeakKeyDictionary()
+        self._rates: WeakKeyDictionary[FilmNet, Rates] = WeakKeyDictionary()
 
     def loops(self, shares: Floats) -> tuple[Loop, ...]:
         """The boundary at some shares."""
@@ -113,6 +113,17 @@ class Films:
 
     def cell_rates(self, net: FilmNet, step: float) -> Complexes:
         """Rates of the shifts in cells, (t, p + 1), the logarithm of the spacing last."""
+        return net.cell_rates(self._found(net).shifts, step)
+
+    def umbilics_inside(self, net: FilmNet, kept: float) -> tuple[Floats, Floats]:
+        """Normals (z, p) and bounds (z,): umbilics keep that share of their distance from the rim, to first order, at
+        shares x with normals x <= bounds; none where the rates of the net were not found."""
+        if net not in self._rates:
+            return np.zeros((0, self.freedom.count)), np.zeros(0)
+        rates = self._rates[net]
+        return -rates.depths, (1 - kept) * rates.depth - rates.depths @ net.shares
+
+    def _found(self, net: FilmNet) -> Rates:
         if net not in self._rates:
             film, h = net.equilibrium.film, net.surface.mean_curvature
             rim = self.rim_shifts(film, net.shares)
@@ -120,8 +131,8 @@ class Films:
             if self.table.volume is not None:
                 curvature = curvature_rates_of_volume(film, h, rim)
             fields = jacobi_fields(film, h, rim, curvature)
-            self._rates[net] = shift_rates(net.surface, film, net.iso, fields, curvature)
-        return net.cell_rates(self._rates[net], step)
+            self._rates[net] = shift_rates(net.surface, film, net.iso, fields, rim, curvature)
+        return self._rates[net]
 
     def rim_shifts(self, film: Film, shares: Floats) -> Floats:
         """How the boundary's nodes move with each parameter, (p, n, 3), m."""

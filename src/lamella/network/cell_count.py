@@ -5,7 +5,10 @@ principal directions follow the rim all of them run on across any loop around th
 of chi over l0. Where umbilics near the hole turn the directions against the rim, the curves that come back cancel in
 the period, which may be any small number; on the rim they count all the same.
 
-Without a hole it counts cells along the longest principal line.
+Without a hole it counts cells along the longest principal line. With umbilics of odd order w has no one value, and how
+far u or v reaches would hang on where the surface is cut. Around one of them w goes over into itself turned about the
+umbilic: a principal line is as long as twice the way from there. Around several it goes over into whatever: there the
+diameter of a disc that is as large in the plane of w is counted on.
 """
 
 from __future__ import annotations
@@ -14,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lamella.network.holonomy import Holonomy
+from lamella.network.holonomy import Holonomy, fixed_point_factors
 from lamella.network.isothermic import Isothermic
 from lamella.network.pattern import Pattern
 
@@ -33,7 +36,7 @@ class CellCount:
     length : float
         Isothermic length of what is counted on, sqrt(m): l0 times the number of cells.
     across : float
-        Of the longest principal line, sqrt(m).
+        Of the longest principal line, or what stands for it, sqrt(m).
     period : complex
         Of w around the first hole, sqrt(m), where the hole's curves are counted; 0: w comes back as -w, or no loop is
         counted on.
@@ -46,7 +49,7 @@ class CellCount:
     @classmethod
     def of(cls, iso: Isothermic, around: tuple[Holonomy, ...], pattern: Pattern) -> CellCount:
         """On a surface's coordinates; `around` its holes."""
-        across = iso.longest
+        across = _across(iso)
         if not around:
             return cls(across, across, 0j)
         first = around[0]
@@ -82,6 +85,17 @@ class CellCount:
             if whole and abs(whole * self.length / net - cells) <= 0.5:
                 return net / whole
         return self.length / cells
+
+
+def _across(iso: Isothermic) -> float:
+    """Isothermic length of the longest principal line, or what stands for it where w has no one value, sqrt(m)."""
+    if not len(iso.odd):
+        return iso.longest
+    if len(iso.odd) == 1:
+        umbilic = complex(fixed_point_factors(iso) @ np.array([piece.shift for piece in iso.transitions]))
+        away = iso.on_rim - umbilic
+        return 2 * float(max(np.abs(away.real).max(), np.abs(away.imag).max()))
+    return 2 * float(np.sqrt(iso.area / np.pi))
 
 
 def _larger(shift: complex, pattern: Pattern) -> float:

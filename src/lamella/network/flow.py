@@ -21,13 +21,16 @@ Integers = NDArray[np.int64]
 Booleans = NDArray[np.bool_]
 
 RIM, UNREAL, ENDLESS = range(3)
-"""How a half ends: on the rim, where its direction stops being real, or not within the longest way allowed."""
+"""How a half ends: on the rim, where its direction stops being real, or not: it comes back, or gets too long."""
 
 MOST_STEPS = 20_000
 # halvings of the step in which a line ends: rounding is left
 HALVINGS = 46
 # turn of a line in a step, rad
 MOST_TURN = 0.1
+# a half comes back where it passes its seed in its own sense, cosine of the angle between at least, after it was this
+# many times farther away
+SAME_SENSE, AWAY = 0.5, 4.0
 # of the way on which directions would stop being real if they went on as in the last step; least step over the longest
 APPROACH, SLOWEST = 0.5, 8
 
@@ -76,6 +79,11 @@ class Flow:
     def lengths(self) -> Floats:
         """Of the lines, m, (m,)."""
         return np.asarray(self.length[::2] + self.length[1::2])
+
+    @property
+    def endless(self) -> Booleans:
+        """Lines that do not end, (m,): those that end have the step in which they do, or are finished."""
+        return np.asarray(((self.ends == ENDLESS) & (self.tail == 0)).reshape(-1, 2).any(1))
 
     def at(self, line: Integers, s: Floats) -> tuple[Places, Look, Floats]:
         """Places, what is seen there, and unit tangents (n, 3), at arc lengths s (n,) from the starts of lines (n,)."""
@@ -135,7 +143,16 @@ def joined(flows: list[Flow]) -> Flow:
     )
 
 
-def trace(ground: Ground, field: LineField, seeds: Places, is_a: Booleans, *, step: float, longest: float) -> Flow:
+def trace(
+    ground: Ground,
+    field: LineField,
+    seeds: Places,
+    is_a: Booleans,
+    *,
+    step: float,
+    longest: float,
+    beside: float = 0.0,
+) -> Flow:
     """Trace lines both ways from seeds, up to the step in which they end (see `finished`).
 
     Parameters
@@ -150,6 +167,8 @@ def trace(ground: Ground, field: LineField, seeds: Places, is_a: Booleans, *, st
         Longest step, m.
     longest : float
         Length of a half at which it is given up, m.
+    beside : float
+        Distance from its seed within which a half has come back and is given up, m.
     """
     m = len(seeds)
     line = np.repeat(np.arange(m), 2)
@@ -159,6 +178,7 @@ def trace(ground: Ground, field: LineField, seeds: Places, is_a: Booleans, *, st
     outwards = np.tile([-1.0, 1.0], m)[:, None]
     heading = field.heading(look.mean, look.deviator, family)
     tangent = outwards * (heading.real[:, None] * look.e_u + heading.imag[:, None] * look.e_v)
+    origin, sense, away = look.position, tangent, np.zeros(2 * m, bool)
     way, length, tail = np.zeros(2 * m), np.zeros(2 * m), np.zeros(2 * m)
     ends = np.full(2 * m, ENDLESS)
     left = np.arange(2 * m)
@@ -179,8 +199,11 @@ def trace(ground: Ground, field: LineField, seeds: Places, is_a: Booleans, *, st
         most = np.maximum(APPROACH * margin / fall, step / SLOWEST)
         on = (ground.gap(ahead) >= 0) & (margin >= 0)
         length[left], tail[left[~on]] = way, ds[~on]
-        on &= way + ds < longest
-        tangent = _tangent(field, seen, family[left], tangent)[on]
+        tangent = _tangent(field, seen, family[left], tangent)
+        back = away[left] & (_from_chord(origin[left], look.position, seen.position) < beside)
+        on &= (way + ds < longest) & ~(back & ((tangent * sense[left]).sum(1) > SAME_SENSE))
+        away[left] |= np.linalg.norm(seen.position - origin[left], axis=1) > AWAY * beside
+        tangent = tangent[on]
         left, way, where, look = left[on], (way + ds)[on], ahead[on], seen.take(on)
         margin, most = margin[on], most[on]
         if not len(left):
@@ -204,6 +227,14 @@ def trace(ground: Ground, field: LineField, seeds: Places, is_a: Booleans, *, st
         tangents[order],
         positions[order],
     )
+
+
+def _from_chord(points: Floats, begin: Floats, end: Floats) -> Floats:
+    """Distances of points from chords, m, (n,); all (n, 3)."""
+    chord, off = end - begin, points - begin
+    square = np.maximum((chord**2).sum(1), 1e-300)
+    share = np.clip((off * chord).sum(1) / square, 0, 1)
+    return np.asarray(np.linalg.norm(off - share[:, None] * chord, axis=1))
 
 
 def finished(flow: Flow) -> Flow:

@@ -21,6 +21,7 @@ from lamella.network.net_mesh import NetMesh
 from lamella.network.poisson import Poisson, deviator_root
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.edge_basis import edge_values
+from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.ties import MARGIN
 from lamella.surface.points import Complexes, Floats
 
@@ -98,14 +99,26 @@ class Isothermic:
     plain: Poisson
 
     @cached_property
-    def longest(self) -> float:
-        """How far u or v reaches over the cut surface, sqrt(m): harmonic functions have their extremes on the rim."""
+    def on_rim(self) -> Complexes:
+        """w all along the rim, sqrt(m), (n,): harmonic functions have their extremes there."""
         connectivity = self.mesh.connectivity
         nodes = connectivity.basis.edge_nodes[connectivity.rim_edges]
         along = edge_values(connectivity.basis.order, np.linspace(0, 1, ALONG_EDGE))
-        rim = self.value[connectivity.rim_elements[:, None], nodes] @ along.T
+        return np.asarray((self.value[connectivity.rim_elements[:, None], nodes] @ along.T).ravel())
+
+    @cached_property
+    def longest(self) -> float:
+        """How far u or v reaches over the cut surface, sqrt(m)."""
         cut = self.value[:, :3][self.cut.any(1)]
-        return float(max(np.ptp(np.concatenate([part(rim).ravel(), part(cut).ravel()])) for part in (np.real, np.imag)))
+        return float(max(np.ptp(np.concatenate([part(self.on_rim), part(cut).ravel()])) for part in (np.real, np.imag)))
+
+    @cached_property
+    def area(self) -> float:
+        """Of the surface in the plane of w, m: the integral of mu^2."""
+        basis = self.mesh.connectivity.basis
+        points, weights = triangle_rule(2 * basis.order - 2)
+        w_x, w_y = (self.value @ basis.basis(points, *d).T for d in ((1, 0), (0, 1)))
+        return float((np.abs(w_x.real * w_y.imag - w_x.imag * w_y.real) * weights).sum())
 
     @cached_property
     def dirichlet(self) -> Floats:

@@ -14,6 +14,7 @@ from lamella.network.ground import Ground
 from lamella.network.line_field import LEAST_ANGLE, LineField
 from lamella.network.pattern import Pattern
 from lamella.network.seeds import RIM_POINTS, Guide, choose_guide
+from lamella.network.winding import probes, refuse_winding
 from lamella.surface.points import Floats
 from lamella.surface.vectors import dots, lengths
 from lamella.wording import rounded
@@ -88,7 +89,7 @@ def lay_lines(ground: Ground, pattern: Pattern, *, cells: int | None = None, spa
     Raises
     ------
     InputError
-        There are no such lines; too few cells, or too many nodes.
+        There are no such lines, or they do not end; too few cells, or too many nodes.
     """
     where, area = ground.samples()
     look = ground.look(where)
@@ -113,6 +114,8 @@ def lay_lines(ground: Ground, pattern: Pattern, *, cells: int | None = None, spa
     crossings = area[usable].sum() / (spacing_there**2 * float(np.median(sines)))
     nodes = crossings + _ends(ground, field, spacing_there)
     _refuse_many(nodes, guide, spacing_there, key)
+    few = probes(ground, field, where, look, spacing_there, size)
+    refuse_winding(ground, field, few, pattern, spacing_there, size)
     return LaidLines(reach, field, guide, distance, requested, key, size, round(nodes))
 
 

@@ -9,19 +9,22 @@ distance, solved by non-negative least squares (Lawson and Hanson, Solving Least
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
 from lamella.surface.points import Floats
 
-# of a limit: solutions beyond it by less are brought back by a common factor
+# of a limit, or in the unit of x: solutions beyond it by less are brought back by a common factor
 BEYOND = 1e-6
 # rounds of planes; each takes away most of what was beyond
 MOST_ROUNDS = 60
 
 
-def least_squares_within(system: Floats, right: Floats, limits: Floats) -> Floats:
-    """The solution (p,) of least |system x - right|^2 with |limits[k] x| <= 1 for all k.
+def least_squares_within(
+    system: Floats, right: Floats, limits: Floats, planes: tuple[Floats, Floats] | None = None
+) -> Floats:
+    """The solution (p,) of least |system x - right|^2 with |limits[k] x| <= 1 for all k, behind planes.
 
     Parameters
     ----------
@@ -29,28 +32,38 @@ def least_squares_within(system: Floats, right: Floats, limits: Floats) -> Float
         Of rank p.
     right : (m,)
     limits : (n, c, p)
+    planes : (m, p) and (m,), optional
+        Normals and bounds: normals x <= bounds, which some x within the limits keeps.
     """
     axes, triangle = np.linalg.qr(system)
     q_right = axes.T @ right
-    planes = np.zeros((0, system.shape[1]))
+    given, given_bounds = planes or (np.zeros((0, system.shape[1])), np.zeros(0))
+    # of one length, as rounding is
+    length = np.maximum(np.linalg.norm(given, axis=1), 1e-300)
+    given, given_bounds = given / length[:, None], given_bounds / length
+    normals, bounds = given, given_bounds
     x = np.asarray(solve_triangular(triangle, q_right))
     for _ in range(MOST_ROUNDS):
         moves = limits @ x
         far = np.linalg.norm(moves, axis=1)
         over = far > 1 + BEYOND
-        if not over.any():
+        if not over.any() and (given @ x <= given_bounds + BEYOND).all():
             break
         unit = moves[over] / far[over, None]
-        planes = np.vstack([planes, np.einsum("kc,kcp->kp", unit, limits[over])])
-        x = _behind_planes(triangle, q_right, planes)
+        normals = np.vstack([normals, np.einsum("kc,kcp->kp", unit, limits[over])])
+        bounds = np.append(bounds, np.ones(len(unit)))
+        x, held = _behind_planes(triangle, q_right, normals, bounds)
+        # the least rises from round to round: planes that hold nothing now are not needed for it
+        held[: len(given)] = True
+        normals, bounds = normals[held], bounds[held]
     return np.asarray(x / max(1.0, float(np.linalg.norm(limits @ x, axis=1).max(initial=0.0))))
 
 
-def _behind_planes(triangle: Floats, right: Floats, planes: Floats) -> Floats:
-    """The least |triangle x - right| with planes (n, p) x <= 1."""
+def _behind_planes(triangle: Floats, right: Floats, planes: Floats, bounds: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+    """The least |triangle x - right| with planes (n, p) x <= bounds (n,), and which of these hold it, (n,)."""
     # y = triangle x - right is the shortest vector with normals y >= heights
     normals = -solve_triangular(triangle, planes.T, trans="T").T
-    heights = -1 - normals @ right
+    heights = -bounds - normals @ right
     count = len(right)
     dual = np.vstack([normals.T, heights])
     goal = np.append(np.zeros(count), 1.0)
@@ -58,4 +71,4 @@ def _behind_planes(triangle: Floats, right: Floats, planes: Floats) -> Floats:
     rest = goal - dual @ weights
     # the dual of a possible problem: rest[count] is above 0
     y = (dual[:count] @ weights) / rest[count]
-    return np.asarray(solve_triangular(triangle, right + y))
+    return np.asarray(solve_triangular(triangle, right + y)), weights > 0

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from lamella.network.cell_map import CellMap
 from lamella.network.crossings import Crossings
-from lamella.network.level_lines import RIM
+from lamella.network.level_lines import RIM, SINGULAR_END
 from lamella.network.tracks import A, B, Tracks
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import ElementRim
@@ -66,8 +66,12 @@ def _to_ends(tracks: Tracks, tips: Floats, crossings: Crossings) -> Floats:
 def along_rim(
     cells: CellMap, rims: tuple[ElementRim, ...], tracks: Tracks, tips: Floats, crossings: Crossings
 ) -> Flags:
-    """Chains (c,) that are the rim: all that crosses them ends within `ALONG` from there, or they lie as near to it."""
+    """Chains (c,) that are the rim: all that crosses them ends within `ALONG` from there, or they lie as near to it.
+
+    Rays of a singular node are none: the node lies inside, however near to the rim, and cells next to it are large.
+    """
     chains = len(tracks.family)
+    ray = (tracks.ends == SINGULAR_END).any(1)
     near = _to_ends(tracks, tips, crossings).min(2) < ALONG
     inside, beside = np.zeros(chains), np.zeros(chains)
     for family in (A, B):
@@ -75,8 +79,8 @@ def along_rim(
         inside += np.bincount(mine, ~other, chains)
         # a crossing in a corner is near to the ends of both
         beside += np.bincount(mine, other & ~near[family], chains)
-    result = (inside == 0) & (beside > 0)
-    for chain in np.flatnonzero((inside == 0) & (beside == 0)).tolist():
+    result = ~ray & (inside == 0) & (beside > 0)
+    for chain in np.flatnonzero(~ray & (inside == 0) & (beside == 0)).tolist():
         links = slice(int(tracks.first[chain]), int(tracks.last[chain]) + 1)
         points = cells.positions(Places(tracks.element[links], tracks.local_end[links]))
         points = np.vstack([cells.positions(Places(tracks.element[links], tracks.local_start[links]))[:1], points])

@@ -19,6 +19,7 @@ from lamella.network.flow import Flow, finished, joined, trace
 from lamella.network.ground import Ground, Look
 from lamella.network.lattice import ragged_ranges
 from lamella.network.line_field import LineField
+from lamella.network.winding import LONGEST, wound
 from lamella.surface.element.places import Places
 from lamella.surface.element.ties import MARGIN, nearest_whole
 from lamella.surface.points import Floats
@@ -33,8 +34,6 @@ CLOSE, GAP = 0.6, 1.0
 MOST_ROUNDS = 60
 # gaps filled at once, and how far apart they are, in spacings
 MOST_GAPS, APART = 24, 4.0
-# steps a spacing, and longest half over the surface's size
-STEPS, LONGEST = 3, 12.0
 # points of the rim that tell how deep inside a place is
 RIM_POINTS = 200
 # of the size: what a place loses for being this far from the middle
@@ -158,7 +157,8 @@ def seeded_lines(ground: Ground, field: LineField, guide: Guide, distance: float
     samples, position = samples[usable], look.position[usable]
     across = spacing * field.crossing_sine(look.mean, look.deviator)[usable]
     for _ in range(MOST_ROUNDS):
-        if lines is None:
+        # lines that do not end are refused: more of them tell nothing
+        if lines is None or lines.endless.any():
             break
         gaps = [_gaps(position, how.distances(position, lines, one) / across, APART * spacing) for one in (True, False)]
         found = np.concatenate(gaps)
@@ -200,7 +200,7 @@ class _How:
     size: float
 
     def lines(self, seeds: Places, is_a: Booleans) -> Flow:
-        return trace(self.ground, self.field, seeds, is_a, step=self.spacing / STEPS, longest=LONGEST * self.size)
+        return wound(self.ground, self.field, seeds, is_a, spacing=self.spacing, size=self.size)
 
     def along(
         self, places: Places, is_a: Booleans, distance: float, *, centred: bool = False

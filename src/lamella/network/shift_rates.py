@@ -7,7 +7,7 @@ coordinates' forms change with it, and the shifts follow by testing this change 
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from lamella.network.gluing import best_shifts, links
 from lamella.network.holonomy import vertex_relations
 from lamella.network.isothermic import Isothermic, sectors
 from lamella.network.poisson import Poisson
+from lamella.network.umbilic_depth import UmbilicDepths
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.film import Film
@@ -88,10 +89,29 @@ def curvature_rates_of_volume(film: Film, mean_curvature: float, rim_shifts: Flo
     return np.asarray(-volume[:count] / volume[count])
 
 
+@dataclass(frozen=True)
+class Rates:
+    """How a net follows p parameters.
+
+    Attributes
+    ----------
+    shifts : (t, p) complex
+        Change of every shift, sqrt(m).
+    depth : (z,)
+        Distance of the umbilics of order 1 from the rim, m.
+    depths : (z, p)
+        Change of that.
+    """
+
+    shifts: Complexes
+    depth: Floats
+    depths: Floats
+
+
 def shift_rates(
-    surface: ElementSurface, film: Film, iso: Isothermic, fields: Floats, curvature_rates: Floats
-) -> Complexes:
-    """Change of every shift, sqrt(m), with each of p parameters, (t, p).
+    surface: ElementSurface, film: Film, iso: Isothermic, fields: Floats, rim_shifts: Floats, curvature_rates: Floats
+) -> Rates:
+    """Change of every shift, and of how far umbilics are inside the rim, with each of p parameters.
 
     Parameters
     ----------
@@ -102,8 +122,8 @@ def shift_rates(
         On the surface.
     fields : (p, n)
         See `jacobi_fields`.
-    curvature_rates : (p,)
-        1/m.
+    rim_shifts, curvature_rates
+        See `jacobi_fields`.
     """
     mesh = iso.mesh
     system = Poisson.of(mesh, iso.sign)
@@ -113,6 +133,8 @@ def shift_rates(
     relations = list(vertex_relations(mesh, iso.transitions, iso.across, iso.odd).values())
     directions = film.directions()
     rates = np.zeros((len(iso.transitions), len(fields)), complex)
+    umbilics = UmbilicDepths.of(surface)
+    depths = np.zeros((len(umbilics.depth), len(fields)))
     for number, (field, rate) in enumerate(zip(fields, curvature_rates, strict=True)):
         step = STEP * film.size / max(float(np.abs(field).max()), 1e-12 * film.size)
         moved = ElementSurface(
@@ -130,4 +152,6 @@ def shift_rates(
         pull = system.pull_of(turn * other.form_a - system.form_a, turn * other.form_b - system.form_b)
         right = np.einsum("tek,ek->t", moves, pull) / step
         rates[:, number] = best_shifts(gram, right, relations, np.zeros(len(relations), complex))
-    return rates
+        along = rim_shifts[number] - field[:, None] * directions
+        depths[:, number] = umbilics.change(surface, moved, step * along) / step
+    return Rates(rates, umbilics.depth, depths)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.errors import InputError
-from lamella.network.flow import ENDLESS, Flow
+from lamella.network.flow import Flow
 from lamella.network.ground import Ground
 from lamella.network.laid_lines import Reach, lay_lines
 from lamella.network.lattice import ragged_ranges
@@ -36,6 +36,7 @@ from lamella.network.traced_stops import (
     without_short,
 )
 from lamella.network.turning import derivative, turning
+from lamella.network.winding import refuse_winding
 from lamella.progress import Progress, silent
 from lamella.surface.darboux import Darboux
 
@@ -154,7 +155,7 @@ def traced_network(
     best, known, chosen = np.inf, [], None
     for _ in range(MOST_TRIES):
         tried = seeded_lines(ground, field, guide, distance, size)
-        _refuse_endless(tried.flow, pattern)
+        refuse_winding(ground, field, tried.flow, pattern, distance * guide.share, size)
         met = find_crossings(tried.flow, distance * guide.share)
         flow, met = without_short(tried.flow, met, minimum_length)
         median = median_edge(flow, met)
@@ -170,21 +171,6 @@ def traced_network(
     seeded, flow, crossings, step = chosen
     network, inner, missed = _network(ground, seeded, flow, crossings, pattern, mean_curvature, step, key)
     return TracedNetwork(network, laid.requested, laid.reach, seeded.guides, inner, missed, laid.field.scale)
-
-
-def _refuse_endless(flow: Flow, pattern: Pattern) -> None:
-    """Lines that come back to themselves, or wind on: each turn would cross the other family anew."""
-    endless = (flow.ends.reshape(-1, 2) == ENDLESS).any(1)
-    if endless.any():
-        longest = float(flow.lengths[endless].max())
-        raise InputError(
-            f"{endless.sum()} of {flow.count} lines wind around without reaching the rim (given up after "
-            f"{longest:.3g} m): closed lines are offered on surfaces of constant mean curvature only",
-            'cut the surface open where they go around, or write surface.mean_curvature = "fit"'
-            if pattern.kind == "principal"
-            else "cut the surface open where they go around, or choose another normal_curvature",
-            "network.kind" if pattern.kind == "principal" else "network.normal_curvature",
-        )
 
 
 def _next_distance(known: list[tuple[float, float]]) -> float:

@@ -10,9 +10,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lamella.errors import InputError
-from lamella.project_boundary import MOST_WAVES, PlaceTable
+from lamella.project_boundary import MOST_WAVES, AdjustTable, PlaceTable
 from lamella.surface.boundary.pieces import Floats
 from lamella.surface.boundary.waves import wave_rows
+from lamella.wording import rounded
 
 if TYPE_CHECKING:
     from lamella.project import FormFoundTable
@@ -23,6 +24,8 @@ POINTS_A_WAVE = 3
 # places along a loop where its waves together are limited, and to what share of the limit: the curve through shifted
 # points goes a little further between them
 PLACES, NEAR_LIMIT = 144, 0.98
+# of a limit: what is offered instead of one that does not do is larger than what is needed
+SPARE = 0.05
 # where a project names no freedom: of a loop's size
 USUAL = 0.05
 
@@ -31,10 +34,13 @@ USUAL = 0.05
 class _Part:
     """Some of the parameters: what they are, how far they go, and how the table follows from their values.
 
-    With values `ranges` x what is limited are the lengths of the vectors `limits` (n, 3, p) x: 1 at most.
+    With values `ranges` x what is limited are the lengths of the vectors `limits` (n, 3, p) x: 1 at most. The limit is
+    what the project writes under `key`, of the boundary loop number `loop` (-1: of the surface).
     """
 
     name: str
+    key: str
+    loop: int
     ranges: Floats
     limits: Floats
     apply: Callable[[FormFoundTable, Floats], FormFoundTable]
@@ -70,7 +76,7 @@ class Freedom:
         for index, loop in enumerate(table.boundary):
             parts += _of_loop(index, loop, usual=not given)
         if table.adjust_mean_curvature:
-            parts.append(_part("mean curvature", table.adjust_mean_curvature, 1, _with_curvature))
+            parts.append(_part("mean curvature", "", -1, table.adjust_mean_curvature, 1, _with_curvature))
         self._parts = parts
         self.names = tuple(part.name for part in parts)
         self.count = sum(len(part.ranges) for part in parts)
@@ -84,6 +90,40 @@ class Freedom:
     def used(self, shares: Floats) -> float:
         """The largest share of a limit that shares (count,) of the ranges take."""
         return float(np.linalg.norm(self.limits @ shares, axis=1).max(initial=0.0))
+
+    def enough(self, shares: Floats) -> str:
+        """What a project writes to allow shares (count,) of the ranges, a little more; empty: more than it may write.
+
+        Limits that they keep stay as they are.
+        """
+        loops = self.table.boundary
+        adjust: dict[int, dict[str, float | bool]] = {}
+        phrases, wider = [], set()
+        first = 0
+        for part in self._parts:
+            used = float(np.linalg.norm(part.limits @ shares[first : first + len(part.ranges)], axis=1).max())
+            first += len(part.ranges)
+            most = float(np.degrees(part.ranges[0]) if part.key == "tilt" else part.ranges[0])
+            if used > 1 - SPARE:
+                most = rounded(most * used * (1 + SPARE), up=True, digits=2)
+                wider.add(part.loop)
+            if part.loop < 0:
+                phrases += [f"adjust_mean_curvature = {most:g}"] if part.loop in wider else []
+            else:
+                adjust.setdefault(part.loop, {})[part.key] = most
+        for number, limits in adjust.items():
+            given = loops[number].adjust
+            # where no loop has a table all may change by the usual: one that is written turns the others off
+            if number not in wider and given is not None:
+                continue
+            height = {"keep_height": True} if given is not None and given.keep_height else {}
+            try:
+                AdjustTable.model_validate(limits | height)
+            except ValueError:
+                return ""
+            words = [f"{key} = {value:g}" for key, value in limits.items()] + ["keep_height = true"] * len(height)
+            phrases.append(f"adjust = {{{', '.join(words)}}} in the table of {loops[number].name!r}")
+        return " and ".join(phrases)
 
     def changed(self, shares: Floats) -> FormFoundTable:
         """The table with parameters at shares (count,) of their ranges."""
@@ -149,19 +189,22 @@ def _of_loop(index: int, loop: BoundaryTable, usual: bool) -> list[_Part]:
         for axis in range(axes):
             limits[:, axis, :, axis] = rows.T
         ranges = np.full(axes * len(rows), points)
-        parts.append(_Part(f"points of {loop.name!r}", ranges, limits.reshape(PLACES, 3, -1), apply))
+        by_part = limits.reshape(PLACES, 3, -1)
+        parts.append(_Part(f"points of {loop.name!r}", "points", index, ranges, by_part, apply))
     if move:
-        parts.append(_part(f"place of {loop.name!r}", move, axes, _placed(index)))
+        parts.append(_part(f"place of {loop.name!r}", "move", index, move, axes, _placed(index)))
     if scale:
-        parts.append(_part(f"size of {loop.name!r}", scale, 1, _sized(index)))
+        parts.append(_part(f"size of {loop.name!r}", "scale", index, scale, 1, _sized(index)))
     if tilt:
-        parts.append(_part(f"tilt of {loop.name!r}", np.radians(tilt), 3, _tilted(index)))
+        parts.append(_part(f"tilt of {loop.name!r}", "tilt", index, np.radians(tilt), 3, _tilted(index)))
     return parts
 
 
-def _part(name: str, most: float, count: int, apply: Callable[[FormFoundTable, Floats], FormFoundTable]) -> _Part:
+def _part(
+    name: str, key: str, loop: int, most: float, count: int, apply: Callable[[FormFoundTable, Floats], FormFoundTable]
+) -> _Part:
     """Components of one vector, at most so long."""
-    return _Part(name, np.full(count, most), np.eye(3, count)[None], apply)
+    return _Part(name, key, loop, np.full(count, most), np.eye(3, count)[None], apply)
 
 
 def _replaced(table: FormFoundTable, index: int, loop: BoundaryTable) -> FormFoundTable:

@@ -1,0 +1,88 @@
+"""How near umbilics are to the rim, and how that changes with the surface.
+
+An umbilic is a zero of the deviator D. Where D changes by d at a place of the surface, the zero next to it moves over
+the surface by -D'^-1 d, D' the derivative of D.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from lamella.surface.element.places import Places
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.points import Floats
+
+# of an element: over which D is differentiated
+BESIDE = 1e-3
+
+
+@dataclass(frozen=True)
+class UmbilicDepths:
+    """Distances of simple umbilics from the rim.
+
+    Attributes
+    ----------
+    places : Places
+        Of the umbilics, (z,).
+    depth : (z,)
+        Along the surface's chord to the nearest node of the rim, m.
+    by_deviator : (z, 2)
+        Change of the depth with the real and the imaginary part of D there, m^2.
+    rim_node : (z,) int
+        The nearest node of the rim.
+    inwards : (z, 3)
+        Unit vectors from there to the umbilics.
+    """
+
+    places: Places
+    depth: Floats
+    by_deviator: Floats
+    rim_node: NDArray[np.int64]
+    inwards: Floats
+
+    @classmethod
+    def of(cls, surface: ElementSurface) -> UmbilicDepths:
+        """Of a surface's umbilics of order 1: one of higher order splits where D changes."""
+        umbilics = surface.umbilics
+        places = umbilics.places[np.flatnonzero(umbilics.orders == 1)]
+        slopes = []
+        for axis in np.eye(2):
+            ahead, behind = (
+                surface.at(Places(places.element, places.local + way * BESIDE * axis)) for way in (1.0, -1.0)
+            )
+            slopes.append((ahead.deviator - behind.deviator) / (2 * BESIDE))
+            slopes.append((ahead.position - behind.position) / (2 * BESIDE))
+        d_x, along_x, d_y, along_y = slopes
+        # the zero moves by (x, y) with d_x x + d_y y = -d
+        turned = d_x.real * d_y.imag - d_x.imag * d_y.real
+        turned = np.where(np.abs(turned) > 0, turned, np.inf)
+        x = np.stack([-d_y.imag, d_y.real], 1) / turned[:, None]
+        y = np.stack([d_x.imag, -d_x.real], 1) / turned[:, None]
+        position = surface.frames(places).position
+        rim = np.unique(surface.connectivity.rim_nodes)
+        depth, nearest = cKDTree(surface.nodes[rim]).query(position)
+        inwards = (position - surface.nodes[rim[nearest]]) / np.maximum(depth, 1e-300)[:, None]
+        by_deviator = (inwards * along_x).sum(1)[:, None] * x + (inwards * along_y).sum(1)[:, None] * y
+        return cls(places, np.asarray(depth), by_deviator, rim[nearest], inwards)
+
+    def change(self, surface: ElementSurface, moved: ElementSurface, along: Floats | None = None) -> Floats:
+        """Change of the depths, m, (z,), to first order, on a surface of the same elements that differs a little.
+
+        Parameters
+        ----------
+        surface : ElementSurface
+            The one whose depths these are.
+        moved : ElementSurface
+        along : (n, 3), optional
+            Shifts, m, of the surface's nodes on the rim besides those to the moved surface's nodes: what the rim moves
+            along the surface.
+        """
+        d = moved.at(self.places).deviator - surface.at(self.places).deviator
+        change = self.by_deviator[:, 0] * d.real + self.by_deviator[:, 1] * d.imag
+        if along is not None:
+            change = change - (self.inwards * along[self.rim_node]).sum(1)
+        return np.asarray(change)
