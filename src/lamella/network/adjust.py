@@ -60,8 +60,8 @@ LEAST_GAIN = 0.1
 # there are other whole numbers to be reached
 KEPT = 0.3
 # limits this many times as large are looked for, at most, where the given ones do not do; in so many halvings, from so
-# many of the places reached, and tried with a little more than what suffices to first order
-MOST_REACH, REACH_HALVINGS, MOST_WIDER, WIDER = 8.0, 6, 2, 1.15
+# many of the places reached, and tried with more than what suffices to first order: steps are few where room is left
+MOST_REACH, REACH_HALVINGS, MOST_WIDER, WIDER = 8.0, 6, 2, 1.5
 # how much more a miss of a cell (see `Isothermic.dirichlet`) weighs than a full range
 WEIGHT = 1e4
 SAMPLES = 2000

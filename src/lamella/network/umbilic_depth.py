@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.points import Floats
+from lamella.surface.points import Complexes, Floats
 
 # of an element: over which D is differentiated
 BESIDE = 1e-3
@@ -49,14 +49,8 @@ class UmbilicDepths:
         """Of a surface's umbilics of order 1: one of higher order splits where D changes."""
         umbilics = surface.umbilics
         places = umbilics.places[np.flatnonzero(umbilics.orders == 1)]
-        slopes = []
-        for axis in np.eye(2):
-            ahead, behind = (
-                surface.at(Places(places.element, places.local + way * BESIDE * axis)) for way in (1.0, -1.0)
-            )
-            slopes.append((ahead.deviator - behind.deviator) / (2 * BESIDE))
-            slopes.append((ahead.position - behind.position) / (2 * BESIDE))
-        d_x, along_x, d_y, along_y = slopes
+        d_x, along_x = _slopes(surface, places, 0)
+        d_y, along_y = _slopes(surface, places, 1)
         # the zero moves by (x, y) with d_x x + d_y y = -d
         turned = d_x.real * d_y.imag - d_x.imag * d_y.real
         turned = np.where(np.abs(turned) > 0, turned, np.inf)
@@ -86,3 +80,13 @@ class UmbilicDepths:
         if along is not None:
             change = change - (self.inwards * along[self.rim_node]).sum(1)
         return np.asarray(change)
+
+
+def _slopes(surface: ElementSurface, places: Places, axis: int) -> tuple[Complexes, Floats]:
+    """Derivatives of the deviator, 1/m, (n,), and of the position, m, (n, 3), by a local coordinate."""
+    beside = BESIDE * np.eye(2)[axis]
+    ahead, behind = (surface.at(Places(places.element, places.local + way * beside)) for way in (1.0, -1.0))
+    return (
+        np.asarray((ahead.deviator - behind.deviator) / (2 * BESIDE)),
+        np.asarray((ahead.position - behind.position) / (2 * BESIDE)),
+    )
