@@ -62,6 +62,8 @@ KEPT = 0.3
 # limits this many times as large are looked for, at most, where the given ones do not do; in so many halvings, from so
 # many of the places reached, and tried with more than what suffices to first order: steps are few where room is left
 MOST_REACH, REACH_HALVINGS, MOST_WIDER, WIDER = 8.0, 6, 2, 1.5
+# of a limit: what takes as much has reached it
+AT_LIMIT = 1.0 - 1e-3
 # how much more a miss of a cell (see `Isothermic.dirichlet`) weighs than a full range
 WEIGHT = 1e4
 SAMPLES = 2000
@@ -230,7 +232,13 @@ class _Search:
 
     def _enough(self, aims: list[_Aim]) -> str:
         """What a project writes to allow a change with which the net closes, found by going there; empty: not found."""
-        wanted = [(reach, aim) for aim in aims if (reach := self._least_reach(aim)) <= MOST_REACH]
+        used = self.films.freedom.used
+        wanted = [
+            (reach, aim)
+            for aim in aims
+            # others were not stopped by their limits
+            if (reach := self._least_reach(aim)) <= MOST_REACH and (reach > 1 or used(aim.net.shares) > AT_LIMIT)
+        ]
         # to first order tells most where little is missed
         for reach, aim in sorted(wanted, key=lambda one: one[0] * (1 + _worst(one[1].misses)))[:MOST_WIDER]:
             self.reach, self.steps = reach * WIDER, 0
@@ -252,6 +260,8 @@ class _Search:
             return aim.net.whole.size(aim.misses - rates @ change) < LEAST_GAIN * aim.size
 
         low, high = 0.0, float(np.log(2 * MOST_REACH))
+        if reaches(low):
+            return 1.0
         if not reaches(high):
             return np.inf
         for _ in range(REACH_HALVINGS):

@@ -92,9 +92,9 @@ class Freedom:
         return float(np.linalg.norm(self.limits @ shares, axis=1).max(initial=0.0))
 
     def enough(self, shares: Floats) -> str:
-        """What a project writes to allow shares (count,) of the ranges, a little more; empty: more than it may write.
+        """What a project writes to allow shares (count,) of the ranges and a little more.
 
-        Limits that they keep stay as they are.
+        Limits that they keep stay as they are; empty: all do, or one would be more than a project may write.
         """
         loops = self.table.boundary
         adjust: dict[int, dict[str, float | bool]] = {}
@@ -111,7 +111,7 @@ class Freedom:
                 phrases += [f"adjust_mean_curvature = {most:g}"] if part.loop in wider else []
             else:
                 adjust.setdefault(part.loop, {})[part.key] = most
-        for number, limits in adjust.items():
+        for number, limits in adjust.items() if wider else ():
             given = loops[number].adjust
             # where no loop has a table all may change by the usual: one that is written turns the others off
             if number not in wider and given is not None:
