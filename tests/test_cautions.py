@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -198,3 +199,24 @@ def test_a_surface_file_without_nurbs_is_told(monkeypatch: pytest.MonkeyPatch, o
     assert f"NURBS would be {count:,} patches (limit {count - 1:,})" in told
     # no order is higher than 4
     assert ("a higher surface.order" in told) == (order < 4)
+
+
+@pytest.mark.parametrize(("order", "cells"), [(6, 12), (4, 30)])
+def test_cells_that_make_large_ones_smaller(order: int, cells: int) -> None:
+    """Around a zero of order m an edge goes like cells^(-2 / (m + 2)): m = order - 2 on Enneper's surfaces."""
+
+    def net(count: int) -> tuple[Any, list[str]]:
+        project = parse_project(
+            {"surface": {"kind": "enneper", "order": order, "radius": 1.1, "scale": 4.0}, "network": {"cells": count}}
+        )
+        network = compute(project, until="network").network
+        assert network is not None
+        return network, [told for told in network_cautions(network, 0.01) if "over 4 x the median" in told]
+
+    before, (told,) = net(cells)
+    number = re.search(r"(\d+) cells make them about 4 x the median of now", told)
+    assert number
+    after, _ = net(int(number[1]))
+    assert after.cell_edges.max() < 1.1 * 4 * np.median(before.cell_edges)
+    # not many more than that needs
+    assert after.cell_edges.max() > 0.8 * 4 * np.median(before.cell_edges)

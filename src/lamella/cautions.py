@@ -9,8 +9,8 @@ import numpy as np
 
 from lamella.drawing_origin import coordinates
 from lamella.network.cell_sizes import MOST_RATIO, large_cells, small_cells
-from lamella.network.density import LEAST_CELLS
-from lamella.network.network import Network
+from lamella.network.density import LEAST_CELLS, MOST_NODES
+from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas, Section, layer_drift
 from lamella.strip.material import Material
 from lamella.strip.sections import bearable
@@ -96,14 +96,14 @@ def network_cautions(network: Network, height: float, closing: str = "open", *, 
         places = "; ".join(coordinates(point, 3) for point in network.node_points[network.faces_left_out[:3]])
         yield (
             f"{counted(len(network.faces_left_out), 'face')} of more than six corners between lamellas and rim left "
-            f"out (near {places} m): more cells make them smaller"
+            f"out (near {places} m): with {2 * network.cells} cells they are about half as large"
         )
     count, large = large_cells(network)
     if large:
         places = "; ".join(f"{one.edge:.3g} m at ({coordinates(one.point, 3)}) m" for one in large)
         yield (
             f"{count} cell edge{'s are' if count > 1 else ' is'} over {MOST_RATIO:g} x the median, up to "
-            f"{large[0].ratio:.3g} x ({places}): {_why_large(network, traced)}"
+            f"{large[0].ratio:.3g} x ({places}): {_why_large(network, traced, large[0].ratio)}"
         )
     if network.pattern.kind == "lamellas":
         yield from _small_cells(network, height)
@@ -135,16 +135,33 @@ def _small_cells(network: Network, height: float) -> Iterator[str]:
         )
 
 
-def _why_large(network: Network, traced: bool) -> str:
+def _why_large(network: Network, traced: bool, ratio: float) -> str:
     """What makes cells large, and what to do about it."""
+    finer = (ratio / MOST_RATIO) ** _slowness(network)
+    more = ""
+    if len(network.node_points) * finer**2 < MOST_NODES:
+        cells = 2 * int(np.ceil(network.cells * finer / 2))
+        more = f"{cells} cells make them about {MOST_RATIO:g} x the median of now, or "
     if not traced:
-        return "the surface is nearly planar or spherical there; more cells, or a boundary that bends it more"
+        return (
+            f"the surface is nearly planar or spherical there; {more}a boundary that bends it more makes them shorter"
+        )
     if network.pattern.kind == "principal":
-        return "principal lines draw apart there; more cells, or a smaller spacing"
+        return f"principal lines draw apart there; {more}a smaller spacing makes them shorter"
     return (
         "lines of one normal curvature draw apart there, or cross at flat angles; a smaller spacing, or another "
         "normal_curvature"
     )
+
+
+def _slowness(network: Network) -> float:
+    """Power of the number of cells by which one over the largest cell edge grows at most.
+
+    Around a zero of order m of the Hopf differential, which has 2 (m + 2) rays, u + v goes like r^((m + 2) / 2).
+    """
+    singular = network.node_kinds == SINGULAR
+    rays = np.bincount(network.stop_nodes, minlength=len(singular))[singular]
+    return max(float(rays.max(initial=0)) / 4, 1.0)
 
 
 def lamella_cautions(
