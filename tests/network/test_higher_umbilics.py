@@ -37,7 +37,8 @@ def results_in(corners: np.ndarray, cells: int, until: str) -> Results:
     [(3, 0.02), *(pytest.param(m, 0.05, marks=pytest.mark.slow) for m in (1, 2, 4))],
 )
 def test_one_umbilic_in_a_skew_polygon(order, limit) -> None:
-    net = results_in(skew_polygon(order), 20, "network").network
+    results = results_in(skew_polygon(order), 20, "network")
+    net = results.network
     assert net is not None
     (node,) = np.flatnonzero(net.node_kinds == SINGULAR)
     a, b = net.node_degrees()
@@ -49,6 +50,9 @@ def test_one_umbilic_in_a_skew_polygon(order, limit) -> None:
     # where a lamella goes over an element's edge, the kink there is read as curvature over the samples next to it: up
     # to 2.1 times what H is off (2.8e-3 at 1.3e-3 for order 1; 1.6e-4 at 2.2e-4 with tolerance = 0.0005)
     assert figures["normal_curvature_error_rel_max"] < 2 * TOLERANCE
+    # what a run reports bounds it; the kinks of four places in five read 0.6 and 1.2 of the kink over a sample
+    reported = results.summary["network"]["normal_curvature_deviation_max"]
+    assert figures["normal_curvature_error_max"] < reported < 3.5 * figures["normal_curvature_error_max"]
 
 
 @pytest.mark.slow

@@ -22,6 +22,7 @@ from lamella.network.lines import is_traced
 from lamella.network.net_mesh import NetMesh, make_net_mesh, onto_surface
 from lamella.network.network import SINGULAR, Network, Period
 from lamella.network.pattern import LAMELLAS, Pattern
+from lamella.network.sampled_bend import sampled_bend
 from lamella.network.trace_elements import trace_elements
 from lamella.network.whole_shifts import WholeShifts
 from lamella.progress import Progress, silent
@@ -105,7 +106,13 @@ class ElementNetwork:
             "isothermic_residual": self.residual,
             "joints": [joint._asdict() for joint in self.joints],
             "closed": all(joint.closed for joint in self.joints),
-        }
+        } | ({"normal_curvature_deviation_max": self._off()} if self.network.pattern.kind == "lamellas" else {})
+
+    def _off(self) -> float:
+        """Largest difference of the lamellas' normal curvature from the wanted one, by surface and by samples, 1/m."""
+        network = self.network
+        both = np.concatenate([network.sample_darboux.kn, sampled_bend(network)])
+        return float(np.abs(both - network.normal_curvature).max())
 
     def _remedy(self) -> str:
         """What closes an open net, with its umbilics on nodes."""

@@ -239,6 +239,24 @@ def results() -> dict[str, tuple[Case, TriangleMesh]]:
     return {name: (case := make(), case.run()) for name, make in CASES.items()}
 
 
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: ring(0.05, 1.6, 36, 34, graded, skew=0.4),
+        lambda: ring(0.05, 1.6, 48, 26, graded, skew=0.4),
+        lambda: ring(0.05, 1.6, 44, 34, graded, skew=0.4),
+        lambda: disc(lambda u, v: 2 * v[:, None] * circle(u), 6, 1, spot, flat),
+    ],
+)
+def test_no_edge_is_stretched_after_the_last_cuts(make) -> None:
+    """Of 40 graded starts, smoothing and flips leave an edge of 1.5 to 1.6 sizes in three unless it is cut again."""
+    case = make()
+    mesh = case.run()
+    ends = mesh.points[edges_of(mesh.faces)[0]]
+    assert (np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / case.size(ends.mean(axis=1))).max() < 1.5
+    assert smallest_angles(mesh).min() > 22
+
+
 @pytest.mark.parametrize("name", CASES)
 class TestCases:
     def test_triangles_are_well_shaped(self, results, name) -> None:
@@ -255,10 +273,7 @@ class TestCases:
         ratio = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / case.size(ends.mean(axis=1))
         assert np.mean((ratio < 0.6) | (ratio > 1.4)) < 0.01
         assert ratio.min() > 0.4
-        # what is longer than 4/3 is cut, and then moved: of 24 starts like the graded ring one to three have an edge of
-        # 1.5 to 1.66
-        assert np.mean(ratio > 1.5) < 0.002
-        assert ratio.max() < 1.75
+        assert ratio.max() < 1.5
         assert 0.93 < np.median(ratio) < 1.08
 
     def test_topology_and_orientation_stay(self, results, name) -> None:

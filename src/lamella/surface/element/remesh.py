@@ -32,6 +32,7 @@ THIN, ROUND = 0.72, 0.8  # the same after the last round, and below which vertic
 FLAT = 0.01  # shape of a result that is no mesh of the surface
 RUNAWAY = 10.0  # times as many triangles as the sizes ask for
 EXTRA = 40  # further passes a boundary gets to come to its final vertices
+TOO_LONG = 1.45  # in units of the wanted length, of the result's edges: smoothing and flips stretch some beyond LONGEST
 
 
 @dataclass(frozen=True)
@@ -135,6 +136,8 @@ def remesh(
         for _ in range(3):
             round_off(draft, ROUND)
         _delaunay(draft)
+        draft.size = np.array(size(draft.points))
+        split_long(draft, look_inside=False, longest=TOO_LONG)
     area, normals = draft.face_normals()
     folded = int(np.sum(shape(draft.points[draft.faces], area, normals) < FLAT))
     if folded:

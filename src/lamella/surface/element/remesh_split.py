@@ -24,7 +24,7 @@ def apply_splits(draft: Draft, topology: Topology, edges: Integers, first_new: i
     draft.faces = np.concatenate([faces, tail])
 
 
-def split_long(draft: Draft, look_inside: bool) -> int:
+def split_long(draft: Draft, look_inside: bool, longest: float = LONGEST) -> int:
     """Halve inner edges that are longer than allowed and the longest of both their faces.
 
     Parameters
@@ -34,6 +34,8 @@ def split_long(draft: Draft, look_inside: bool) -> int:
     look_inside : bool
         Ask for the size in the middle of long edges also, which a coarse mesh needs to see a small size far from all
         its vertices.
+    longest : float
+        That is allowed, in units of the wanted length.
 
     Returns
     -------
@@ -50,8 +52,8 @@ def split_long(draft: Draft, look_inside: bool) -> int:
     ratio = length / wanted
     bridges = topology.inner & draft.boundary[ends].all(axis=1) & (ratio > BRIDGE) & ~_closes_ear(draft, topology)
     # A bridge is too long whatever its length; the offset keeps the order among bridges.
-    ratio = np.where(bridges, ratio + LONGEST, ratio)
-    edges = np.flatnonzero(topology.inner & (ratio > LONGEST))
+    ratio = np.where(bridges, ratio + longest, ratio)
+    edges = np.flatnonzero(topology.inner & (ratio > longest))
     edges = edges[disjoint(topology.sides[edges], -nearest_whole(100 * ratio[edges]), len(draft.faces), passes=1)]
     if edges.size:
         middle = draft.project(draft.points[ends[edges]].mean(axis=1))
