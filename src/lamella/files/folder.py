@@ -16,17 +16,22 @@ import re
 import secrets
 import shutil
 import stat
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 from lamella.errors import InputError
 from lamella.files.exchange import exchange
-from lamella.files.lock import lock_folder, unlock_folder
+from lamella.files.lock import let_go_to_move, lock_folder, on_windows, unlock_folder
 from lamella.files.own import MARK, foreign_entries, remove_run, run_files, was_written_by_a_run
 from lamella.wording import cut
 
 ATTEMPTS = 50
 TAKEN = (errno.ENOTEMPTY, errno.EEXIST)
+WAITS, WAIT = 20, 0.1
+"""How often, and how long each time (s), a folder is waited for that Windows does not rename: a scanner may be looking
+into files just written."""
+
 MOST_LISTED = 4
 _ELSEWHERE = "choose another folder with --out"
 
@@ -94,6 +99,7 @@ def staged_folder(target: Path) -> Iterator[Path]:
         stage, lock = _make_stage(place, made)
         yield stage
     except BaseException:
+        lock = let_go_to_move(lock)
         if stage is not None:
             shutil.rmtree(stage, ignore_errors=True)
         for folder in reversed(made):
@@ -102,6 +108,7 @@ def staged_folder(target: Path) -> Iterator[Path]:
                 folder.rmdir()
         raise
     else:
+        lock = let_go_to_move(lock)
         _finish(stage, place)
     finally:
         unlock_folder(lock)
@@ -239,8 +246,9 @@ def _clear_up(place: Path) -> None:
             else:
                 _discard(folder)
     for folder in _left_beside(place, "new"):
-        lock = lock_folder(folder, wait=False)
+        lock = lock_folder(folder, _mark(folder), wait=False)
         if lock is not None:
+            lock = let_go_to_move(lock)
             with contextlib.suppress(OSError):
                 if os.path.lexists(_mark(folder)):
                     _remove_marked(folder)
@@ -281,7 +289,7 @@ def _make_stage(place: Path, made: list[Path]) -> tuple[Path, int | None]:
             _make_parents(place.parent, made)
             stage = _beside(place, "new")
             stage.mkdir()
-            lock = lock_folder(stage)
+            lock = lock_folder(stage, _mark(stage))
             # A run that clears up may have come between the making and the locking.
             if stage.exists():
                 _mark(stage).touch()
@@ -311,7 +319,7 @@ def _swap_in(stage: Path, place: Path) -> None:
     """
     for _ in range(ATTEMPTS):
         try:
-            os.rename(stage, place)  # a free place, or an empty folder's
+            _rename(stage, place)  # a free place, or an empty folder's
             return
         except OSError as error:
             if error.errno not in TAKEN:
@@ -322,6 +330,17 @@ def _swap_in(stage: Path, place: Path) -> None:
             if _exchanged(stage, place) or _replace_in_two_steps(stage, place):
                 return
     raise OSError(f"the output folder {place} could not be replaced: other runs keep replacing it")
+
+
+def _rename(folder: Path, name: Path) -> None:
+    for left in reversed(range(WAITS)):
+        try:
+            os.rename(folder, name)
+            return
+        except PermissionError:
+            if not left or not on_windows():
+                raise
+        time.sleep(WAIT)
 
 
 def _exchanged(stage: Path, place: Path) -> bool:
@@ -343,9 +362,9 @@ def _replace_in_two_steps(stage: Path, place: Path) -> bool:
     """Set the target aside and put the stage in its place; False if another run took the place between."""
     aside = _beside(place, "old")
     try:
-        os.rename(place, aside)
+        _rename(place, aside)
         _check_content(aside)
-        os.rename(stage, place)
+        _rename(stage, place)
     except BaseException as error:
         if isinstance(error, OSError) and error.errno in TAKEN:
             _discard(aside)

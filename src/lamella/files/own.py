@@ -27,6 +27,9 @@ MARK = ".lamella-run-"
 LITTER = (".DS_Store", "Thumbs.db")
 """What file managers leave in folders they have shown; they make it anew."""
 
+JUNCTION = 0xA0000003
+"""Tag of a folder that leads to another one: IO_REPARSE_TAG_MOUNT_POINT of winnt.h."""
+
 MOST_BYTES = 64_000_000
 MOST_FOUND = 1000
 
@@ -89,7 +92,7 @@ def foreign_entries(folder: Path, files: dict[str, str] | None) -> list[str]:
             name = before + entry.name
             if len(found) >= MOST_FOUND:
                 return
-            if entry.is_symlink():
+            if _is_link(entry):
                 found.append(f"{name} (a link)")
             elif entry.is_dir(follow_symlinks=False):
                 if name in inner:
@@ -100,13 +103,20 @@ def foreign_entries(folder: Path, files: dict[str, str] | None) -> list[str]:
                 found.append(name)
             elif name in own:
                 # gone meanwhile: a run at the same time removes what it has replaced
-                if _hash(place / entry.name) not in (own[name], None):
-                    found.append(f"{name} (edited)")
+                there = _hash(place / entry.name)
+                if there not in (own[name], None):
+                    found.append(f"{name} ({'edited' if there else 'cannot be read'})")
             elif name not in known and entry.name not in LITTER:
                 found.append(name)
 
     look(folder, "")
     return found
+
+
+def _is_link(entry: os.DirEntry[str]) -> bool:
+    """Whether an entry leads elsewhere: a symbolic link, or a junction of Windows, which passes for a folder."""
+    tag = getattr(entry.stat(follow_symlinks=False), "st_reparse_tag", 0)
+    return entry.is_symlink() or tag == JUNCTION
 
 
 def remove_run(folder: Path, files: dict[str, str]) -> bool:
