@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lamella.drawing_origin import coordinates
 from lamella.network.cell_sizes import MOST_RATIO, large_cells, small_cells
@@ -171,10 +172,12 @@ def lamella_cautions(
     slot_width: float,
     strength: float,
     utilisation: Callable[[Section], float],
+    at_corner: Callable[[NDArray[np.float64]], str] | None = None,
 ) -> Iterator[str]:
     """Overstress, strips too high for the surface's curvature, layers that differ by more than their slots allow.
 
-    `strength` is the material's, Pa; `utilisation` the largest one of another section of it.
+    `strength` is the material's, Pa; `utilisation` the largest one of another section of it; `at_corner` what helps
+    at a point next to a corner of the boundary.
     """
     worst = int(np.argmax(lamellas.utilisation))
     if lamellas.utilisation[worst] > 1:
@@ -184,6 +187,7 @@ def lamella_cautions(
         yield (
             f"utilisation reaches {lamellas.utilisation[worst]:.2f} in lamella {network.ids[lamella]} at ({point}) m "
             f"({over} of {len(network.ids)} lamellas {'is' if over == 1 else 'are'} over 1): "
+            + (at_corner(network.sample_points[worst]) if at_corner else "")
             + _bearable(lamellas, strength, utilisation)
         )
     half = lamellas.section.height / 2

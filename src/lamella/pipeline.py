@@ -318,6 +318,7 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
             depth = 0
             warnings.append(f"the run ends with the surface: it is {reason}, and has no net of lamellas")
     network = lamellas = parts = nesting = None
+    woven: ElementNetwork | TracedNetwork | None = None
     if depth >= STAGES.index("network"):
         table = project.network
         if density:
@@ -335,7 +336,7 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
             )
             with unit_first(surface):
                 if traced:
-                    woven: ElementNetwork | TracedNetwork = trace(surface, project, progress)
+                    woven = trace(surface, project, progress)
                 else:
                     woven = weave(lay(surface, project, adjusted.step if adjusted else None, progress), project)
             network = woven.network
@@ -361,6 +362,7 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
         make = partial(make_lamellas, network, material=project.material(), surface=surface)
         lamellas = make(section)
         figures["lamellas"] = f = summary.lamella_summary(network, lamellas, strip.material, project.material())
+        f |= woven.corner_stresses(lamellas.utilisation) if woven else {}
         clock.stop("lamellas", f"{f['total_length']:.4g} m of lamella, utilisation up to {f['utilisation_max']:.2f}")
         warnings += cautions.lamella_cautions(
             mesh,
@@ -369,6 +371,7 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
             project.fabrication.slot_width or 0.0,
             project.material().strength,
             lambda other: float(make(other).utilisation.max()),
+            partial(woven.at_corner, utilisation=lamellas.utilisation) if woven else None,
         )
         warnings += cautions.layer_cautions(network, lamellas, project.material())
     if network and lamellas and depth >= STAGES.index("fabrication"):

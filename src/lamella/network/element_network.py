@@ -22,16 +22,16 @@ from lamella.network.lines import is_traced
 from lamella.network.net_mesh import NetMesh, make_net_mesh, onto_surface
 from lamella.network.network import SINGULAR, Network, Period
 from lamella.network.pattern import LAMELLAS, Pattern
-from lamella.network.sampled_bend import sampled_bend
+from lamella.network.rim_corners import RimCorners
+from lamella.network.sampled_bend import inner_samples, sampled_bend
 from lamella.network.trace_elements import trace_elements
 from lamella.network.whole_shifts import WholeShifts
 from lamella.progress import Progress, silent
-from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.points import Complexes, Floats
 from lamella.surface.umbilic import refuse_umbilic
-from lamella.surface.vectors import lengths
+from lamella.wording import counted
 
 Closing = Literal["open", "round"]
 
@@ -39,6 +39,8 @@ Closing = Literal["open", "round"]
 ASTRAY = 0.02
 # cell edges from a corner of the boundary within which the corner is the reason for it
 AT_CORNER = 1.5
+# of the largest utilisation: where it is less than this away from corners, a corner is the reason for it
+CONCENTRATED = 0.4
 # nets of up to so many nodes are tried out to meet a spacing, so often, until they do to so little
 MOST_TRIED, MOST_TRIALS, NEAR_ENOUGH = 1_200, 3, 0.02
 # rounding: the nearest whole numbers may put two umbilics on one node; then the next ones are tried
@@ -67,8 +69,10 @@ class ElementNetwork:
     residual : float
         Distance of the surface from constant mean curvature, see `Isothermic.residual`.
     joints : tuple of Joint
-    corners : (c, 3)
-        Of the boundary, m.
+    corners : RimCorners
+        Of the boundary.
+    curves : bool
+        Whether the boundary is of curves whose corners a project can round.
     """
 
     network: Network
@@ -77,7 +81,8 @@ class ElementNetwork:
     lattice: Lattice
     residual: float
     joints: tuple[Joint, ...]
-    corners: Floats
+    corners: RimCorners
+    curves: bool
 
     @property
     def requested(self) -> str:
@@ -106,13 +111,16 @@ class ElementNetwork:
             "isothermic_residual": self.residual,
             "joints": [joint._asdict() for joint in self.joints],
             "closed": all(joint.closed for joint in self.joints),
-        } | ({"normal_curvature_deviation_max": self._off()} if self.network.pattern.kind == "lamellas" else {})
+            "corners": self.corners.rows(self.network),
+        } | (self._off() if self.network.pattern.kind == "lamellas" else {})
 
-    def _off(self) -> float:
-        """Largest difference of the lamellas' normal curvature from the wanted one, by surface and by samples, 1/m."""
+    def _off(self) -> dict[str, float]:
+        """Errors of the lamellas' normal curvature, by surface and by samples, and of node angles: where resolved."""
         network = self.network
-        both = np.concatenate([network.sample_darboux.kn, sampled_bend(network)])
-        return float(np.abs(both - network.normal_curvature).max())
+        kn = np.concatenate([network.sample_darboux.kn, sampled_bend(network)])
+        points = np.concatenate([network.sample_points, network.sample_points[inner_samples(network)]])
+        off = np.abs(kn - network.normal_curvature)[self.corners.within(points, self.corners.cores) < 0]
+        return {"normal_curvature_deviation_max": float(off.max(initial=0.0))} | self.corners.resolved_angles(network)
 
     def _remedy(self) -> str:
         """What closes an open net, with its umbilics on nodes."""
@@ -157,6 +165,9 @@ class ElementNetwork:
             return
         there = network.sample_darboux
         off = np.abs(there.kn - wanted) / np.sqrt(np.mean(there.kn**2 + there.tg**2))
+        yield from self._unresolved(off)
+        # what elements do not resolve is told apart
+        off[self.corners.within(network.sample_points, self.corners.cores) >= 0] = 0.0
         far = off > ASTRAY
         if far.any():
             worst = network.sample_points[off.argmax()]
@@ -166,14 +177,56 @@ class ElementNetwork:
                 + self._why_astray(worst)
             )
 
+    def _unresolved(self, off: Floats) -> Iterator[str]:
+        """Lamellas that come closer to a corner than the surface's elements follow its curvature."""
+        at = self.corners.within(self.network.sample_points, self.corners.cores)
+        found = np.unique(at[(at >= 0) & (off > ASTRAY)]).tolist()
+        if found:
+            places = "; ".join(coordinates(self.corners.points[corner], 3) for corner in found)
+            yield (
+                f"next to {counted(len(found), 'corner')} of the boundary (at {places} m) the film is not resolved: "
+                f"within {self.corners.cores[found].max():.2g} m the normal curvature of lamellas is off by up to "
+                f"{off[np.isin(at, found)].max():.2g} of the curvature scale (summary: network.corners); "
+                + self.rounding(found[0])
+            )
+
+    def corner_stresses(self, utilisation: Floats) -> dict[str, Any]:
+        """The largest utilisation (of samples, (k,)) next to each corner, and away from all of them."""
+        at = self.corners.within(self.network.sample_points, self.corners.radii)
+        rows = [float(utilisation[at == k].max()) if (at == k).any() else None for k in range(len(self.corners.points))]
+        return {
+            "utilisation_at_corners": rows,
+            "utilisation_away_from_corners": float(utilisation[at < 0].max(initial=0.0)),
+        }
+
+    def at_corner(self, point: Floats, utilisation: Floats) -> str:
+        """What helps at a point (3,) if a corner is why so much is used there and not farther away; else empty."""
+        reach = AT_CORNER * float(np.median(self.network.cell_edges))
+        corner = self.corners.nearest(point, reach)
+        if corner < 0:
+            return ""
+        radii = np.maximum(self.corners.radii, reach)
+        away = utilisation[self.corners.within(self.network.sample_points, radii) < 0].max(initial=0.0)
+        if away > CONCENTRATED * utilisation.max():
+            return ""
+        return (
+            "the boundary has a corner there, which concentrates curvature (up to "
+            f"{away:.2f} more than {radii[corner]:.2g} m away from corners): {self.rounding(corner)}, "
+            "or more where that is not enough; "
+        )
+
+    def rounding(self, corner: int) -> str:
+        """What makes a corner one that a net can follow."""
+        edge = float(np.median(self.network.cell_edges))
+        if not self.curves:
+            return f"round it over about {edge:.2g} m to either side"
+        return f"round it: corner_radius = {self.corners.fillet(corner, edge):g} m in the table of its loop"
+
     def _why_astray(self, worst: Floats) -> str:
         """What makes directions wrong at a place, and what helps."""
-        edge = float(np.median(self.network.cell_edges))
-        if len(self.corners) and lengths(self.corners - worst).min() < AT_CORNER * edge:
-            return (
-                "the boundary has a corner there, at which a film's curvature has no bound: no tolerance follows it; "
-                f"round it over about {edge:.2g} m to either side (points of a spline, or an arc as a part of the loop)"
-            )
+        corner = self.corners.nearest(worst, AT_CORNER * float(np.median(self.network.cell_edges)))
+        if corner >= 0:
+            return "the boundary has a corner there, which concentrates curvature; " + self.rounding(corner)
         return "the surface's directions are not told well enough there; write a smaller surface.tolerance"
 
 
@@ -247,9 +300,16 @@ class LaidNet:
             if not piece.stub
         )
         surface = self.surface
-        rims = element_rims(surface.connectivity, surface.nodes, surface.rim_loop)
-        corners = np.vstack([rim.at(rim.corners) for rim in rims])
-        return ElementNetwork(network, self.umbilics, mesh.umbilics < 0, lattice, iso.residual, joints, corners)
+        return ElementNetwork(
+            network,
+            self.umbilics,
+            mesh.umbilics < 0,
+            lattice,
+            iso.residual,
+            joints,
+            RimCorners.of(surface),
+            surface.kind == "form-found",
+        )
 
 
 def lay_net(

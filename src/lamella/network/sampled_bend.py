@@ -8,14 +8,26 @@ builds or measures the line meets it as a normal curvature over the samples besi
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lamella.network.network import Network
 from lamella.surface.points import Floats
 from lamella.surface.vectors import dots
 
+Integers = NDArray[np.int64]
+
 # samples at either end of an open line that are left out: where one ends at an umbilic or the rim, its last samples
 # may be at other distances
 ENDS = 3
+
+
+def inner_samples(network: Network) -> Integers:
+    """Samples of which `sampled_bend` tells, (i,) int: all but those at open lines' ends."""
+    count = np.diff(network.sample_offsets)
+    begin, last = np.repeat(network.sample_offsets[:-1], count), np.repeat(count - 1, count)
+    place = np.arange(len(begin)) - begin
+    closed = np.repeat(network.closed, count) & (last > 2 * ENDS)
+    return np.flatnonzero(closed | ((place >= ENDS) & (place <= last - ENDS)))
 
 
 def sampled_bend(network: Network) -> Floats:
@@ -36,7 +48,7 @@ def sampled_bend(network: Network) -> Floats:
     begin, last = np.repeat(network.sample_offsets[:-1], count), np.repeat(count - 1, count)
     closed = np.repeat(network.closed, count) & (last > 2 * ENDS)
     place = np.arange(len(begin)) - begin
-    samples = np.flatnonzero(closed | ((place >= ENDS) & (place <= last - ENDS)))
+    samples = inner_samples(network)
     begin, last, place = begin[samples], last[samples], place[samples]
     length = network.sample_arclengths[begin + last]
     middle, arc = network.sample_points[samples], network.sample_arclengths[samples]

@@ -39,6 +39,7 @@ from lamella.network.turning import derivative, turning
 from lamella.network.winding import refuse_winding
 from lamella.progress import Progress, silent
 from lamella.surface.darboux import Darboux
+from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
 Booleans = NDArray[np.bool_]
@@ -93,6 +94,14 @@ class TracedNetwork:
             "unreal_area_share": self.reach.unreal,
             "flat_area_share": self.reach.flat,
         }
+
+    def corner_stresses(self, _: Floats) -> dict[str, Any]:
+        """None: what nets of isothermic coordinates tell apart, see `ElementNetwork`."""
+        return {}
+
+    def at_corner(self, _: Floats, utilisation: Floats) -> str:
+        """Nothing, see `corner_stresses`."""
+        return ""
 
     def warnings(self) -> Iterator[str]:
         """Where there are no lamellas, and lamellas of another normal curvature than was asked for."""

@@ -11,12 +11,17 @@ from lamella.surface.element.curvature import element_points
 from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.size_field import SizeField
-from lamella.surface.found.film import Film
+from lamella.surface.found.film import Film, Loop
 from lamella.surface.points import Floats
 
-# around a corner of the boundary the curvature of a film itself may be unbounded: parts of the size (or of
-# the loop) left out there
-CORNER_PART = 0.03
+# around a corner of the boundary the curvature of a film itself may be unbounded: within the first part of the size (or
+# of the loop) an error counts over the curvature there, within the second not at all
+CORNER_PART, CORNER_CORE = 0.03, 0.003
+# elements at a corner, over the size of its core
+CORNER_ELEMENT = 0.25
+# corners that turn by more than this, radians, have elements that are graded towards them; and where the turn is
+# measured, as a fraction of the loop
+SHARP, BESIDE = 0.35, 1e-5
 # order of the regular places in each element at which H is checked
 CHECKED = 8
 # least |D| over the curvature scale that an error is weighed by
@@ -35,7 +40,7 @@ class Deviation:
     ----------
     of_element : (m,)
         Largest |H - H0| in each element, over the scale, times the weight of curvatures there; 0 where all its check
-        points lie next to a corner.
+        points lie in the core of a corner.
     weighted : float
         Its maximum.
     largest, typical : float
@@ -67,15 +72,19 @@ def deviation_of(film: Film, mean_curvature: float) -> Deviation:
     bend = (there.mean_curvature**2 + np.abs(there.deviator) ** 2).reshape(m, -1)
     flat = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     weight = flat[:, None] * weights
-    counted = away_from_corners(film, there.position).reshape(m, -1)
-    weight = np.where(counted, weight, 0)
-    off = np.where(counted, off, 0)
+    zones = CornerZones.of(film)
+    away = ~_within(there.position, zones.points, zones.radius).reshape(m, -1)
+    weight = np.where(away, weight, 0)
     total = max(weight.sum(), 1e-300)
     scale = max(float(np.sqrt((weight * bend).sum() / total)), 0.01 / film.size)
     # an error d of the shape operator turns principal directions by d / (2 |D|) and changes isothermic coordinates,
     # the integral of sqrt |D|, by d / (2 sqrt |D|): where |D| is small, next to umbilics, elements have to be better
-    least = np.abs(there.deviator).reshape(m, -1).min(1)
-    of_element = off.max(1) / scale / np.sqrt(np.clip(least / scale, LEAST_WEIGHED, 1))
+    deviator = np.abs(there.deviator).reshape(m, -1) / scale
+    # next to a corner the curvature is what directions are taken from, however large
+    counted = ~_within(there.position, zones.points, zones.core).reshape(m, -1)
+    local = np.where(counted, off / np.maximum(deviator, 1), 0)
+    off = np.where(away, off, 0)
+    of_element = np.where(away, off, local).max(1) / scale / np.sqrt(np.clip(deviator.min(1), LEAST_WEIGHED, 1))
     return Deviation(
         of_element,
         float(of_element.max()),
@@ -85,19 +94,60 @@ def deviation_of(film: Film, mean_curvature: float) -> Deviation:
     )
 
 
+@dataclass(frozen=True)
+class CornerZones:
+    """Corners of a film's boundary and what is around them.
+
+    Attributes
+    ----------
+    points : (c, 3)
+        m.
+    radius : (c,)
+        Of the zone next to which the curvature may be unbounded, m.
+    core : (c,)
+        Within which no error is counted, m: the whole zone where the boundary turns by little.
+    """
+
+    points: Floats
+    radius: Floats
+    core: Floats
+
+    @classmethod
+    def of(cls, film: Film) -> CornerZones:
+        """Those of a film."""
+        points, radii, cores = [np.zeros((0, 3))], [np.zeros(0)], [np.zeros(0)]
+        for loop in film.loops:
+            corners = np.sort(np.asarray(loop.corners)[~np.asarray(loop.smooth, bool)])
+            if not len(corners):
+                continue
+            # no more than a part of the way to the next corner: a loop of many corners is checked between them
+            gap = np.diff(np.append(corners, corners[0] + 1)) * loop.length
+            radius = np.minimum(CORNER_PART * min(film.size, loop.length), np.minimum(gap, np.roll(gap, 1)) / 4)
+            points.append(np.asarray(loop.at(corners)))
+            radii.append(radius)
+            cores.append(np.where(_turns(loop, corners) > SHARP, CORNER_CORE / CORNER_PART, 1) * radius)
+        return cls(np.concatenate(points), np.concatenate(radii), np.concatenate(cores))
+
+
+def _turns(loop: Loop, corners: Floats) -> Floats:
+    """Angle by which a loop turns at corners, radians, (c,)."""
+    there = loop.at(corners)
+    before, after = there - loop.at(corners - BESIDE), loop.at(corners + BESIDE) - there
+    return np.asarray(np.arctan2(np.linalg.norm(np.cross(before, after), axis=1), np.einsum("ij,ij->i", before, after)))
+
+
+def _within(points: Floats, centres: Floats, radii: Floats) -> NDArray[np.bool_]:
+    """Which points (n, 3) are within radii (c,) of any of centres (c, 3)."""
+    result = np.zeros(len(points), bool)
+    for centre, radius in zip(centres, radii, strict=True):
+        result |= np.linalg.norm(points - centre, axis=1) <= radius
+    return result
+
+
 def away_from_corners(film: Film, points: Floats) -> NDArray[np.bool_]:
     """Which points (n, 3) are not next to a corner of the boundary."""
-    result = np.ones(len(points), bool)
-    for loop in film.loops:
-        corners = np.sort(np.asarray(loop.corners)[~np.asarray(loop.smooth, bool)])
-        if not len(corners):
-            continue
-        # no more than a part of the way to the next corner: a loop of many corners is checked between them
-        gap = np.diff(np.append(corners, corners[0] + 1)) * loop.length
-        reach = np.minimum(CORNER_PART * min(film.size, loop.length), np.minimum(gap, np.roll(gap, 1)) / 4)
-        for corner, radius in zip(loop.at(corners), reach, strict=True):
-            result &= np.linalg.norm(points - corner, axis=1) > radius
-    return result
+    zones = CornerZones.of(film)
+    return ~_within(points, zones.points, zones.radius)
 
 
 def refined_sizes(
@@ -122,9 +172,21 @@ def refined_sizes(
     factor = (AIM * tolerance / np.maximum(worst, 1e-300)) ** (1 / (order - 1))
     factor[knots] = np.minimum(factor, AIM * tolerance / np.maximum(deviation.of_element, 1e-300))[knots]
     factor = np.clip(factor, SHRINK, GROW if coarsen else 1.0)
-    wanted = np.maximum(edges * factor, CORNER_PART / 4 * film.size * _near_corner(film, corners.mean(1)))
+    middles = corners.mean(1)
+    zones = CornerZones.of(film)
+    sharp = zones.core < zones.radius
+    wanted = edges * factor
+    # no size is asked for where no error is counted
+    for part, kind in ((CORNER_CORE, sharp), (CORNER_PART, ~sharp)):
+        in_core = _within(middles, zones.points[kind], zones.core[kind])
+        wanted = np.where(in_core, np.maximum(wanted, CORNER_ELEMENT * part * film.size), wanted)
     wanted = np.minimum(wanted, film.size / 6)
-    field = SizeField(corners.mean(1), wanted)
+    graded = sharp & _is_off(film, deviation, tolerance, zones)
+    # from a corner on sizes grow with the distance: such layers follow any power of it equally well
+    # (Babuska and Guo, SIAM J. Math. Anal. 19 (1988), 172-203, doi:10.1137/0519014)
+    field = SizeField(
+        np.concatenate([middles, zones.points[graded]]), np.append(wanted, CORNER_ELEMENT * zones.core[graded])
+    )
     # nodes of order p: p^2 / 2 an element of area sqrt(3) / 4 h^2
     nodes = order**2 / 2 * (area / (np.sqrt(3) / 4 * field(corners.mean(1)) ** 2)).sum()
     if nodes <= most_nodes:
@@ -141,6 +203,13 @@ def _near_knots(film: Film, points: Floats, sizes: Floats) -> NDArray[np.bool_]:
     return result
 
 
-def _near_corner(film: Film, points: Floats) -> Floats:
-    """1 next to a corner, 0 elsewhere: no size is asked for where no error is counted."""
-    return np.asarray(~away_from_corners(film, points), float)
+def _is_off(film: Film, deviation: Deviation, tolerance: float, zones: CornerZones) -> NDArray[np.bool_]:
+    """Next to which corners an element is off by more than a tolerance, (c,)."""
+    vertices = film.nodes[film.connectivity.faces[deviation.of_element > tolerance]].reshape(-1, 3)
+    return np.array(
+        [
+            bool(_within(vertices, centre[None], radius[None]).any())
+            for centre, radius in zip(zones.points, zones.radius, strict=True)
+        ],
+        bool,
+    )

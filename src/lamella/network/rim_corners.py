@@ -1,0 +1,161 @@
+"""Corners of the rim: what a film does in them, and the figures of a net next to them.
+
+Where straight sides meet at the angle b, measured on the surface, its Hopf differential is c / w dw^2 in the half plane
+w onto which it is mapped with the corner in 0, and the distance from the corner goes like w^(b / pi). So the curvature
+goes like r^(pi / b - 2), unbounded for b above 90 degrees, and the net's coordinates like r^(pi / 2 b): in them the
+corner is a square one, whatever b (Dierkes, Hildebrandt and Tromba, Regularity of Minimal Surfaces (2010), chapter 3,
+doi:10.1007/978-3-642-11700-8). Bent sides add a part that is bounded, but for a logarithm at 90 degrees. At a corner
+that is reflex in plan a film is mostly turned over: its angle is the one below 180 degrees, and its curvature
+concentrates around the corner instead of in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.network.network import REGULAR, Network
+from lamella.surface.boundary.fillets import LEAST_TURN, LEFT, tangent_length
+from lamella.surface.element.connectivity import Connectivity
+from lamella.surface.element.geometry import tangents
+from lamella.surface.element.rim import element_rims
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.points import Floats
+from lamella.surface.vectors import crosses, diagonal, dots, lengths
+from lamella.wording import rounded
+
+# corners that turn by more than this, radians, and what is next to them and what elements do not resolve, over the size
+# of the surface, as in `lamella.surface.found.adapting`
+SHARP, ZONE, CORE = 0.35, 0.03, 0.003
+
+
+@dataclass(frozen=True)
+class RimCorners:
+    """Sharp corners of a surface's rim.
+
+    Attributes
+    ----------
+    points : (c, 3)
+        m.
+    angles : (c,)
+        Between the sides, measured on the surface, radians.
+    radii : (c,)
+        What is next to a corner, m.
+    cores : (c,)
+        Within which the elements do not follow the curvature, m.
+    fillets : (c,)
+        Largest `corner_radius` of the corner's loop, m.
+    """
+
+    points: Floats
+    angles: Floats
+    radii: Floats
+    cores: Floats
+    fillets: Floats
+
+    @classmethod
+    def of(cls, surface: ElementSurface) -> RimCorners:
+        """Those of a surface."""
+        connectivity, nodes = surface.connectivity, surface.nodes
+        size = diagonal(nodes)
+        rows: list[tuple[Floats, ...]] = []
+        for rim in element_rims(connectivity, nodes, surface.rim_loop):
+            turned = np.flatnonzero(rim.turns > LEAST_TURN)
+            arc = rim.starts[turned] * rim.length
+            gap = np.diff(np.append(arc, arc[:1] + rim.length))
+            sharp = rim.turns[turned] > SHARP
+            radius = np.minimum(ZONE * min(size, rim.length), np.minimum(gap, np.roll(gap, 1)) / 4)[sharp]
+            vertices = rim.vertices[turned][sharp]
+            most = np.full(len(vertices), _largest_fillet(rim.turns[turned], gap))
+            rows.append((nodes[vertices], _angles(connectivity, nodes, vertices), radius, CORE / ZONE * radius, most))
+        return cls(*(np.concatenate(column) for column in zip(*rows, strict=True)))
+
+    def nearest(self, point: Floats, reach: float) -> int:
+        """The corner within reach, m, of a point (3,); -1: there is none."""
+        if not len(self.points):
+            return -1
+        away = lengths(self.points - point) - np.maximum(self.radii, reach)
+        return int(away.argmin()) if away.min() < 0 else -1
+
+    def fillet(self, corner: int, edge: float) -> float:
+        """A `corner_radius` that spreads a corner over a cell with edges of a length, m, where the loop has room."""
+        return rounded(min(edge, float(self.fillets[corner])), up=False, digits=2)
+
+    def within(self, points: Floats, radii: Floats) -> NDArray[np.int64]:
+        """The corner within whose radius, (c,) m, each point (n, 3) is; -1: of none."""
+        result = np.full(len(points), -1)
+        for corner, (place, radius) in enumerate(zip(self.points, radii, strict=True)):
+            result[lengths(points - place) <= radius] = corner
+        return result
+
+    def rows(self, network: Network) -> list[dict[str, Any]]:
+        """What each corner is, with the worst figures of a net next to it; none where nothing of the net is."""
+        kn = np.abs(network.sample_darboux.kn - network.normal_curvature)
+        of_sample = self.within(network.sample_points, self.radii)
+        nodes = network.node_points[network.node_kinds == REGULAR]
+        of_node, off = self.within(nodes, self.radii), np.abs(90 - network.node_angles)
+        stops = network.node_points[network.stop_nodes]
+        owner = network.stop_owner
+        inner = owner[1:] == owner[:-1]
+        of_edge = self.within(((stops[1:] + stops[:-1]) / 2)[inner], self.radii)
+        return [
+            {
+                "point": self.points[corner].tolist(),
+                "angle_deg": float(np.degrees(self.angles[corner])),
+                "curvature_exponent": float(np.pi / self.angles[corner] - 2),
+                "radius": float(self.radii[corner]),
+                "unresolved_radius": float(self.cores[corner]),
+                "normal_curvature_deviation_max": _worst(kn, of_sample == corner),
+                "geodesic_torsion_max": _worst(np.abs(network.sample_darboux.tg), of_sample == corner),
+                "node_angle_deviation_max_deg": _worst(off, of_node == corner),
+                "cell_edge_min": _least(network.cell_edges, of_edge == corner),
+            }
+            for corner in range(len(self.points))
+        ]
+
+    def resolved_angles(self, network: Network) -> dict[str, float]:
+        """Node angles of a net of lamellas without those in the cores, where there are some."""
+        nodes = self.within(network.node_points[network.node_kinds == REGULAR], self.cores) < 0
+        off = np.abs(90 - network.node_angles)[nodes]
+        if nodes.all() or not len(off):
+            return {}
+        return {
+            "node_angle_deviation_max_deg": float(off.max()),
+            "node_angle_deviation_mean_deg": float(off.mean()),
+        }
+
+
+def _worst(values: Floats, there: NDArray[np.bool_]) -> float | None:
+    return float(values[there].max()) if there.any() else None
+
+
+def _least(values: Floats, there: NDArray[np.bool_]) -> float | None:
+    return float(values[there].min()) if there.any() else None
+
+
+def _largest_fillet(turns: Floats, gaps: Floats) -> float:
+    """Largest corner radius of a loop, m, by the turns at its corners and the sides behind them, (c,)."""
+    if not len(turns):
+        return np.inf
+    reach = np.array([tangent_length(turn) for turn in turns.tolist()])
+    return float(((1 - LEFT) * gaps / (reach + np.roll(reach, -1))).min())
+
+
+def _angles(connectivity: Connectivity, nodes: Floats, vertices: Sequence[int] | NDArray[np.int64]) -> Floats:
+    """Angle of the surface around vertices of its rim, radians, (c,)."""
+    basis = connectivity.basis
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    element, corner = np.nonzero(np.isin(connectivity.faces, vertices))
+    x, y = tangents(basis.basis(corners, 1, 0), basis.basis(corners, 0, 1), nodes[connectivity.elements[element]])
+    rows = np.arange(len(element))
+    x, y = x[rows, corner], y[rows, corner]
+    # along both edges that leave the corner
+    first = np.where((corner == 0)[:, None], x, np.where((corner == 1)[:, None], y - x, -y))
+    second = np.where((corner == 0)[:, None], y, np.where((corner == 1)[:, None], -x, x - y))
+    angle = np.arctan2(lengths(crosses(first, second)), dots(first, second))
+    total = np.bincount(connectivity.faces[element, corner], angle, len(nodes))
+    return np.asarray(total[np.asarray(vertices, np.int64)])
