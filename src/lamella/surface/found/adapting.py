@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,8 @@ CORNER_ELEMENT = 0.25
 # corners that turn by more than this, radians, have elements that are graded towards them; and where the turn is
 # measured, as a fraction of the loop
 SHARP, BESIDE = 0.35, 1e-5
+# |D| next to such a corner, over the curvature scale, from which on the corner concentrates curvature
+CONCENTRATED = 1.5
 # order of the regular places in each element at which H is checked
 CHECKED = 8
 # least |D| over the curvature scale that an error is weighed by
@@ -47,6 +49,8 @@ class Deviation:
         Maximum and root mean square of |H - H0|, over the scale.
     scale : float
         Root mean square of sqrt((k1^2 + k2^2) / 2), at least 0.01 / size, 1/m.
+    zones : CornerZones
+        Around the boundary's corners.
     """
 
     of_element: Floats
@@ -54,6 +58,7 @@ class Deviation:
     largest: float
     typical: float
     scale: float
+    zones: CornerZones
 
 
 def deviation_of(film: Film, mean_curvature: float) -> Deviation:
@@ -81,6 +86,7 @@ def deviation_of(film: Film, mean_curvature: float) -> Deviation:
     # the integral of sqrt |D|, by d / (2 sqrt |D|): where |D| is small, next to umbilics, elements have to be better
     deviator = np.abs(there.deviator).reshape(m, -1) / scale
     # next to a corner the curvature is what directions are taken from, however large
+    zones = zones.concentrated(there.position, deviator.ravel())
     counted = ~_within(there.position, zones.points, zones.core).reshape(m, -1)
     local = np.where(counted, off / np.maximum(deviator, 1), 0)
     off = np.where(away, off, 0)
@@ -91,6 +97,7 @@ def deviation_of(film: Film, mean_curvature: float) -> Deviation:
         float(off.max()) / scale,
         float(np.sqrt((weight * off**2).sum() / total)) / scale,
         scale,
+        zones,
     )
 
 
@@ -127,6 +134,18 @@ class CornerZones:
             radii.append(radius)
             cores.append(np.where(_turns(loop, corners) > SHARP, CORNER_CORE / CORNER_PART, 1) * radius)
         return cls(np.concatenate(points), np.concatenate(radii), np.concatenate(cores))
+
+    def concentrated(self, points: Floats, deviator: Floats) -> CornerZones:
+        """With cores as large as the zones where |D| at points (n,), over the curvature scale, is nowhere large."""
+        large = points[deviator > CONCENTRATED]
+        some = np.array(
+            [
+                bool(_within(large, centre[None], radius[None]).any())
+                for centre, radius in zip(self.points, self.radius, strict=True)
+            ],
+            bool,
+        )
+        return replace(self, core=np.where(some, self.core, self.radius))
 
 
 def _turns(loop: Loop, corners: Floats) -> Floats:
@@ -173,7 +192,7 @@ def refined_sizes(
     factor[knots] = np.minimum(factor, AIM * tolerance / np.maximum(deviation.of_element, 1e-300))[knots]
     factor = np.clip(factor, SHRINK, GROW if coarsen else 1.0)
     middles = corners.mean(1)
-    zones = CornerZones.of(film)
+    zones = deviation.zones
     sharp = zones.core < zones.radius
     wanted = edges * factor
     # no size is asked for where no error is counted
