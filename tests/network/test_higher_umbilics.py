@@ -55,6 +55,18 @@ def test_one_umbilic_in_a_skew_polygon(order, limit) -> None:
     assert figures["normal_curvature_error_max"] < reported < 3.5 * figures["normal_curvature_error_max"]
 
 
+def test_umbilics_much_nearer_to_each_other_than_a_cell() -> None:
+    """Corners moved by a millimetre split the double umbilic: one of the two, 0.07 m apart, is a node, and all else of
+    the net is as it would be.
+    """
+    corners = skew_polygon(2) + 1e-3 * np.random.default_rng(3).normal(size=(8, 3))
+    results = results_in(corners, 20, "network")
+    inside = np.linalg.norm(results.surface.umbilics.position[:, :2], axis=1) < 2
+    assert results.surface.umbilics.orders[inside].tolist() == [1, 1]
+    assert results.summary["network"]["isothermic_residual"] < 1e-4
+    assert results.summary["network"]["node_angle_deviation_max_deg"] < 0.05
+
+
 @pytest.mark.slow
 def test_a_double_umbilic_splits_with_its_symmetry() -> None:
     """With two opposite corners raised the film has two planes of symmetry: two umbilics of order 1 in one of them."""

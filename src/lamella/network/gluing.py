@@ -21,8 +21,9 @@ from lamella.surface.points import Complexes, Floats
 Integers = NDArray[np.int64]
 
 # w + a constant is as good as w: it changes the shifts of pieces where w comes back as -w, and costs nothing. A change
-# that costs less than this part of the dearest one is that, and rounding: it stays as small as it can
-FREE = 1e-6
+# that costs less than this part of the dearest one is that, and rounding: it stays as small as it can. Between two
+# umbilics near each other a change that matters costs 1e-6 of one that runs over the whole surface, and less
+FREE = 1e-11
 
 
 class FoldedError(ValueError):
