@@ -21,6 +21,7 @@ points = [ # [m] splined; the first is not repeated
 {points}
 ]
 #   interpolation = "spline" # or "polyline"
+#   corner_radius = 0.4 # [m] of the fillets at a polyline's corners
 
 [[surface.boundary]]
 name = "oculus"

@@ -189,7 +189,8 @@ def test_geodesic_curvature_is_the_turn_of_the_written_curve(kind):
         kg = np.einsum("ij,ij->i", turn, sideways[inner])
         return np.sqrt(np.mean((kg - n.sample_darboux.kg[inner]) ** 2)) / np.abs(n.sample_darboux.tg).max()
 
-    coarse, fine = miss(12), miss(24)
+    # with fewer cells there are more samples where lamellas turn sharply
+    coarse, fine = miss(24), miss(48)
     assert fine < 1e-3
     assert fine < 1e-9 or coarse / fine > 3
 
