@@ -23,13 +23,13 @@ from lamella.network.net_mesh import NetMesh, make_net_mesh, onto_surface
 from lamella.network.network import SINGULAR, Network, Period
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.network.rim_corners import RimCorners
+from lamella.network.rounding import largest_part, rounded_coordinates, stubs, turned
 from lamella.network.sampled_bend import inner_samples, sampled_bend
 from lamella.network.trace_elements import trace_elements
-from lamella.network.whole_shifts import WholeShifts
 from lamella.progress import Progress, silent
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
-from lamella.surface.points import Complexes, Floats
+from lamella.surface.points import Floats
 from lamella.surface.umbilic import refuse_umbilic
 from lamella.wording import counted
 
@@ -43,8 +43,6 @@ AT_CORNER = 1.5
 CONCENTRATED = 0.4
 # nets of up to so many nodes are tried out to meet a spacing, so often, until they do to so little
 MOST_TRIED, MOST_TRIALS, NEAR_ENOUGH = 1_200, 3, 0.02
-# rounding: the nearest whole numbers may put two umbilics on one node; then the next ones are tried
-MOST_WAYS = 8
 
 
 class Joint(NamedTuple):
@@ -257,23 +255,27 @@ class LaidNet:
     pattern: Pattern
     names: tuple[str, ...]
 
+    def _lattice_of(self, cells: int) -> Lattice:
+        """The lattice of another number of cells, for a net without seams."""
+        return choose_lattice(self.iso, self.around, cells, None, pattern=self.pattern, names=self.names, seams=False)
+
     def traced(self, *, closing: Closing, minimum_length: float) -> ElementNetwork:
         """The network, see `element_network`."""
         iso, mesh, lattice, pattern = self.iso, self.mesh, self.lattice, self.pattern
         raw = CellMap.of(iso, lattice.origin, lattice.step, pattern)
         if closing == "round":
-            iso, wanted = _rounded(iso, raw, lattice)
-            off = _largest_part(raw.shifts - wanted)
+            iso, wanted = rounded_coordinates(iso, lattice, pattern, self._lattice_of)
+            off = largest_part(raw.shifts - wanted)
         else:
             near = np.round(raw.shifts)
-            off = _largest_part(raw.shifts - near)
+            off = largest_part(raw.shifts - near)
             wanted = np.where(off <= CLOSES, near, np.nan)
             # lines of one family go on where those of the other one do not
             off_parts, near_parts = raw.shifts - near, np.stack([near.real, near.imag])
-            closes = (np.abs(np.stack([off_parts.real, off_parts.imag])) <= CLOSES) & ~_stubs(iso)
+            closes = (np.abs(np.stack([off_parts.real, off_parts.imag])) <= CLOSES) & ~stubs(iso)
             if closes.any():
                 try:
-                    iso = with_shifts(iso, *_turned(raw, np.where(closes, near_parts, np.nan), lattice))
+                    iso = with_shifts(iso, *turned(raw, np.where(closes, near_parts, np.nan), lattice))
                 except FoldedError:
                     # coordinates that turn over somewhere stay as they are, with a seam
                     wanted[:] = np.nan
@@ -431,42 +433,6 @@ def element_network(
         progress=progress,
     )
     return laid.traced(closing=closing, minimum_length=minimum_length)
-
-
-def _largest_part(shifts: Complexes) -> Floats:
-    """Larger one of the real and the imaginary part, (t,)."""
-    return np.maximum(np.abs(shifts.real), np.abs(shifts.imag))
-
-
-def _stubs(iso: Isothermic) -> NDArray[np.bool_]:
-    """Which pieces of the cut are no joints, (t,)."""
-    return np.array([piece.stub for piece in iso.transitions], bool)
-
-
-def _turned(raw: CellMap, wanted: Floats, lattice: Lattice) -> tuple[Floats, complex]:
-    """Both parts (2, t) of shifts of w, sqrt(m), turned by a factor as cells are, of shifts in cells; the factor."""
-    turn, every = raw.pattern.factor, np.array(raw.pattern.every[::-1])
-    hung = (raw.signs - 1) * lattice.origin * turn
-    return wanted * (every[:, None] * lattice.step) - np.stack([hung.real, hung.imag]), turn
-
-
-def _rounded(iso: Isothermic, raw: CellMap, lattice: Lattice) -> tuple[Isothermic, Complexes]:
-    """The coordinates with the nearest whole shifts that do not fold them, and these shifts (t,) in cells."""
-    folded: FoldedError | None = None
-    ways = WholeShifts.of(iso, iso.gram).nearest(raw.shifts, MOST_WAYS)
-    for wanted in ways:
-        try:
-            parts = np.where(_stubs(iso), np.nan, np.stack([wanted.real, wanted.imag]))
-            return with_shifts(iso, *_turned(raw, parts, lattice)), wanted
-        except FoldedError as error:
-            folded = folded or error
-    assert folded
-    worst = float(_largest_part(raw.shifts - ways[0]).max())
-    raise InputError(
-        f"closing the net by rounding takes up to {worst:.2g} cells, and folds it near ({coordinates(folded.place)}) m",
-        'raise network.cells, change the boundary, or choose closing = "open"',
-        "network.closing",
-    )
 
 
 def _named(piece: Transition, mesh: NetMesh, names: tuple[str, ...]) -> str:
