@@ -142,3 +142,22 @@ def test_elements_of_a_low_order() -> None:
     for order in (3, 4):
         tables["surface"]["order"] = order
         assert make_surface(parse_project(tables)).mean_curvature == 0
+
+
+@pytest.mark.slow
+def test_a_vault_too_long_without_pressure() -> None:
+    """Between two arches 4.8 m apart on the ground; half a catenoid of their radius, 3.4 m, reaches 4.5 m at most."""
+    arches = [
+        {"arc": {"start": [x, -way * 3.2, 0], "middle": [x, 0, 2.3], "end": [x, way * 3.2, 0]}}
+        for x, way in ((0, 1), (4.8, -1))
+    ]
+    ground = {"point": [0, 0, 0], "normal": [0, 0, 1]}
+    sides = [
+        {"points": [[0, 3.2, 0], [4.8, 3.2, 0]], "slide": ground},
+        {"points": [[4.8, -3.2, 0], [0, -3.2, 0]], "slide": ground},
+    ]
+    boundary = [{"name": "edge", "part": [arches[0], sides[0], arches[1], sides[1]]}]
+    error = refused(film(boundary))
+    assert error.where == "surface.boundary"
+    value = number("mean_curvature = #,", error.remedy)
+    assert make_surface(parse_project(film(boundary, mean_curvature=value))).mean_curvature == value

@@ -47,7 +47,7 @@ def not_found(
     if not mean_curvature:
         return InputError(
             f"the search did not arrive at a surface in this boundary; {MAY_EXIST}. {went}",
-            "bring the held parts closer together, or give a mean_curvature or a volume"
+            _of_vault(tries, error.fold)
             if any(loop.slides for loop in search.loops)
             else _of_tube(tries, 0.0) or "bring the loops closer together, or make them less bent",
             "surface.boundary",
@@ -94,6 +94,13 @@ def _smaller(near: float, wanted: float) -> str:
     """Less H, or by similarity a smaller boundary."""
     scale = rounded(abs(near / wanted), up=False)
     return f"write mean_curvature = {near:g}, the largest of which a film was found, or a boundary {scale:g} x as large"
+
+
+def _of_vault(tries: Tries, fold: float | None) -> str:
+    """A film under pressure where a boundary slides, if one was found."""
+    value = tries.curvature_beyond(fold)
+    given = "give a mean_curvature or a volume" if value is None else f"write mean_curvature = {value:g}"
+    return f"{given}, or bring the held parts closer together"
 
 
 def _of_tube(tries: Tries, mean_curvature: float, limit: float | None = None) -> str:

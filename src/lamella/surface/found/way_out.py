@@ -22,6 +22,8 @@ from lamella.wording import rounded
 SHARES = (0.97, 0.93, 0.87, 0.8, 0.65, 0.5)
 # of the H of a hemisphere over a loop, those that are tried
 OF_SPHERE = (0.8, 0.6, 0.9)
+# of the H at which the stable films of sliding boundaries turn back before H = 0, those that are tried
+BEYOND_FOLD = (1.05, 1.2, 1.5)
 # of the largest distance of two loops, those that are tried
 OF_LIMIT = (0.98, 0.93, 0.85)
 
@@ -63,6 +65,16 @@ class Tries:
         largest = wanted if fold is None or fold * wanted <= 0 or abs(fold) > abs(wanted) else fold
         for share in SHARES:
             value = float(np.sign(wanted)) * rounded(share * abs(largest), up=False)
+            if self.finds(self.loops, value):
+                return value
+        return None
+
+    def curvature_beyond(self, fold: float | None) -> float | None:
+        """A mean curvature of which a film is found, away from 0 past the H at which stable films turn back, 1/m."""
+        if not fold:
+            return None
+        for share in BEYOND_FOLD:
+            value = float(np.sign(fold)) * rounded(share * abs(fold), up=True)
             if self.finds(self.loops, value):
                 return value
         return None
