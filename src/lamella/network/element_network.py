@@ -218,6 +218,8 @@ class ElementNetwork:
         edge = float(np.median(self.network.cell_edges))
         if not self.curves:
             return f"round it over about {edge:.2g} m to either side"
+        if self.corners.sliding[corner]:
+            return "let the held part meet what the other one slides on at a right angle"
         return f"round it: corner_radius = {self.corners.fillet(corner, edge):g} m in the table of its loop"
 
     def _why_astray(self, worst: Floats) -> str:

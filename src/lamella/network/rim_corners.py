@@ -31,6 +31,8 @@ from lamella.wording import rounded
 # corners that turn by more than this, radians, and what is next to them and what elements do not resolve, over the size
 # of the surface, as in `lamella.surface.found.adapting`
 SHARP, ZONE, CORE = 0.35, 0.03, 0.003
+# of the size: points nearer to each other are one
+SAME = 1e-6
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,8 @@ class RimCorners:
         Within which the elements do not follow the curvature, m.
     fillets : (c,)
         Largest `corner_radius` of the corner's loop, m.
+    sliding : (c,) bool
+        Whether a part that slides begins or ends there: such a corner has no fillet.
     """
 
     points: Floats
@@ -56,6 +60,7 @@ class RimCorners:
     radii: Floats
     cores: Floats
     fillets: Floats
+    sliding: NDArray[np.bool_]
 
     @classmethod
     def of(cls, surface: ElementSurface) -> RimCorners:
@@ -72,7 +77,10 @@ class RimCorners:
             vertices = rim.vertices[turned][sharp]
             most = np.full(len(vertices), _largest_fillet(rim.turns[turned], gap))
             rows.append((nodes[vertices], _angles(connectivity, nodes, vertices), radius, CORE / ZONE * radius, most))
-        return cls(*(np.concatenate(column) for column in zip(*rows, strict=True)))
+        columns = [np.concatenate(column) for column in zip(*rows, strict=True)]
+        ends = np.zeros((0, 3)) if surface.slide_ends is None else surface.slide_ends
+        away = np.linalg.norm(columns[0][:, None] - ends, axis=2)
+        return cls(*[*columns, (away < SAME * size).any(1)])
 
     def nearest(self, point: Floats, reach: float) -> int:
         """The corner within reach, m, of a point (3,); -1: there is none."""
@@ -105,8 +113,9 @@ class RimCorners:
         return [
             {
                 "point": self.points[corner].tolist(),
-                "angle_deg": float(np.degrees(self.angles[corner])),
-                "curvature_exponent": float(np.pi / self.angles[corner] - 2),
+                "angle_deg": round(float(np.degrees(self.angles[corner])), 4),
+                # 0 at 90 degrees, but for rounding
+                "curvature_exponent": round(float(np.pi / self.angles[corner] - 2), 6) + 0.0,
                 "radius": float(self.radii[corner]),
                 "unresolved_radius": float(self.cores[corner]),
                 "normal_curvature_deviation_max": _worst(kn, of_sample == corner),

@@ -10,6 +10,8 @@ import pytest
 
 from lamella import InputError, make_surface, parse_project
 from lamella.check import check_project
+from lamella.network.element_network import element_network
+from lamella.network.rim_corners import RimCorners
 from lamella.wording import rounded
 
 TURNS = 2 * np.pi * np.arange(14) / 14
@@ -160,4 +162,10 @@ def test_a_vault_too_long_without_pressure() -> None:
     error = refused(film(boundary))
     assert error.where == "surface.boundary"
     value = number("mean_curvature = #,", error.remedy)
-    assert make_surface(parse_project(film(boundary, mean_curvature=value))).mean_curvature == value
+    surface = make_surface(parse_project(film(boundary, mean_curvature=value)))
+    assert surface.mean_curvature == value
+    # the arches do not stand upright: four corners that no fillet rounds
+    corners = RimCorners.of(surface)
+    assert corners.sliding.tolist() == [True] * 4
+    net = element_network(surface, cells=10)
+    assert not any("corner_radius" in message for message in [*net.warnings(), net.rounding(0)])

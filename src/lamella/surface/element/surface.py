@@ -65,6 +65,8 @@ class ElementSurface:
         Boundary loop of each boundary edge of the connectivity.
     loop_starts : (loops, 3), optional
         Where each boundary loop begins, m: what a net is numbered from. By itself with the first of its elements.
+    slide_ends : (k, 3), optional
+        Where parts of the boundary that slide begin and end, m.
     """
 
     kind: str
@@ -75,6 +77,7 @@ class ElementSurface:
     figures: dict[str, Any] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     loop_starts: Floats | None = None
+    slide_ends: Floats | None = None
 
     constant: ClassVar[bool] = True
     """Whether the mean curvature is constant."""

@@ -113,6 +113,16 @@ class Film:
         """Where the loops begin, (loops, 3), m; of a loop that slides, before it did."""
         return np.concatenate([loop.at(np.zeros(1)) for loop in self.loops])
 
+    def slide_ends(self) -> Floats:
+        """Where parts of loops that slide begin and end, (k, 3), m: they stay where they were drawn."""
+        ends = [
+            loop.at(np.mod([slide.start, slide.end], 1.0))
+            for loop in self.loops
+            for slide in loop.slides
+            if slide.end - slide.start < 1
+        ]
+        return np.concatenate([np.zeros((0, 3)), *ends])
+
     @cached_property
     def _sliding(self) -> list[tuple[Integers, Slide]]:
         """Nodes that slide, and on what; the ends of a sliding part are held."""

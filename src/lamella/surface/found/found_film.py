@@ -64,4 +64,5 @@ class Found:
             known | figures,
             notes,
             film.loop_starts(),
+            film.slide_ends(),
         )
