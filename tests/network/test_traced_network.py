@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -215,6 +216,16 @@ def test_where_directions_stop_being_real() -> None:
     (message,) = [m for m in results.summary["warnings"] if "no direction" in m]
     assert f"{told['unreal_area_share']:.1%} of the surface has no direction of normal curvature 0.2 1/m" in message
     assert told["node_angle_min_deg"] >= LEAST_ANGLE - 1e-6
+
+
+@pytest.mark.parametrize(("unreal", "flat", "parts"), [(8e-4, 8e-4, 0), (8e-4, 2e-3, 1), (2e-3, 2e-3, 2)])
+def test_shares_without_lamellas_are_reported_one_by_one(unreal: float, flat: float, parts: int) -> None:
+    """Two shares that are each too small to be reported are none together."""
+    traced = on_catenoid(4)
+    traced = replace(traced, reach=traced.reach._replace(unreal=unreal, flat=flat))
+    about = [message for message in traced.warnings() if "no lamellas there" in message]
+    assert len(about) == (parts > 0)
+    assert sum(message.count("of the surface") for message in about) == parts
 
 
 def test_why_cells_are_large() -> None:

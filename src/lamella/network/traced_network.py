@@ -107,7 +107,7 @@ class TracedNetwork:
         """Where there are no lamellas, and lamellas of another normal curvature than was asked for."""
         wanted = self.network.pattern.normal_curvature
         unreal, flat = self.reach.unreal, self.reach.flat
-        if wanted is not None and unreal + flat > LEAST_SHARE:
+        if wanted is not None and max(unreal, flat) > LEAST_SHARE:
             parts = []
             if unreal > LEAST_SHARE:
                 parts.append(f"{unreal:.1%} of the surface has no direction of normal curvature {wanted:g} 1/m")
