@@ -22,15 +22,12 @@ from lamella.network.network import REGULAR, Network
 from lamella.surface.boundary.fillets import LEAST_TURN, LEFT, tangent_length
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.geometry import tangents
-from lamella.surface.element.rim import element_rims
+from lamella.surface.element.rim import CORNER_CORE, CORNER_PART, SHARP_TURN, element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.points import Floats
 from lamella.surface.vectors import crosses, diagonal, dots, lengths
 from lamella.wording import rounded
 
-# corners that turn by more than this, radians, and what is next to them and what elements do not resolve, over the size
-# of the surface, as in `lamella.surface.found.adapting`
-SHARP, ZONE, CORE = 0.35, 0.03, 0.003
 # of the size: points nearer to each other are one
 SAME = 1e-6
 
@@ -72,11 +69,19 @@ class RimCorners:
             turned = np.flatnonzero(rim.turns > LEAST_TURN)
             arc = rim.starts[turned] * rim.length
             gap = np.diff(np.append(arc, arc[:1] + rim.length))
-            sharp = rim.turns[turned] > SHARP
-            radius = np.minimum(ZONE * min(size, rim.length), np.minimum(gap, np.roll(gap, 1)) / 4)[sharp]
+            sharp = rim.turns[turned] > SHARP_TURN
+            radius = np.minimum(CORNER_PART * min(size, rim.length), np.minimum(gap, np.roll(gap, 1)) / 4)[sharp]
             vertices = rim.vertices[turned][sharp]
             most = np.full(len(vertices), _largest_fillet(rim.turns[turned], gap))
-            rows.append((nodes[vertices], _angles(connectivity, nodes, vertices), radius, CORE / ZONE * radius, most))
+            rows.append(
+                (
+                    nodes[vertices],
+                    _angles(connectivity, nodes, vertices),
+                    radius,
+                    CORNER_CORE / CORNER_PART * radius,
+                    most,
+                )
+            )
         columns = [np.concatenate(column) for column in zip(*rows, strict=True)]
         ends = np.zeros((0, 3)) if surface.slide_ends is None else surface.slide_ends
         away = np.linalg.norm(columns[0][:, None] - ends, axis=2)

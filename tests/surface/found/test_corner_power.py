@@ -15,10 +15,11 @@ import pytest
 
 from lamella.network.element_network import element_network
 from lamella.network.network import REGULAR
-from lamella.network.rim_corners import CORE, RimCorners
+from lamella.network.rim_corners import RimCorners
 from lamella.surface.boundary import Loop, make_loop
 from lamella.surface.boundary.pieces import lines, stack
 from lamella.surface.boundary.splines import open_spline
+from lamella.surface.element.rim import CORNER_CORE
 from lamella.surface.found.find import find_film
 
 # units, m to the unit
@@ -62,8 +63,8 @@ def test_films_and_nets_next_to_a_corner(degrees: float, c: float) -> None:
     places, near = surface.closest(exact)
     _, mean, deviator = surface.shape_at(places)
     off = np.abs(np.abs(deviator) / curvature(w, m, c) - 1)
-    outside = away > CORE
-    assert np.count_nonzero(outside & (away < 10 * CORE)) > 20
+    outside = away > CORNER_CORE
+    assert np.count_nonzero(outside & (away < 10 * CORNER_CORE)) > 20
     assert np.linalg.norm(near - exact, axis=1)[outside].max() < 1e-5 * size
     # as good next to the corner as elsewhere
     assert off[outside].max() < 0.02

@@ -15,6 +15,11 @@ Integers = NDArray[np.int64]
 
 # a turn between neighbouring edges above this is a corner of the boundary, rad
 CORNER = 0.02
+# corners that turn by more than this, rad, may concentrate the curvature of a film
+SHARP_TURN = 0.35
+# around such a corner, of the size: within the first an error counts over the curvature there, within the second, which
+# elements do not resolve, not at all
+CORNER_PART, CORNER_CORE = 0.03, 0.003
 # places along an edge among which the nearest one is looked for, and how often again between its neighbours
 PLACES, ROUNDS = 17, 8
 

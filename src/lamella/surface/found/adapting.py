@@ -10,18 +10,15 @@ from numpy.typing import NDArray
 from lamella.surface.element.curvature import element_points
 from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.quadrature import triangle_rule
+from lamella.surface.element.rim import CORNER_CORE, CORNER_PART, SHARP_TURN
 from lamella.surface.element.size_field import SizeField
 from lamella.surface.found.film import Film, Loop
 from lamella.surface.points import Floats
 
-# around a corner of the boundary the curvature of a film itself may be unbounded: within the first part of the size (or
-# of the loop) an error counts over the curvature there, within the second not at all
-CORNER_PART, CORNER_CORE = 0.03, 0.003
 # elements at a corner, over the size of its core
 CORNER_ELEMENT = 0.25
-# corners that turn by more than this, radians, have elements that are graded towards them; and where the turn is
-# measured, as a fraction of the loop
-SHARP, BESIDE = 0.35, 1e-5
+# where the turn at a corner is measured, as a fraction of the loop
+BESIDE = 1e-5
 # |D| next to such a corner, over the curvature scale, from which on the corner concentrates curvature
 CONCENTRATED = 1.5
 # order of the regular places in each element at which H is checked
@@ -132,7 +129,7 @@ class CornerZones:
             radius = np.minimum(CORNER_PART * min(film.size, loop.length), np.minimum(gap, np.roll(gap, 1)) / 4)
             points.append(np.asarray(loop.at(corners)))
             radii.append(radius)
-            cores.append(np.where(_turns(loop, corners) > SHARP, CORNER_CORE / CORNER_PART, 1) * radius)
+            cores.append(np.where(_turns(loop, corners) > SHARP_TURN, CORNER_CORE / CORNER_PART, 1) * radius)
         return cls(np.concatenate(points), np.concatenate(radii), np.concatenate(cores))
 
     def concentrated(self, points: Floats, deviator: Floats) -> CornerZones:
