@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +59,31 @@ def distance(loop: Loop, points: Any) -> float:
 
 
 # --- polylines that mean curves ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("bulge", [0.0, 1e-13])
+@pytest.mark.parametrize("where", ["model", "block", "old"])
+def test_plane_polylines_mean_curves_too(tmp_path: Path, where: str, bulge: float) -> None:
+    """LWPOLYLINE and the old POLYLINE have a bulge a vertex: straight where it is nought, but for how it was written."""
+    document, space = drawing()
+    angle = 2 * np.pi * np.arange(48) / 48
+    ring = np.column_stack([1000 * np.cos(angle), 800 * np.sin(angle)])
+    points = [(x, y, bulge) for x, y in ring.tolist()]
+    if where == "old":
+        space.add_polyline2d(points, format="xyb", close=True)
+    elif where == "model":
+        space.add_lwpolyline(points, format="xyb", close=True)
+    else:
+        document.blocks.new("OCULUS").add_lwpolyline([(x / 9, y / 9, b) for x, y, b in points], format="xyb", close=True)
+        space.add_blockref("OCULUS", (0, 0), dxfattribs={"xscale": 9, "yscale": 9, "zscale": 9})
+    document.saveas(tmp_path / "c.dxf")
+    for interpolation in (None, "spline"):
+        loop = loop_of(tmp_path, interpolation=interpolation)
+        assert not len(loop.corners)
+        x = loop.at(T)
+        # the ellipse itself within the error of quintic splines, far below a facet's height of 2 mm
+        assert np.abs(np.hypot(x[:, 0], x[:, 1] / 0.8) - 1).max() < 1e-6
+    assert len(loop_of(tmp_path, interpolation="polyline").corners) == 48
 
 
 @pytest.mark.parametrize("count", [45, 2000])
@@ -231,7 +257,35 @@ def test_a_curve_over_several_layers(tmp_path: Path) -> None:
     error = refused(tmp_path, layer="a")
     assert "'b'" in error.message
     assert "'c'" in error.message
-    assert "leave layer out" in error.remedy
+    # followed to the letter, beside another closed curve
+    space.add_circle((3000, 2000), 800, dxfattribs={"layer": "hole"})
+    document.saveas(tmp_path / "c.dxf")
+    (named,) = re.findall(r'id = "(.*?)"', refused(tmp_path, layer="a").remedy)
+    again = loop_of(tmp_path, id=named)
+    assert again.length == pytest.approx(loop.length)
+    assert all(repr(layer) in again.remarks[0] for layer in "abc")
+
+
+def test_a_chain_is_chosen_by_the_id_that_messages_name_it_by(tmp_path: Path) -> None:
+    """Two chains of two polylines each on one layer, one of them drawn twice: each of four ids names one."""
+    document, space = drawing()
+    lengths = {}
+    for size in (6000.0, 2000.0):
+        points = rim(T[::5], size)
+        for part in (points[:31], np.vstack([points[30:], points[:1]])):
+            line = space.add_polyline3d(part.tolist())
+            lengths[line.dxf.handle] = size
+    space.add_polyline3d(rim(T[::5], 2000.0)[:31].tolist())
+    document.saveas(tmp_path / "c.dxf")
+    listed = re.findall(r"id '(.*?)'", refused(tmp_path).message)
+    assert len(listed) == 2
+    assert set(listed) < set(lengths)
+    for handle, size in lengths.items():
+        assert np.ptp(loop_of(tmp_path, id=handle).at(T)[:, 0]) == pytest.approx(2.2 * size / 1000, rel=1e-3)
+    # a curve that joins to nothing is refused as before
+    lone = space.add_line((0, 0, 9000), (900, 0, 9000))
+    document.saveas(tmp_path / "c.dxf")
+    assert "no closed curve" in refused(tmp_path, id=lone.dxf.handle).message
 
 
 @pytest.mark.parametrize("way", ["off", "freeze", "object"])

@@ -51,7 +51,7 @@ class Chosen:
 @dataclass(frozen=True, eq=False)
 class _Candidate:
     told: str
-    naming: str
+    members: Sequence[FileCurve]
     pieces: Pieces
     remarks: tuple[str, ...] = ()
 
@@ -95,6 +95,8 @@ class _Choice:
         candidates, opened = self._candidates(seen)
         if not candidates and len(seen) < len(tidy):
             candidates, opened = self._candidates(tidy)
+        if not candidates and self.name:
+            candidates = self._chains_of(matching)
         if len(candidates) > 1:
             raise InputError(
                 f"{len(candidates)} closed curves{self.with_wanted}: " + _listed([c.told for c in candidates]),
@@ -109,7 +111,7 @@ class _Choice:
 
     def _matching(self) -> list[FileCurve]:
         """Curves of the layer and id; edges of surfaces only where they are named and no curve is."""
-        on = [curve for curve in self.file.curves if self.layer is None or curve.on(self.layer)]
+        on = [curve for curve in self.file.curves if self._on(curve)]
         named = [curve for curve in on if self.name is None or curve.answers_to(self.name)]
         if not named and self.name:
             # an id may be cut off where no other begins like it
@@ -163,6 +165,21 @@ class _Choice:
         rest = find_chains([curve.pieces for curve in opened], self.limit)
         return candidates, [self._as_one([opened[k] for k in chain.members], chain.pieces) for chain in rest]
 
+    def _chains_of(self, named: Sequence[FileCurve]) -> list[_Candidate]:
+        """Closed chains that hold an open curve of the id of the project: messages name a chain by one of its curves."""
+        ids = {curve.ids for curve in named}
+        # the named first: of curves drawn twice the first is kept
+        every = sorted((c for c in self.file.curves if not c.edge and self._on(c)), key=lambda c: c.ids not in ids)
+        tidy, remarks = self._tidied(every)
+        candidates, _ = self._candidates(tidy)
+        chains = [c for c in candidates if len(c.members) > 1 and any(one.ids in ids for one in c.members)]
+        if chains:
+            self.remarks = remarks
+        return chains
+
+    def _on(self, curve: FileCurve) -> bool:
+        return self.layer is None or curve.on(self.layer)
+
     def _as_one(self, members: Sequence[FileCurve], pieces: Pieces) -> FileCurve:
         if len(members) == 1:
             return members[0]
@@ -172,14 +189,14 @@ class _Choice:
         start, end = curve.pieces.starts[0], curve.pieces.ends[-1]
         meeting = (start + end) / 2
         remarks = (*self._gap_remark(np.array([np.linalg.norm(end - start)])), *_hidden([curve]))
-        return _Candidate(self._told(curve), _naming([curve]), curve.pieces.from_to(meeting, meeting), remarks)
+        return _Candidate(self._told(curve), [curve], curve.pieces.from_to(meeting, meeting), remarks)
 
     def _chained(self, members: Sequence[FileCurve], pieces: Pieces, gaps: Floats) -> _Candidate:
         layers = sorted({curve.layer for curve in members})
         told = self._words(members[0], f"chain of {len(members)}", pieces, "closed")
         joined = f"joined over the layers {', '.join(repr(cut(layer, _MOST_WORD)) for layer in layers[:4])}"
         remarks = ((joined,) if len(layers) > 1 else ()) + self._gap_remark(gaps) + _hidden(members)
-        return _Candidate(told, _naming(members), pieces, remarks)
+        return _Candidate(told, members, pieces, remarks)
 
     def _gap_remark(self, gaps: Floats) -> tuple[str, ...]:
         wide = gaps[gaps * self.unit > _WRITTEN]
@@ -193,7 +210,7 @@ class _Choice:
             if length > Course(best.pieces).length:
                 raise InputError(
                     f"{told}; the only closed curve{self.with_wanted} is smaller: {best.told}",
-                    f"close the gap, or write {best.naming} if the closed curve is meant",
+                    f"close the gap, or write {_naming(best.members)} if the closed curve is meant",
                     self.where,
                 )
 
@@ -221,11 +238,11 @@ class _Choice:
             return InputError(
                 f"{head}: {'; '.join(told for _, told in almost[:3])}", "close the gap in the drawing", self.where
             )
-        layers = self._other_layers()
-        if layers:
+        layers, mine = self._other_layers()
+        if mine:
             return InputError(
                 f"{head}, but together with curves on {layers} it closes",
-                "leave layer out, or put all parts of the curve on one layer",
+                f"instead of the layer write {_naming(mine)}, or put all parts of the curve on one layer",
                 self.where,
             )
         crowd = crowded_end([curve.pieces for curve in matching if not curve.closed(self.limit)], self.limit)
@@ -236,17 +253,18 @@ class _Choice:
             self.where,
         )
 
-    def _other_layers(self) -> str:
-        """Layers whose curves close those of the layer of the project, in words; "": none do."""
+    def _other_layers(self) -> tuple[str, list[FileCurve]]:
+        """Layers whose curves close those of the layer of the project, in words, and the latter; none: none do."""
         if self.layer is None or self.name is not None:
-            return ""
+            return "", []
         every, _ = self._tidied([curve for curve in self.file.curves if not curve.edge])
         opened = [curve for curve in every if not curve.closed(self.limit)]
         for chain in find_chains([curve.pieces for curve in opened], self.limit):
             layers = {opened[k].layer for k in chain.members if not opened[k].on(self.layer)}
-            if chain.closed and layers and any(opened[k].on(self.layer) for k in chain.members):
-                return f"layer {', '.join(repr(cut(layer, _MOST_WORD)) for layer in sorted(layers)[:4])}"
-        return ""
+            mine = [opened[k] for k in chain.members if opened[k].on(self.layer)]
+            if chain.closed and layers and mine:
+                return f"layer {', '.join(repr(cut(layer, _MOST_WORD)) for layer in sorted(layers)[:4])}", mine
+        return "", []
 
     def _nothing(self) -> InputError:
         """The refusal of a file without such a curve, with what it does hold."""
@@ -292,10 +310,9 @@ def _length(metres: float) -> str:
 
 
 def _naming(members: Sequence[FileCurve]) -> str:
-    """The key of a project that names these curves alone."""
-    if len(members) == 1 and members[0].ids:
-        return f'id = "{cut(members[0].ids[0], _MOST_WORD)}"'
-    return f'layer = "{cut(members[0].layer, _MOST_WORD)}"'
+    """The key of a project that names these curves alone: of a chain an id of one of its curves."""
+    name = next((word for curve in members for word in curve.ids if word), "")
+    return f'id = "{cut(name, _MOST_WORD)}"' if name else f'layer = "{cut(members[0].layer, _MOST_WORD)}"'
 
 
 def _hidden(members: Sequence[FileCurve]) -> tuple[str, ...]:
