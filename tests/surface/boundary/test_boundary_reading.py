@@ -64,7 +64,7 @@ def distance(loop: Loop, points: Any) -> float:
 @pytest.mark.parametrize("bulge", [0.0, 1e-13])
 @pytest.mark.parametrize("where", ["model", "block", "old"])
 def test_plane_polylines_mean_curves_too(tmp_path: Path, where: str, bulge: float) -> None:
-    """LWPOLYLINE and the old POLYLINE have a bulge a vertex: straight where it is nought, but for how it was written."""
+    """LWPOLYLINE and the old POLYLINE have a bulge a vertex: straight where it is nought but for rounding."""
     document, space = drawing()
     angle = 2 * np.pi * np.arange(48) / 48
     ring = np.column_stack([1000 * np.cos(angle), 800 * np.sin(angle)])
@@ -74,7 +74,8 @@ def test_plane_polylines_mean_curves_too(tmp_path: Path, where: str, bulge: floa
     elif where == "model":
         space.add_lwpolyline(points, format="xyb", close=True)
     else:
-        document.blocks.new("OCULUS").add_lwpolyline([(x / 9, y / 9, b) for x, y, b in points], format="xyb", close=True)
+        small = [(x / 9, y / 9, b) for x, y, b in points]
+        document.blocks.new("OCULUS").add_lwpolyline(small, format="xyb", close=True)
         space.add_blockref("OCULUS", (0, 0), dxfattribs={"xscale": 9, "yscale": 9, "zscale": 9})
     document.saveas(tmp_path / "c.dxf")
     for interpolation in (None, "spline"):

@@ -166,7 +166,7 @@ class _Choice:
         return candidates, [self._as_one([opened[k] for k in chain.members], chain.pieces) for chain in rest]
 
     def _chains_of(self, named: Sequence[FileCurve]) -> list[_Candidate]:
-        """Closed chains that hold an open curve of the id of the project: messages name a chain by one of its curves."""
+        """Closed chains that hold an open curve of the project's id: messages name a chain by one of its curves."""
         ids = {curve.ids for curve in named}
         # the named first: of curves drawn twice the first is kept
         every = sorted((c for c in self.file.curves if not c.edge and self._on(c)), key=lambda c: c.ids not in ids)
