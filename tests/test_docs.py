@@ -16,8 +16,6 @@ from typing import Any
 import pytest
 
 import lamella
-from conftest import EXAMPLES, run_of_example
-from kernels import same_text
 from lamella.cli import _parser
 
 ROOT = Path(__file__).parents[1]
@@ -34,16 +32,6 @@ def builder() -> ModuleType:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
-
-
-@cache
-def runs() -> dict[str, lamella.Results]:
-    return {path.stem: run_of_example(path.stem) for path in sorted(EXAMPLES.glob("*.toml"))}
-
-
-@cache
-def generated() -> dict[str, str]:
-    return builder().pages(runs())
 
 
 def blocks(text: str, language: str = "") -> list[str]:
@@ -219,34 +207,9 @@ def test_changelog_knows_this_version() -> None:
     assert lamella.__version__ in (ROOT / "CHANGELOG.md").read_text()
 
 
-@pytest.mark.parametrize(
-    "path",
-    ["project-file.md", "examples.md", *(f"schema/{name}.schema.json" for name in ("project", "network", "optimise"))],
-)
-def test_generated_text_is_up_to_date(path: str) -> None:
-    stored = (DOCS / path).read_text(encoding="utf-8")
-    # counts and words as they are, other figures within their last digit
-    assert same_text(stored, generated()[path]), "run: make docs"
-
-
 def test_every_example_has_picture_and_text() -> None:
     names = {path.stem for path in (ROOT / "examples").glob("*.toml")}
     views = [*builder().VIEWS, *builder().SURFACE_VIEWS]
     assert sorted(names) == sorted(views) == sorted(builder().ABOUT)
     for name in names:
         assert 10_000 < (DOCS / "pictures" / f"{name}.png").stat().st_size < 400_000
-
-
-def test_every_key_of_summary_and_schedule_is_described() -> None:
-    from lamella.fabrication.schedule import COLUMNS
-
-    text = (DOCS / "files.md").read_text()
-    for run in runs().values():
-        for stage, values in run.summary.items():
-            keys = [f"{stage}.{key}" for key in values] if isinstance(values, dict) and stage != "seconds" else [stage]
-            for key in keys:
-                # a stage that has not been run is null
-                if key != "schema" and run.summary.get(key, 0) is not None:
-                    assert f"`{key}`" in text, key
-    for column in COLUMNS:
-        assert f"`{column}`" in text, column

@@ -2,6 +2,8 @@
 
 import json
 import re
+import tomllib
+from functools import cache
 
 import numpy as np
 import pytest
@@ -9,16 +11,20 @@ from scipy.optimize import brentq
 from scipy.special import ellipk
 
 from conftest import EXAMPLES, run_of_example
-from lamella import Places, Unduloid
+from kernels import same_text
+from lamella import Places, Unduloid, parse_project, read_project
+from lamella.fabrication.schedule import COLUMNS
 from lamella.files.network_json import network_bytes
 from lamella.network.gluing import integrate
 from lamella.network.holonomy import around_vertex, holonomies
 from lamella.network.net_mesh import make_net_mesh
 from lamella.network.network import SINGULAR
+from lamella.project import FURTHER_TABLES
 from lamella.surface.boundary import boundary_loops
 from lamella.surface.element.geometry import normal_and_area, tangents
 from lamella.surface.element.quadrature import triangle_rule
 from measure_network import measure
+from test_docs import DOCS, builder
 
 
 def _delaunay(results):
@@ -446,3 +452,48 @@ def test_examples_warn_of_what_is_known_of_them_and_of_nothing_else(name):
         left.remove(matching[0])
     assert SEAMS not in left
     assert MISSED not in left
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_defaults_filled_in_read_back_the_same(name):
+    given = read_project(EXAMPLES / f"{name}.toml")
+    project = run_of_example(name).project
+    full = tomllib.loads(project.to_toml())
+    again = parse_project(full)
+    assert again.to_toml() == project.to_toml()
+    assert again.surface == project.surface
+    assert again.network == project.network
+    assert again.lamella == project.lamella
+    assert again.fabrication.slot_width == (given.fabrication.slot_width or 2 * given.lamella.thickness)
+    # every key that can have a value has one
+    for table, model in FURTHER_TABLES.items():
+        unset = {"spacing"} if project.network.spacing is None else {"cells"}
+        unset |= {"normal_curvature"} if project.network.normal_curvature is None else set()
+        assert set(full[table]) == set(model.model_fields) - (unset if table == "network" else set())
+
+
+@cache
+def pages():
+    return builder().pages({name: run_of_example(name) for name in sorted(NUMBERS)})
+
+
+SCHEMAS = [f"schema/{name}.schema.json" for name in ("project", "network", "optimise")]
+
+
+@pytest.mark.parametrize("path", ["project-file.md", "examples.md", *SCHEMAS])
+def test_generated_text_is_up_to_date(path):
+    stored = (DOCS / path).read_text(encoding="utf-8")
+    # counts and words as they are, other figures within their last digit
+    assert same_text(stored, pages()[path]), "run: make docs"
+
+
+def test_every_key_of_summary_and_schedule_is_described():
+    text = (DOCS / "files.md").read_text()
+    for summary in (run_of_example(name).summary for name in NUMBERS):
+        for stage, values in summary.items():
+            keys = [f"{stage}.{key}" for key in values] if isinstance(values, dict) and stage != "seconds" else [stage]
+            # a stage that has not been run is null
+            for key in (key for key in keys if key != "schema" and summary.get(key, 0) is not None):
+                assert f"`{key}`" in text, key
+    for column in COLUMNS:
+        assert f"`{column}`" in text, column

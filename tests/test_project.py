@@ -13,7 +13,6 @@ import tomli_w
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from conftest import run_of_example
 from lamella import InputError, parse_project, read_project
 from lamella.pipeline import plan
 from lamella.project import FURTHER_TABLES, MATERIALS, SURFACE_TABLES, project_schema
@@ -122,24 +121,6 @@ def test_any_bytes_are_read_or_refused_readably(
         return
     assert told.count("\n") <= 13, told
     assert max(map(len, told.splitlines())) <= 400 + len(str(path)), told
-
-
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_defaults_filled_in_read_back_the_same(path: Path) -> None:
-    given = read_project(path)
-    project = run_of_example(path.stem).project
-    full = tomllib.loads(project.to_toml())
-    again = parse_project(full)
-    assert again.to_toml() == project.to_toml()
-    assert again.surface == project.surface
-    assert again.network == project.network
-    assert again.lamella == project.lamella
-    assert again.fabrication.slot_width == (given.fabrication.slot_width or 2 * given.lamella.thickness)
-    # every key that can have a value has one
-    for table, model in FURTHER_TABLES.items():
-        unset = {"spacing"} if project.network.spacing is None else {"cells"}
-        unset |= {"normal_curvature"} if project.network.normal_curvature is None else set()
-        assert set(full[table]) == set(model.model_fields) - (unset if table == "network" else set())
 
 
 def test_the_defaults() -> None:

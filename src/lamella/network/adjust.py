@@ -26,11 +26,12 @@ from lamella.network.holonomy import around_holes, holonomies
 from lamella.network.least_squares_within import least_squares_within
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.progress import Progress, patient
-from lamella.surface.boundary.curve import Loop
+from lamella.surface.boundary.curve import Loop, farthest_move
 from lamella.surface.boundary.freedom import Freedom, refuse_held
 from lamella.surface.boundary.tables import boundary_loops, with_origin
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.points import Complexes, Floats
+from lamella.wording import counted
 
 if TYPE_CHECKING:
     from lamella.project import FormFoundTable
@@ -62,6 +63,9 @@ KEPT = 0.3
 # limits this many times as large are looked for, at most, where the given ones do not do; in so many halvings, from so
 # many of the places reached, and tried with more than what suffices to first order: steps are few where room is left
 MOST_REACH, REACH_HALVINGS, MOST_WIDER, WIDER = 8.0, 6, 2, 1.5
+# of the misses: what first order leaves at most where it says that they vanish; and times the limits: what takes more
+# to first order is not tried. The film's own bending has come to 1.3 times the first order, either way
+UNDONE, HOPELESS = 0.02, 3.0
 # of a limit: what takes as much has reached it
 AT_LIMIT = 1.0 - 1e-3
 # how much more a miss of a cell (see `Isothermic.dirichlet`) weighs than a full range
@@ -133,7 +137,8 @@ def _adjusted(
         progress(f"  {measured_from(table.origin)}")
     freedom = Freedom(table)
     refuse_held(freedom)
-    films = Films(table, folder, freedom, pattern)
+    progress = patient(progress)
+    films = Films(table, folder, freedom, pattern, progress)
     progress(f"  adjusting {', '.join(freedom.names)}: {freedom.count} parameters")
     first = films.first(COARSE)
     names = tuple(loop.name for loop in table.boundary)
@@ -189,7 +194,7 @@ class _Search:
     """Gauss-Newton's method on one project's boundary."""
 
     def __init__(self, films: Films, progress: Progress) -> None:
-        self.films, self.progress = films, patient(progress)
+        self.films, self.progress = films, progress
         self.steps = 0
         # of the limits of what may change: 1, but where it is looked for how much would do
         self.reach = 1.0
@@ -201,11 +206,12 @@ class _Search:
         """
         lost: list[_LostError] = []
         waiting: list[_Aim] = []
-        for whole in self._targets(first, lattice):
+        ways, beyond = self._ways(first, lattice)
+        for way in ways:
             if lost:
                 self.progress(f"  {lost[-1]}: other whole numbers of cells")
             try:
-                return self.polish(self.descend(_Aim(first, whole, lattice.step), hasty=True))
+                return self.polish(self.descend(way, hasty=True))
             except _StuckError as error:
                 lost.append(error)
                 waiting.append(error.aim)
@@ -217,10 +223,11 @@ class _Search:
                 return self.polish(self.descend(aim))
             except _LostError as error:
                 lost.append(error)
+        lost += beyond
         nearest = min(lost, key=lambda one: one.missed)
         message = (
             f"the net could not be closed within what the boundary may change: {nearest} "
-            f"({len(lost) - len(waiting)} ways tried in {self.steps} steps)"
+            f"({counted(len(ways), 'way')} tried in {counted(self.steps, 'step')})"
         )
         enough = self._enough([one.aim for one in lost])
         raise InputError(
@@ -230,6 +237,17 @@ class _Search:
             "network.closing",
         )
 
+    def _ways(self, first: FilmNet, lattice: Lattice) -> tuple[list[_Aim], list[_LostError]]:
+        """Whole shifts to be tried, and those that take far more than what may change."""
+        aims = [_Aim(first, whole, lattice.step) for whole in self._targets(first, lattice)]
+        reaches = [self._least_reach(aim, UNDONE) for aim in aims]
+        told = ", ".join(f"{reach:.2g}" if reach < np.inf else f"over {2 * MOST_REACH:g}" for reach in reaches)
+        self.progress(f"  whole numbers of cells take, to first order, {told} times what the boundary may change")
+        why = f"to first order over {HOPELESS:g} times what the boundary may change is needed"
+        far = [reach > HOPELESS for reach in reaches]
+        ways = [aim for aim, is_far in zip(aims, far, strict=True) if not is_far]
+        return ways, [_LostError(aim, why) for aim, is_far in zip(aims, far, strict=True) if is_far]
+
     def _enough(self, aims: list[_Aim]) -> str:
         """What a project writes to allow a change with which the net closes, found by going there; empty: not found."""
         used = self.films.freedom.used
@@ -237,7 +255,8 @@ class _Search:
             (reach, aim)
             for aim in aims
             # others were not stopped by their limits
-            if (reach := self._least_reach(aim)) <= MOST_REACH and (reach > 1 or used(aim.net.shares) > AT_LIMIT)
+            if (reach := self._least_reach(aim, LEAST_GAIN)) <= MOST_REACH
+            and (reach > 1 or used(aim.net.shares) > AT_LIMIT)
         ]
         # to first order tells most where little is missed
         for reach, aim in sorted(wanted, key=lambda one: one[0] * (1 + _worst(one[1].misses)))[:MOST_WIDER]:
@@ -250,29 +269,32 @@ class _Search:
             return self.films.freedom.enough(there.net.shares)
         return ""
 
-    def _least_reach(self, aim: _Aim) -> float:
-        """By what the limits have to be multiplied for the misses to vanish to first order."""
-        rates = self.films.cell_rates(aim.net, aim.step)
+    def _least_reach(self, aim: _Aim, left: float) -> float:
+        """By what the limits have to be multiplied for all but a share of the misses to vanish to first order."""
+        rates, reach = self.films.cell_rates(aim.net, aim.step), self.reach
 
         def reaches(log: float) -> bool:
             self.reach = float(np.exp(log))
             change = self._solved(aim.net, rates, aim.misses)[0]
-            return aim.net.whole.size(aim.misses - rates @ change) < LEAST_GAIN * aim.size
+            return aim.net.whole.size(aim.misses - rates @ change) < left * aim.size
 
         low, high = 0.0, float(np.log(2 * MOST_REACH))
-        if reaches(low):
-            return 1.0
-        if not reaches(high):
-            return np.inf
-        for _ in range(REACH_HALVINGS):
-            middle = (low + high) / 2
-            low, high = (low, middle) if reaches(middle) else (middle, high)
+        try:
+            if reaches(low):
+                return 1.0
+            if not reaches(high):
+                return np.inf
+            for _ in range(REACH_HALVINGS):
+                middle = (low + high) / 2
+                low, high = (low, middle) if reaches(middle) else (middle, high)
+        finally:
+            self.reach = reach
         return float(np.exp(high))
 
     def _targets(self, net: FilmNet, lattice: Lattice) -> list[Complexes]:
         """Whole shifts (t,) in the order of the change they ask for, to first order."""
         step = lattice.step
-        shifts, rates = net.cells(step), self._found_rates(net, step)
+        shifts, rates = net.cells(step), self.films.cell_rates(net, step)
         counted = self._counted(net, shifts, lattice)
         easy = net.whole.easiest(shifts, rates * np.append(np.ones(len(net.shares)), SPACING), MOST_LOOKED_AT)
         # where the boundary may hardly change, only another spacing is easy: other cells than were asked for
@@ -293,11 +315,6 @@ class _Search:
             if sign == 1 and abs(count - lattice.cells) <= 1:
                 return count
         return 0
-
-    def _found_rates(self, net: FilmNet, step: float) -> Complexes:
-        if not self.films.knows(net):
-            self.progress(f"    how the net follows {self.films.freedom.count} parameters")
-        return self.films.cell_rates(net, step)
 
     def descend(self, aim: _Aim, *, hasty: bool = False) -> _Aim:
         """Steps on the coarse film, until the misses are gone; in haste, until one leaves most of them."""
@@ -330,7 +347,7 @@ class _Search:
                 return self._moved(aim, aim.rates, 1)
             except _LostError:
                 self.progress("    the rates carried on do not lead on")
-        return self._moved(aim, self._found_rates(aim.net, aim.step), MOST_HALVINGS)
+        return self._moved(aim, self.films.cell_rates(aim.net, aim.step), MOST_HALVINGS)
 
     def _moved(self, aim: _Aim, rates: Complexes, halvings: int) -> tuple[_Aim, str]:
         """See `_step`, with given rates and so many tries."""
@@ -384,7 +401,7 @@ class _Search:
 
     def polish(self, aim: _Aim) -> tuple[FilmNet, float, float]:
         """The film as fine as was asked for: its own misses are a little different ones."""
-        rates = aim.rates if aim.rates is not None else self._found_rates(aim.net, aim.step)
+        rates = aim.rates if aim.rates is not None else self.films.cell_rates(aim.net, aim.step)
         move = np.zeros(len(aim.net.shares) + 1)
         best: _Aim | None = None
         for _ in range(MOST_POLISHING):
@@ -404,7 +421,7 @@ class _Search:
             if slow and _worst(best.misses) < NEARLY:
                 break
             aim = there
-            rates = self._found_rates(aim.net, aim.step) if slow or aim.rates is None else aim.rates
+            rates = self.films.cell_rates(aim.net, aim.step) if slow or aim.rates is None else aim.rates
             move = self._shortened(aim.net, self._solved(aim.net, rates, aim.misses)[0])
             self.steps += 1
         assert best
@@ -447,11 +464,7 @@ class _Search:
 
     def _shortened(self, net: FilmNet, change: Floats) -> Floats:
         """A change no longer than the linear picture bears."""
-        t = np.arange(200) / 200
-        begin, end = self.films.loops(net.shares), self.films.loops(net.shares + change[:-1])
-        far = max(
-            float(np.linalg.norm(new.at(t) - old.at(t), axis=1).max()) for old, new in zip(begin, end, strict=True)
-        )
+        far = farthest_move(self.films.loops(net.shares), self.films.loops(net.shares + change[:-1]))
         return np.asarray(change * min(1.0, LONGEST * net.equilibrium.film.size / max(far, 1e-300)))
 
     def _tell(self, aim: _Aim) -> None:

@@ -12,9 +12,10 @@ from lamella.drawing_origin import origin_figure
 from lamella.network.film_net import FilmNet
 from lamella.network.pattern import Pattern
 from lamella.network.shift_rates import Rates, curvature_rates_of_volume, jacobi_fields, shift_rates
-from lamella.surface.boundary.curve import Loop
+from lamella.progress import Progress, silent
+from lamella.surface.boundary.curve import Loop, farthest_move
 from lamella.surface.boundary.freedom import Freedom
-from lamella.surface.boundary.tables import Drawn, boundary_loops
+from lamella.surface.boundary.tables import Drawn, boundary_loops, unchecked_loop
 from lamella.surface.element.placing import rim_parameters
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.film import Film
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 # difference of shares for the loops' movement
 SHARE = 1e-5
+# of the film's size: how far the boundary moves before the film is found anew on its way
+STRIDE = 0.02
 
 
 class FollowError(ArithmeticError):
@@ -47,10 +50,15 @@ class Films:
         What may change of the table.
     pattern : Pattern
         Which curves the nets have.
+    progress : callable
+        Is told details while films are found and followed.
     """
 
-    def __init__(self, table: FormFoundTable, folder: Path, freedom: Freedom, pattern: Pattern) -> None:
+    def __init__(
+        self, table: FormFoundTable, folder: Path, freedom: Freedom, pattern: Pattern, progress: Progress = silent
+    ) -> None:
         self.table, self.folder, self.freedom, self.pattern = table, folder, freedom, pattern
+        self._detail: Progress = lambda message: progress(f"    {message.strip()}")
         self._drawn: Drawn = {}
         self._rates: WeakKeyDictionary[FilmNet, Rates] = WeakKeyDictionary()
 
@@ -70,6 +78,7 @@ class Films:
             tolerance=tolerance,
             branch=table.branch,
             most_nodes=table.most_nodes,
+            progress=self._detail,
         )
         notes = remarks_on(loops) + notes_on(found, given_curvature=table.volume is None)
         surface = found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
@@ -85,15 +94,18 @@ class Films:
         """The film followed to other shares; its umbilics stay as many, of the same orders."""
         start, table = net.shares, self.freedom.changed(shares)
         curvature = net.surface.mean_curvature if table.mean_curvature is None else table.mean_curvature
+        loops = self.loops(shares)
+        far = farthest_move(self.loops(start), loops)
         try:
             reached = along_loops(
                 Equilibrium(net.equilibrium.film, curvature, 0, 0, ()),
                 lambda share: self.loops(start + share * (shares - start)),
                 0.0,
-                self.loops(shares),
-                lambda _: None,
+                loops,
+                self._detail,
                 volume=table.volume,
                 stable=table.branch == "stable",
+                stride=min(1.0, STRIDE * net.equilibrium.film.size / max(far, 1e-300)),
             )
         except BreakError as error:
             raise FollowError(str(error)) from None
@@ -106,10 +118,6 @@ class Films:
         if there.orders != net.orders:
             raise FollowError("umbilics come or go at the boundary")
         return there
-
-    def knows(self, net: FilmNet) -> bool:
-        """Whether the rates of a net were asked for before."""
-        return net in self._rates
 
     def cell_rates(self, net: FilmNet, step: float) -> Complexes:
         """Rates of the shifts in cells, (t, p + 1), the logarithm of the spacing last."""
@@ -131,7 +139,7 @@ class Films:
             if self.table.volume is not None:
                 curvature = curvature_rates_of_volume(film, h, rim)
             fields = jacobi_fields(film, h, rim, curvature)
-            self._rates[net] = shift_rates(net.surface, film, net.iso, fields, rim, curvature)
+            self._rates[net] = shift_rates(net.surface, film, net.iso, fields, rim, curvature, self._detail)
         return self._rates[net]
 
     def rim_shifts(self, film: Film, shares: Floats) -> Floats:
@@ -141,13 +149,16 @@ class Films:
         of_loop = film.mesh.loop[nodes[:, 0]]
         result = np.zeros((self.freedom.count, len(film.nodes), 3))
         begin, tables = self.loops(shares), self.freedom.changed(shares).boundary
+        here = [loop.at(t[of_loop == index]) for index, loop in enumerate(begin)]
         for number in range(self.freedom.count):
             ahead = shares.copy()
             ahead[number] += SHARE
-            moved = self.freedom.changed(ahead).boundary
-            for index, (old, new) in enumerate(zip(begin, self.loops(ahead), strict=True)):
-                if moved[index] == tables[index]:
+            moved = self.freedom.changed(ahead)
+            for index, table in enumerate(moved.boundary):
+                if table == tables[index]:
                     continue
                 mine = of_loop == index
-                result[number, nodes[mine]] = (new.at(t[mine]) - old.at(t[mine])) / SHARE
+                # so small a change needs no check of its own
+                there = unchecked_loop(moved, index, self.folder, self._drawn)
+                result[number, nodes[mine]] = (there.at(t[mine]) - here[index]) / SHARE
         return result

@@ -16,6 +16,7 @@ from lamella.network.holonomy import vertex_relations
 from lamella.network.isothermic import Isothermic, sectors
 from lamella.network.poisson import Poisson
 from lamella.network.umbilic_depth import UmbilicDepths
+from lamella.progress import Progress, silent
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.enclosed import enclosed_volume
 from lamella.surface.found.film import Film
@@ -109,7 +110,13 @@ class Rates:
 
 
 def shift_rates(
-    surface: ElementSurface, film: Film, iso: Isothermic, fields: Floats, rim_shifts: Floats, curvature_rates: Floats
+    surface: ElementSurface,
+    film: Film,
+    iso: Isothermic,
+    fields: Floats,
+    rim_shifts: Floats,
+    curvature_rates: Floats,
+    detail: Progress = silent,
 ) -> Rates:
     """Change of every shift, and of how far umbilics are inside the rim, with each of p parameters.
 
@@ -124,6 +131,8 @@ def shift_rates(
         See `jacobi_fields`.
     rim_shifts, curvature_rates
         See `jacobi_fields`.
+    detail : callable
+        Is told which parameter it is.
     """
     mesh = iso.mesh
     system = Poisson.of(mesh, iso.sign)
@@ -136,6 +145,7 @@ def shift_rates(
     umbilics = UmbilicDepths.of(surface)
     depths = np.zeros((len(umbilics.depth), len(fields)))
     for number, (field, rate) in enumerate(zip(fields, curvature_rates, strict=True)):
+        detail(f"how the net follows: {number} of {len(fields)} parameters")
         step = STEP * film.size / max(float(np.abs(field).max()), 1e-12 * film.size)
         moved = ElementSurface(
             surface.kind,

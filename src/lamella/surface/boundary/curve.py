@@ -32,6 +32,9 @@ n of them on a circle, and the curvature of a film with it in all directions: no
 that lie closer than the gap jump less, and would ask for more elements than they save.
 """
 
+_COMPARED = 200
+"""Places of a loop that are compared with those of another one."""
+
 _STANDSTILL = 1e-9
 """Of a piece's mean speed: a slower end has no tangent."""
 
@@ -281,6 +284,12 @@ def place(point: Floats) -> str:
     """A point in a message."""
     # nanometres are rounding
     return f"({coordinates(np.round(point, 9) + 0.0, 6)}) m"
+
+
+def farthest_move(begin: Sequence[Loop], end: Sequence[Loop]) -> float:
+    """How far the places at the same parameters of loops are moved at most, m."""
+    t = np.arange(_COMPARED) / _COMPARED
+    return max(float(np.linalg.norm(new.at(t) - old.at(t), axis=1).max()) for old, new in zip(begin, end, strict=True))
 
 
 def angle_between(a: Floats, b: Floats) -> Floats:

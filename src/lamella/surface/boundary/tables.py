@@ -66,10 +66,14 @@ def boundary_loops(table: FormFoundTable, folder: Path, drawn: Drawn | None = No
         Whatever is wrong with them, with the key of the table.
     """
     drawn = {} if drawn is None else drawn
-    origin = table.origin or NOWHERE
-    loops = tuple(_loop(one, origin, folder, f"surface.boundary[{k}]", drawn) for k, one in enumerate(table.boundary))
+    loops = tuple(unchecked_loop(table, k, folder, drawn) for k in range(len(table.boundary)))
     check_loops(loops)
     return loops
+
+
+def unchecked_loop(table: FormFoundTable, index: int, folder: Path, drawn: Drawn) -> Loop:
+    """One loop by its number, built as by `boundary_loops` but not checked."""
+    return _loop(table.boundary[index], table.origin or NOWHERE, folder, f"surface.boundary[{index}]", drawn)
 
 
 def with_origin(table: FormFoundTable, folder: Path) -> FormFoundTable:
