@@ -189,14 +189,14 @@ def test_strips_and_parts_of_it(tmp_path: Path) -> None:
 
 
 def test_what_is_refused(tmp_path: Path) -> None:
-    write_grid(tmp_path / "m.obj", ellipsoid, (-0.6, 0.6), (0.2, 1.4), 14, 14)
+    write_grid(tmp_path / "m.obj", ellipsoid, (-0.6, 0.6), (0.2, 1.4), 10, 10)
     with pytest.raises(InputError, match="no direction of the surface has it") as refused:
         run_on(tmp_path / "m.obj", normal_curvature=0.0)
     low, high = (float(x) for x in refused.value.remedy.split("from ")[1].split(" 1/m")[0].split(" to "))
     network = run_on(tmp_path / "m.obj", normal_curvature=(low + high) / 2, cells=6).network
     is_sound(network)
     with pytest.raises(InputError, match="mean curvature varies") as refused:
-        run_on(tmp_path / "m.obj", cells=12)
+        run_on(tmp_path / "m.obj", cells=6)
     assert refused.value.where == "network.normal_curvature"
     for more, key in (({"every": 2}, "every"), ({"closing": "round"}, "closing")):
         with pytest.raises(InputError) as refused:
@@ -232,12 +232,12 @@ def test_lines_that_wind_around_are_refused_with_a_normal_curvature_that_does(
     tmp_path: Path, stretch: float, uneven: float
 ) -> None:
     """Closed principal lines, and spirals; the remedy followed to the letter gives a net."""
-    write_grid(tmp_path / "m.obj", half_ring(stretch, uneven), (0, 2 * np.pi), (0.2, np.pi - 0.2), 40, 10, around=True)
+    write_grid(tmp_path / "m.obj", half_ring(stretch, uneven), (0, 2 * np.pi), (0.2, np.pi - 0.2), 32, 8, around=True)
     with pytest.raises(InputError) as refused:
-        run_on(tmp_path / "m.obj", kind="principal", cells=12)
+        run_on(tmp_path / "m.obj", kind="principal", cells=8)
     assert refused.value.where == "network.kind"
     value = re.search(r'kind = "(\w+)" and normal_curvature = (-?[0-9.e-]+)', refused.value.remedy)
     assert value is not None
-    network = run_on(tmp_path / "m.obj", kind=value[1], normal_curvature=float(value[2]), cells=12).network
+    network = run_on(tmp_path / "m.obj", kind=value[1], normal_curvature=float(value[2]), cells=8).network
     assert network is not None
     assert (network.node_kinds == REGULAR).sum() > 50

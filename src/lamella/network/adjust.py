@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 from lamella.drawing_origin import NOWHERE, measured_from, told_from
 from lamella.errors import InputError
 from lamella.network.adjustable_films import Films, FollowError
+from lamella.network.adjusting_aim import Aim, LostError, StuckError, worst
 from lamella.network.between_umbilics import between_umbilics, keeps_apart
 from lamella.network.carried_shifts import Carrier
 from lamella.network.closing_steps import CLOSES
@@ -66,6 +67,8 @@ MOST_REACH, REACH_HALVINGS, MOST_WIDER, WIDER = 8.0, 6, 2, 1.5
 # of the misses: what first order leaves at most where it says that they vanish; and times the limits: what takes more
 # to first order is not tried. The film's own bending has come to 1.3 times the first order, either way
 UNDONE, HOPELESS = 0.02, 3.0
+# the same at a place with misses of up to so many cells and that part of the limits used: first order is nearer there
+NEAR, MOSTLY, STOPPED = 0.3, 0.9, 1.5
 # of a limit: what takes as much has reached it
 AT_LIMIT = 1.0 - 1e-3
 # how much more a miss of a cell (see `Isothermic.dirichlet`) weighs than a full range
@@ -144,7 +147,7 @@ def _adjusted(
     names = tuple(loop.name for loop in table.boundary)
     around = holonomies(first.iso)
     lattice = choose_lattice(first.iso, around, cells, spacing, pattern=pattern, names=names, seams=False)
-    before = _worst(first.whole.nearest(first.cells(lattice.step))[0] - first.cells(lattice.step))
+    before = worst(first.whole.nearest(first.cells(lattice.step))[0] - first.cells(lattice.step))
     search = _Search(films, progress)
     state, step, after = search.closed(first, lattice)
     final = freedom.changed(state.shares)
@@ -167,29 +170,6 @@ def _adjusted(
     return Adjusted(final, state.surface, step, figures)
 
 
-@dataclass(frozen=True)
-class _Aim:
-    """A net on its way to whole shifts (t,), in cells of a lattice with a spacing l0 (sqrt(m)).
-
-    `rates` (t, p + 1) are those of `Films.cell_rates`, carried on from the step before; None: to be found.
-    """
-
-    net: FilmNet
-    whole: Complexes
-    step: float
-    rates: Complexes | None = None
-
-    @property
-    def misses(self) -> Complexes:
-        """What the shifts lack to the whole ones, (t,), cells."""
-        return np.asarray(self.whole - self.net.cells(self.step), np.complex128)
-
-    @property
-    def size(self) -> float:
-        """Square root of the integral of |change of dw|^2 if they were rounded: it does not depend on the cut."""
-        return self.net.whole.size(self.misses)
-
-
 class _Search:
     """Gauss-Newton's method on one project's boundary."""
 
@@ -204,24 +184,24 @@ class _Search:
 
         The whole numbers that promise the smallest change are tried first; the next ones where these are not reached.
         """
-        lost: list[_LostError] = []
-        waiting: list[_Aim] = []
+        lost: list[LostError] = []
+        waiting: list[Aim] = []
         ways, beyond = self._ways(first, lattice)
         for way in ways:
             if lost:
                 self.progress(f"  {lost[-1]}: other whole numbers of cells")
             try:
                 return self.polish(self.descend(way, hasty=True))
-            except _StuckError as error:
+            except StuckError as error:
                 lost.append(error)
                 waiting.append(error.aim)
-            except _LostError as error:
+            except LostError as error:
                 lost.append(error)
         for aim in sorted(waiting, key=lambda one: one.size):
-            self.progress(f"  {lost[-1]}: back to those that were left with {_worst(aim.misses):.2g} cells")
+            self.progress(f"  {lost[-1]}: back to those that were left with {worst(aim.misses):.2g} cells")
             try:
                 return self.polish(self.descend(aim))
-            except _LostError as error:
+            except LostError as error:
                 lost.append(error)
         lost += beyond
         nearest = min(lost, key=lambda one: one.missed)
@@ -237,18 +217,18 @@ class _Search:
             "network.closing",
         )
 
-    def _ways(self, first: FilmNet, lattice: Lattice) -> tuple[list[_Aim], list[_LostError]]:
+    def _ways(self, first: FilmNet, lattice: Lattice) -> tuple[list[Aim], list[LostError]]:
         """Whole shifts to be tried, and those that take far more than what may change."""
-        aims = [_Aim(first, whole, lattice.step) for whole in self._targets(first, lattice)]
+        aims = [Aim(first, whole, lattice.step) for whole in self._targets(first, lattice)]
         reaches = [self._least_reach(aim, UNDONE) for aim in aims]
         told = ", ".join(f"{reach:.2g}" if reach < np.inf else f"over {2 * MOST_REACH:g}" for reach in reaches)
         self.progress(f"  whole numbers of cells take, to first order, {told} times what the boundary may change")
         why = f"to first order over {HOPELESS:g} times what the boundary may change is needed"
         far = [reach > HOPELESS for reach in reaches]
         ways = [aim for aim, is_far in zip(aims, far, strict=True) if not is_far]
-        return ways, [_LostError(aim, why) for aim, is_far in zip(aims, far, strict=True) if is_far]
+        return ways, [LostError(aim, why) for aim, is_far in zip(aims, far, strict=True) if is_far]
 
-    def _enough(self, aims: list[_Aim]) -> str:
+    def _enough(self, aims: list[Aim]) -> str:
         """What a project writes to allow a change with which the net closes, found by going there; empty: not found."""
         used = self.films.freedom.used
         wanted = [
@@ -259,19 +239,19 @@ class _Search:
             and (reach > 1 or used(aim.net.shares) > AT_LIMIT)
         ]
         # to first order tells most where little is missed
-        for reach, aim in sorted(wanted, key=lambda one: one[0] * (1 + _worst(one[1].misses)))[:MOST_WIDER]:
+        for reach, aim in sorted(wanted, key=lambda one: one[0] * (1 + worst(one[1].misses)))[:MOST_WIDER]:
             self.reach, self.steps = reach * WIDER, 0
             self.progress(f"  how much change would do: with {self.reach:.2g} times as much")
             try:
                 there = self.descend(aim)
-            except _LostError:
+            except LostError:
                 continue
             return self.films.freedom.enough(there.net.shares)
         return ""
 
-    def _least_reach(self, aim: _Aim, left: float) -> float:
+    def _least_reach(self, aim: Aim, left: float) -> float:
         """By what the limits have to be multiplied for all but a share of the misses to vanish to first order."""
-        rates, reach = self.films.cell_rates(aim.net, aim.step), self.reach
+        rates, reach = self._rates_of(aim), self.reach
 
         def reaches(log: float) -> bool:
             self.reach = float(np.exp(log))
@@ -290,6 +270,10 @@ class _Search:
         finally:
             self.reach = reach
         return float(np.exp(high))
+
+    def _rates_of(self, aim: Aim) -> Complexes:
+        """The rates that were carried on, else those of the net itself."""
+        return aim.rates if aim.rates is not None else self.films.cell_rates(aim.net, aim.step)
 
     def _targets(self, net: FilmNet, lattice: Lattice) -> list[Complexes]:
         """Whole shifts (t,) in the order of the change they ask for, to first order."""
@@ -316,47 +300,55 @@ class _Search:
                 return count
         return 0
 
-    def descend(self, aim: _Aim, *, hasty: bool = False) -> _Aim:
+    def descend(self, aim: Aim, *, hasty: bool = False) -> Aim:
         """Steps on the coarse film, until the misses are gone; in haste, until one leaves most of them."""
         self._tell(aim)
         for _ in range(MOST_STEPS):
-            if _worst(aim.misses) < CLOSED:
+            if worst(aim.misses) < CLOSED:
                 return aim
             if self.steps >= MOST_IN_ALL:
-                raise _LostError(aim, f"not reached in {MOST_IN_ALL} steps")
+                raise LostError(aim, f"not reached in {MOST_IN_ALL} steps")
             self.steps += 1
             before = aim.size
             try:
                 aim, reason = self._step(aim)
-            except _LostError:
+            except LostError:
                 # the film's own errors may be all that is left
-                if _worst(aim.misses) < NEARLY:
+                if worst(aim.misses) < NEARLY:
                     return aim
                 raise
             self._tell(aim)
-            if reason and _worst(aim.misses) < NEARLY:
+            if reason and worst(aim.misses) < NEARLY:
                 return aim
+            if hasty and self._is_stopped(aim):
+                raise LostError(aim, "the boundary may not change by more")
             if reason and hasty and aim.size > CARRIED * before:
-                raise _StuckError(aim, reason)
-        raise _LostError(aim, f"not reached in {MOST_STEPS} steps")
+                raise StuckError(aim, reason)
+        raise LostError(aim, f"not reached in {MOST_STEPS} steps")
 
-    def _step(self, aim: _Aim) -> tuple[_Aim, str]:
+    def _is_stopped(self, aim: Aim) -> bool:
+        """Whether first order says that the limits are far from enough, by rates that need not be found anew."""
+        if aim.rates is None or worst(aim.misses) > NEAR or self.films.freedom.used(aim.net.shares) < MOSTLY:
+            return False
+        return self._least_reach(aim, UNDONE) > STOPPED
+
+    def _step(self, aim: Aim) -> tuple[Aim, str]:
         """A net nearer to its whole shifts, and why the whole step there was refused, if it was."""
         if aim.rates is not None:
             try:
                 return self._moved(aim, aim.rates, 1)
-            except _LostError:
+            except LostError:
                 self.progress("    the rates carried on do not lead on")
         return self._moved(aim, self.films.cell_rates(aim.net, aim.step), MOST_HALVINGS)
 
-    def _moved(self, aim: _Aim, rates: Complexes, halvings: int) -> tuple[_Aim, str]:
+    def _moved(self, aim: Aim, rates: Complexes, halvings: int) -> tuple[Aim, str]:
         """See `_step`, with given rates and so many tries."""
         net = aim.net
         change = self._solved(net, rates, aim.misses)[0]
         if net.whole.size(aim.misses - rates @ change) > (1 - LEAST_GAIN) * aim.size:
             beyond = self._solved(net, rates, aim.misses, kept=-np.inf)[0]
             held = net.whole.size(aim.misses - rates @ beyond) > (1 - LEAST_GAIN) * aim.size
-            raise _LostError(aim, "the boundary may not change by more" if held else "umbilics would leave at the rim")
+            raise LostError(aim, "the boundary may not change by more" if held else "umbilics would leave at the rim")
         change = self._shortened(net, change)
         # the least boundary that closes the net may be far from this one: then the nearest, and less and less of it
         nearest = self._shortened(net, self._solved(net, rates, aim.misses, net.shares)[0])
@@ -372,12 +364,12 @@ class _Search:
                 reason = str(error)
                 continue
             expected = 1 - LEAST_GAIN * min(share, 1.0)
-            if there.size < expected * aim.size or _worst(there.misses) < 10 * CLOSED:
+            if there.size < expected * aim.size or worst(there.misses) < 10 * CLOSED:
                 return (there if there.size < CARRIED * aim.size else replace(there, rates=None)), reason
             reason = "the misses grow"
-        raise _LostError(aim, reason)
+        raise LostError(aim, reason)
 
-    def _carried(self, aim: _Aim, net: FilmNet, rates: Complexes, move: Floats) -> _Aim:
+    def _carried(self, aim: Aim, net: FilmNet, rates: Complexes, move: Floats) -> Aim:
         """The same whole shifts on another net, with the rates carried on.
 
         Broyden's update: of all rates that explain the misses found there, those least different from the old ones
@@ -389,7 +381,7 @@ class _Search:
         whole = carrier.whole_shifts(left, net.cells(step))
         if whole is None:
             raise FollowError("the net changes too much in a step")
-        there = _Aim(net, whole, step)
+        there = Aim(net, whole, step)
         expected = carrier.coordinates(np.column_stack([rates[:, :-1], left]))
         spacing = net.whole.coordinates(net.whole.offset - net.cells(step))
         found = np.column_stack([expected[:, :-1], spacing])
@@ -399,35 +391,35 @@ class _Search:
             found = found - np.outer(more, scaled) / (scaled @ move)
         return replace(there, rates=net.whole.basis.T @ found)
 
-    def polish(self, aim: _Aim) -> tuple[FilmNet, float, float]:
+    def polish(self, aim: Aim) -> tuple[FilmNet, float, float]:
         """The film as fine as was asked for: its own misses are a little different ones."""
-        rates = aim.rates if aim.rates is not None else self.films.cell_rates(aim.net, aim.step)
+        rates = self._rates_of(aim)
         move = np.zeros(len(aim.net.shares) + 1)
-        best: _Aim | None = None
+        best: Aim | None = None
         for _ in range(MOST_POLISHING):
             self.progress("    the film as fine as asked for")
             try:
                 found = self.films.found(aim.net.shares + move[:-1], min(self.films.table.tolerance, COARSE))
                 there = self._carried(aim, found, rates, move)
             except FollowError as error:
-                raise _LostError(aim, str(error)) from None
+                raise LostError(aim, str(error)) from None
             self._tell(there)
-            if best is None or _worst(there.misses) < _worst(best.misses):
+            if best is None or worst(there.misses) < worst(best.misses):
                 best = there
-            if _worst(there.misses) < CLOSED:
+            if worst(there.misses) < CLOSED:
                 break
             slow = move.any() and there.size > CARRIED * aim.size
             # what is left may be the film's own errors
-            if slow and _worst(best.misses) < NEARLY:
+            if slow and worst(best.misses) < NEARLY:
                 break
             aim = there
             rates = self.films.cell_rates(aim.net, aim.step) if slow or aim.rates is None else aim.rates
             move = self._shortened(aim.net, self._solved(aim.net, rates, aim.misses)[0])
             self.steps += 1
         assert best
-        if _worst(best.misses) > 0.9 * CLOSES:
-            raise _LostError(best, "the finer surface does not follow")
-        return best.net, best.step, _worst(best.misses)
+        if worst(best.misses) > 0.9 * CLOSES:
+            raise LostError(best, "the finer surface does not follow")
+        return best.net, best.step, worst(best.misses)
 
     def _solved(
         self,
@@ -467,27 +459,11 @@ class _Search:
         far = farthest_move(self.films.loops(net.shares), self.films.loops(net.shares + change[:-1]))
         return np.asarray(change * min(1.0, LONGEST * net.equilibrium.film.size / max(far, 1e-300)))
 
-    def _tell(self, aim: _Aim) -> None:
+    def _tell(self, aim: Aim) -> None:
         self.progress(
-            f"  {self.steps} steps: misses up to {_worst(aim.misses):.2e} cells, parameters up to "
+            f"  {self.steps} steps: misses up to {worst(aim.misses):.2e} cells, parameters up to "
             f"{100 * self.films.freedom.used(aim.net.shares):.0f} % of what they may change"
         )
-
-
-class _LostError(ArithmeticError):
-    """Whole shifts that are not reached; `aim` is how far it went, `missed` what is left, cells."""
-
-    def __init__(self, aim: _Aim, reason: str) -> None:
-        self.aim, self.missed = aim, _worst(aim.misses)
-        super().__init__(f"misses of up to {self.missed:.2g} cells are left ({reason})")
-
-
-class _StuckError(_LostError):
-    """Whole shifts on the way to which steps get shorter."""
-
-
-def _worst(misses: Complexes) -> float:
-    return float(max(np.abs(misses.real).max(initial=0.0), np.abs(misses.imag).max(initial=0.0)))
 
 
 def _moved(old: Loop, new: Loop) -> float:

@@ -6,6 +6,8 @@ sin(pi x / L), constant around (the ground leaves it free), and is (pi / L)^2 - 
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -19,6 +21,7 @@ from lamella.surface.found.find import find_film
 from surface.found.films import random_places
 from surface.found.unduloid_pieces import Piece, unduloid_of_volume
 
+SLOW = partial(pytest.param, marks=pytest.mark.slow)
 R = 4.0
 GROUND = {"point": np.zeros(3), "normal": np.array([0, 0, 1.0])}
 
@@ -50,7 +53,7 @@ def is_half_cylinder(found, length: float) -> bool:
     return bool(np.abs(r - R).max() < 1e-3 * R) and found.equilibrium.film.nodes[:, 2].min() > -1e-9
 
 
-@pytest.mark.parametrize("length", [10.0, 12.0, 12.5])
+@pytest.mark.parametrize("length", [10.0, SLOW(12.0), 12.5])
 def test_half_cylinder_up_to_pi_radii(length) -> None:
     found = find_film(vault(length), 1 / (2 * R))
     assert is_half_cylinder(found, length)
@@ -88,14 +91,14 @@ def test_where_no_stable_film_is_the_unstable_one_is_told() -> None:
     assert own == pytest.approx(-np.pi * R**2 * length / 2, rel=1e-3)
 
 
-@pytest.mark.parametrize("drawn", [2.5, 5.0, 6.0])
+@pytest.mark.parametrize("drawn", [SLOW(2.5), 5.0, SLOW(6.0)])
 def test_sides_drawn_elsewhere_come_to_their_place(drawn) -> None:
     found = find_film(vault(12.0, drawn), 1 / (2 * R))
     assert is_half_cylinder(found, 12.0)
     assert found.stability.negative == 0
 
 
-@pytest.mark.parametrize(("length", "drawn"), [(10.0, R), (12.0, 6.0), (16.0, R), (24.0, R)])
+@pytest.mark.parametrize(("length", "drawn"), [SLOW(10.0, R), (12.0, 6.0), SLOW(16.0, R), (24.0, R)])
 def test_half_cylinder_of_given_volume(length, drawn) -> None:
     """pi R^2 L / 2 down to the ground, however the sides are drawn; stable at fixed volume up to 2 pi R (25.1 m)."""
     volume = np.pi * R**2 * length / 2
@@ -107,7 +110,7 @@ def test_half_cylinder_of_given_volume(length, drawn) -> None:
     assert found.stability.lowest == pytest.approx((np.pi / length) ** 2 - 1 / R**2, rel=0.01)
 
 
-@pytest.mark.parametrize("part", [0.7, 0.9, 1.3])
+@pytest.mark.parametrize("part", [0.7, SLOW(0.9), 1.3])
 def test_vault_of_given_volume_is_half_an_unduloid(part) -> None:
     length = 10.0
     tube = unduloid_of_volume(R, length, part * np.pi * R**2 * length, about_bulge=part > 1)
