@@ -13,8 +13,9 @@ from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MO
 from lamella.network.ground import Ground
 from lamella.network.line_field import LEAST_ANGLE, LineField
 from lamella.network.pattern import Pattern
+from lamella.network.probing import probes
 from lamella.network.seeds import RIM_POINTS, Guide, choose_guide
-from lamella.network.winding import probes, refuse_winding
+from lamella.network.winding import refuse_winding
 from lamella.surface.points import Floats
 from lamella.surface.vectors import dots, lengths
 from lamella.wording import rounded

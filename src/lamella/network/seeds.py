@@ -19,7 +19,7 @@ from lamella.network.flow import Flow, finished, joined, trace
 from lamella.network.ground import Ground, Look
 from lamella.network.lattice import ragged_ranges
 from lamella.network.line_field import LineField
-from lamella.network.winding import LONGEST, wound
+from lamella.network.probing import LONGEST, wound
 from lamella.surface.element.places import Places
 from lamella.surface.element.ties import MARGIN, nearest_whole
 from lamella.surface.points import Floats
