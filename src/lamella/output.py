@@ -109,6 +109,7 @@ def report_data(results: Results) -> ReportData:
         version=__version__,
         kind=results.surface.kind,
         figures=tuple(_figures(results.summary)),
+        corners=tuple(_corners(results.summary)),
         warnings=tuple(results.summary["warnings"]),
         surface=_report_mesh(results),
         mean_curvature=results.surface.mean_curvature,
@@ -221,3 +222,25 @@ def _figures(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
         add("Fabrication", "Mass", f["mass"], "kg")
         add("Fabrication", "Mass per area of surface", f["surface_weight"], "kg/m²")
     return figures
+
+
+def _corners(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
+    """Place, angle between the sides, worst node angle and utilisation next to each corner of the boundary."""
+    rows = (summary["network"] or {}).get("corners", [])
+    stress = (summary["lamellas"] or {}).get("utilisation_at_corners", [None] * len(rows))
+
+    decimals = int(np.clip(1 - np.floor(np.log10(max(summary["surface"]["size"]))), 0, 3))
+
+    def told(value: float | None, form: str) -> str:
+        # nothing of the net is there
+        return "–" if value is None else format(value, form)
+
+    return [
+        (
+            ", ".join(f"{x:.{decimals}f}" for x in row["point"]),
+            f"{row['angle_deg']:.1f}",
+            told(row["node_angle_deviation_max_deg"], ".2g"),
+            told(use, ".2f"),
+        )
+        for row, use in zip(rows, stress, strict=True)
+    ]

@@ -11,6 +11,7 @@ import numpy as np
 from lamella.fabrication.part import Parts
 from lamella.fabrication.sheet import Nesting
 from lamella.network.network import BOUNDARY, SINGULAR, Network
+from lamella.network.written_lines import angle_figures
 from lamella.strip.lamellas import Lamellas
 from lamella.strip.material import Material
 from lamella.strip.planarity import planarity_score
@@ -85,8 +86,6 @@ def _held(table: BoundaryTable) -> str:
 
 def network_summary(network: Network, requested: str) -> dict[str, Any]:
     """The network's figures."""
-    angles = network.node_angles
-    deviation = np.abs(90 - angles)
     wanted = network.normal_curvature
     edges = network.cell_edges
     a, b = network.node_degrees()
@@ -106,10 +105,7 @@ def network_summary(network: Network, requested: str) -> dict[str, Any]:
             {"point": network.node_points[i].tolist(), "order": int(rays[i]) // 2 - 2, "rays": int(rays[i])}
             for i in np.flatnonzero(network.node_kinds == SINGULAR).tolist()
         ],
-        "node_angle_min_deg": float(angles.min()),
-        "node_angle_max_deg": float(angles.max()),
-        "node_angle_deviation_max_deg": float(deviation.max()),
-        "node_angle_deviation_mean_deg": float(deviation.mean()),
+        **angle_figures(network.node_angles[None]),
         "normal_curvature": wanted,
         "normal_curvature_deviation_max": float(np.abs(network.sample_darboux.kn - wanted).max()),
         "cell_edge_min": float(edges.min()),

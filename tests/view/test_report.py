@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import html
 import json
 import re
 from dataclasses import replace
@@ -20,7 +21,7 @@ from lamella.surface.cylinder import Cylinder
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view import report
 from lamella.view.quantity import surface_quantities
-from lamella.view.report import ReportData, report_html, write_report
+from lamella.view.report import CORNER_LIMIT, ReportData, report_html, write_report
 
 FIGURES = (
     ("Surface", "Area", "62.41", "m²"),
@@ -75,6 +76,7 @@ def full():
         version="9.8.7",
         kind="catenoid",
         figures=FIGURES,
+        corners=(),
         warnings=("Twists more than it bends.", "Closed with 12 cells."),
         surface=surface.mesh(),
         mean_curvature=0.0,
@@ -101,6 +103,20 @@ def test_says_who_made_it_and_what_of(full, stage, tmp_path):
     assert ("100 × 1.5 mm, 2 layers 25 mm apart · 1.4301" in page.text) == (stage == "lamellas")
     assert page.tags.count("table") == 2
     assert "{{" not in page.text
+
+
+def test_corners_of_the_boundary_are_a_table(full):
+    """A row a corner, in order, under four headings; of a rim of many corners the rest is in the summary."""
+    rows = tuple((f"{k}.0, 2.5, <0", "108.9", "–", f"{k / 7:.2f}") for k in range(30))
+    for count in (5, 30):
+        text = report_html(replace(full, corners=rows[:count]))
+        page = Page(text)
+        assert page.tags.count("table") == 3
+        table = text.rsplit("<table", 1)[1].split("</table>")[0]
+        assert table.count('<th scope="col">') == 4
+        shown = re.findall(r'<th scope="row">(.*?)</th>' + 3 * r"<td[^>]*>(.*?)</td>", table)
+        assert [tuple(map(html.unescape, row)) for row in shown] == list(rows[: min(count, CORNER_LIMIT)])
+        assert ("6 more" in table) == (count == 30)
 
 
 @pytest.mark.parametrize("stage", ["surface", "network", "lamellas"])

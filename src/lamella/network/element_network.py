@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -20,12 +20,12 @@ from lamella.network.holonomy import Holonomy, holonomies
 from lamella.network.isothermic import Isothermic, Transition
 from lamella.network.lines import is_traced
 from lamella.network.net_mesh import NetMesh, make_net_mesh, onto_surface
-from lamella.network.network import SINGULAR, Network, Period
+from lamella.network.network import REGULAR, SINGULAR, Network, Period
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.network.rim_corners import RimCorners
 from lamella.network.rounding import largest_part, rounded_coordinates, stubs, turned
-from lamella.network.sampled_bend import inner_samples, sampled_bend
 from lamella.network.trace_elements import trace_elements
+from lamella.network.written_lines import WrittenLines, angle_figures
 from lamella.progress import Progress, silent
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
@@ -109,16 +109,33 @@ class ElementNetwork:
             "isothermic_residual": self.residual,
             "joints": [joint._asdict() for joint in self.joints],
             "closed": all(joint.closed for joint in self.joints),
-            "corners": self.corners.rows(self.network),
-        } | (self._off() if self.network.pattern.kind == "lamellas" else {})
+            "corners": self.corners.rows(self.network, self._bend_off, self._node_angles),
+        } | self._off()
+
+    @cached_property
+    def _written(self) -> WrittenLines:
+        return WrittenLines.of(self.network)
+
+    @cached_property
+    def _bend_off(self) -> Floats:
+        """What the normal curvature is off at the samples, by the surface and by the written points, 1/m, (k,)."""
+        return self._written.bend_off(self.network, self.network.normal_curvature)
+
+    @cached_property
+    def _node_angles(self) -> Floats:
+        """At regular nodes, by the surface and by the written points, deg, (2, n)."""
+        return self._written.node_angles(self.network)
 
     def _off(self) -> dict[str, float]:
-        """Errors of the lamellas' normal curvature, by surface and by samples, and of node angles: where resolved."""
-        network = self.network
-        kn = np.concatenate([network.sample_darboux.kn, sampled_bend(network)])
-        points = np.concatenate([network.sample_points, network.sample_points[inner_samples(network)]])
-        off = np.abs(kn - network.normal_curvature)[self.corners.within(points, self.corners.cores) < 0]
-        return {"normal_curvature_deviation_max": float(off.max(initial=0.0))} | self.corners.resolved_angles(network)
+        """Node angles and errors of the lamellas' normal curvature, where the surface is resolved."""
+        network, corners = self.network, self.corners
+        nodes = network.node_points[network.node_kinds == REGULAR]
+        resolved = corners.within(nodes, corners.cores) < 0
+        figures = angle_figures(self._node_angles[:, resolved if resolved.any() else slice(None)])
+        if network.pattern.kind != "lamellas":
+            return figures
+        off = self._bend_off[corners.within(network.sample_points, corners.cores) < 0]
+        return figures | {"normal_curvature_deviation_max": float(off.max(initial=0.0))}
 
     def _remedy(self) -> str:
         """What closes an open net, with its umbilics on nodes."""
@@ -157,12 +174,12 @@ class ElementNetwork:
             yield from self._astray()
 
     def _astray(self) -> Iterator[str]:
-        """Lamellas whose normal curvature, measured on the surface, is another one."""
-        network, wanted = self.network, self.network.normal_curvature
+        """Lamellas whose normal curvature is another one, on the surface or by their written points."""
+        network = self.network
         if network.pattern.kind != "lamellas":
             return
         there = network.sample_darboux
-        off = np.abs(there.kn - wanted) / np.sqrt(np.mean(there.kn**2 + there.tg**2))
+        off = self._bend_off / np.sqrt(np.mean(there.kn**2 + there.tg**2))
         yield from self._unresolved(off)
         # what elements do not resolve is told apart
         off[self.corners.within(network.sample_points, self.corners.cores) >= 0] = 0.0

@@ -26,8 +26,8 @@ RIM, UNREAL, ENDLESS = range(3)
 MOST_STEPS = 20_000
 # halvings of the step in which a line ends: rounding is left
 HALVINGS = 46
-# turn of a line in a step, rad
-MOST_TURN = 0.1
+# turn of a line in a step, rad; steps are halved for it up to so often: at an umbilic no step is short enough
+MOST_TURN, MOST_HALVED = 0.1, 8
 # a half comes back where it passes its seed in its own sense, cosine of the angle between at least, after it was this
 # many times farther away
 SAME_SENSE, AWAY = 0.5, 4.0
@@ -191,8 +191,7 @@ def trace(
         ds = np.minimum(ground.reach(where) / np.linalg.norm(velocity, axis=1), step)
         ds = np.minimum(np.minimum(ds, most), MOST_TURN / np.maximum(bend, 1e-300))
         kept.append((left, way, where, tangent, look.position))
-        ahead = ground.settle(_step(ground, field, where, tangent, family[left], ds, velocity))
-        seen = ground.look(ahead)
+        ahead, seen, ds = _gentle_step(ground, field, where, tangent, family[left], ds, velocity)
         before, margin = margin, field.margin(seen.mean, seen.deviator)
         # a step must not pass over a place without directions, around a flat point for instance
         fall = np.maximum(before - margin, 1e-300) / ds
@@ -227,6 +226,36 @@ def trace(
         tangents[order],
         positions[order],
     )
+
+
+def _gentle_step(
+    ground: Ground,
+    field: LineField,
+    start: Places,
+    tangent: Floats,
+    is_a: Booleans,
+    ds: Floats,
+    first: Floats,
+) -> tuple[Places, Look, Floats]:
+    """Places a step further on, what is seen there, and the steps, m, (n,), in which lines turn by `MOST_TURN` or less.
+
+    Next to umbilics lines turn within the surface, by far more than its curvatures tell.
+    """
+    ahead = ground.settle(_step(ground, field, start, tangent, is_a, ds, first))
+    seen, ds = ground.look(ahead), ds.copy()
+    again = np.arange(len(ds))
+    for _ in range(MOST_HALVED):
+        onwards = _tangent(field, seen.take(again), is_a[again], tangent[again])
+        turned = (onwards * tangent[again]).sum(1) < np.cos(MOST_TURN)
+        again = again[turned & (ground.gap(ahead[again]) >= 0)]
+        if not len(again):
+            break
+        ds[again] /= 2
+        near = ground.settle(_step(ground, field, start[again], tangent[again], is_a[again], ds[again], first[again]))
+        ahead.element[again], ahead.local[again] = near.element, near.local
+        for part, value in zip(seen, ground.look(near), strict=True):
+            part[again] = value
+    return ahead, seen, ds
 
 
 def _from_chord(points: Floats, begin: Floats, end: Floats) -> Floats:

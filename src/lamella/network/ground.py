@@ -41,7 +41,7 @@ class Look(NamedTuple):
     deviator: Complexes
     to_local: Floats
 
-    def take(self, some: NDArray[np.bool_]) -> Look:
+    def take(self, some: NDArray[np.bool_] | Integers) -> Look:
         """Some of the places."""
         return Look(
             self.position[some],

@@ -84,8 +84,11 @@ def find_places(
         beyond = np.flatnonzero((np.minimum(np.minimum(moved[0], moved[1]), third) < -1e-9) & ~there)
         if len(beyond):
             barycentric = np.stack([third[beyond], *moved[:, beyond]])
-            edge = (barycentric.argmin(0) + 1) % 3
-            goes = (connectivity.neighbours[element[beyond], edge] >= 0) & (hops[active[beyond]] < MOST_HOPS)
+            # a place beyond the rim may be beyond the edge next to it as well
+            there_is = connectivity.neighbours.take(element[beyond], 0).T[[1, 2, 0]] >= 0
+            depth = np.where(there_is, barycentric, np.inf)
+            edge = (depth.argmin(0) + 1) % 3
+            goes = (depth.min(0) < -1e-9) & (hops[active[beyond]] < MOST_HOPS)
             beyond, edge, barycentric = beyond[goes], edge[goes], barycentric[:, goes]
             cross(active[beyond], element[beyond], edge)
             element[beyond], local[:, beyond] = _entered(connectivity, element[beyond], edge, barycentric)

@@ -143,9 +143,13 @@ class Network:
 
     @property
     def node_angles(self) -> Floats:
-        """Angle between the A and the B lamella at every regular node, degrees, from their tangents."""
+        """Angle between the A and the B lamella at every regular node, degrees, from their tangents on the surface."""
+        return self.angles_between(self.sample_tangents)
+
+    def angles_between(self, sample_tangents: Floats) -> Floats:
+        """The same from other unit tangents at the samples, (k, 3)."""
         owner = self.stop_owner
-        tangents = self.sample_tangents[self.sample_offsets[owner] + self.stop_samples]
+        tangents = sample_tangents[self.sample_offsets[owner] + self.stop_samples]
         is_a = self.families[owner] == "A"
         pair = np.zeros((2, len(self.node_points), 3))
         pair[0, self.stop_nodes[is_a]] = tangents[is_a]

@@ -105,12 +105,20 @@ class RimCorners:
             result[lengths(points - place) <= radius] = corner
         return result
 
-    def rows(self, network: Network) -> list[dict[str, Any]]:
-        """What each corner is, with the worst figures of a net next to it; none where nothing of the net is."""
-        kn = np.abs(network.sample_darboux.kn - network.normal_curvature)
+    def rows(self, network: Network, kn: Floats, angles: Floats) -> list[dict[str, Any]]:
+        """What each corner is, with the worst figures of a net next to it; none where nothing of the net is.
+
+        Parameters
+        ----------
+        network : Network
+        kn : (k,)
+            What the normal curvature is off at its samples, 1/m.
+        angles : (..., n)
+            Angles at its regular nodes, deg, the worst one counts.
+        """
         of_sample = self.within(network.sample_points, self.radii)
         nodes = network.node_points[network.node_kinds == REGULAR]
-        of_node, off = self.within(nodes, self.radii), np.abs(90 - network.node_angles)
+        of_node, off = self.within(nodes, self.radii), np.abs(90 - angles).reshape(-1, len(nodes)).max(0)
         stops = network.node_points[network.stop_nodes]
         owner = network.stop_owner
         inner = owner[1:] == owner[:-1]
@@ -130,17 +138,6 @@ class RimCorners:
             }
             for corner in range(len(self.points))
         ]
-
-    def resolved_angles(self, network: Network) -> dict[str, float]:
-        """Node angles of a net of lamellas without those in the cores, where there are some."""
-        nodes = self.within(network.node_points[network.node_kinds == REGULAR], self.cores) < 0
-        off = np.abs(90 - network.node_angles)[nodes]
-        if nodes.all() or not len(off):
-            return {}
-        return {
-            "node_angle_deviation_max_deg": float(off.max()),
-            "node_angle_deviation_mean_deg": float(off.mean()),
-        }
 
 
 def _worst(values: Floats, there: NDArray[np.bool_]) -> float | None:

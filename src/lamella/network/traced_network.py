@@ -37,6 +37,7 @@ from lamella.network.traced_stops import (
 )
 from lamella.network.turning import derivative, turning
 from lamella.network.winding import refuse_winding
+from lamella.network.written_lines import WrittenLines, angle_figures
 from lamella.progress import Progress, silent
 from lamella.surface.darboux import Darboux
 from lamella.surface.points import Floats
@@ -69,7 +70,10 @@ class TracedNetwork:
         Lamellas' ends inside the surface, where directions stop being real.
     missed : (float, float)
         Bound of the difference of the normal curvature from the one of the project, at most and at 95 % of the samples,
-        1/m: what the surface's second derivatives miss, and how far these may be off those of the surface a mesh means.
+        1/m: what the surface's second derivatives miss, and how far these may be off those of the surface a mesh means;
+        or what the written points miss, where that is more.
+    angles : (2, n)
+        At regular nodes, deg, see `WrittenLines.node_angles`.
     scale : float
         Curvature scale of the surface, 1/m.
     """
@@ -80,13 +84,14 @@ class TracedNetwork:
     guides: int
     inner_ends: int
     missed: tuple[float, float]
+    angles: Floats
     scale: float
 
     def describe(self) -> dict[str, Any]:
         """Further figures of the network for summary.json."""
-        angles, lines = self.network.node_angles, self.network.pattern.kind == "lamellas"
-        return {
-            "node_angle_mean_deg": float(angles.mean()),
+        lines = self.network.pattern.kind == "lamellas"
+        return angle_figures(self.angles) | {
+            "node_angle_mean_deg": float(self.angles.mean()),
             "normal_curvature_deviation_max": self.missed[0] if lines else None,
             "normal_curvature_deviation_p95": self.missed[1] if lines else None,
             "guides": self.guides,
@@ -179,7 +184,12 @@ def traced_network(
     assert chosen is not None
     seeded, flow, crossings, step = chosen
     network, inner, missed = _network(ground, seeded, flow, crossings, pattern, mean_curvature, step, key)
-    return TracedNetwork(network, laid.requested, laid.reach, seeded.guides, inner, missed, laid.field.scale)
+    written = WrittenLines.of(network)
+    if pattern.normal_curvature is not None:
+        missed = np.maximum(missed, written.bend_off(network, pattern.normal_curvature))
+    worst = float(missed.max()), float(np.percentile(missed, 95))
+    angles = written.node_angles(network)
+    return TracedNetwork(network, laid.requested, laid.reach, seeded.guides, inner, worst, angles, laid.field.scale)
 
 
 def _next_distance(known: list[tuple[float, float]]) -> float:
@@ -202,8 +212,12 @@ def _network(
     mean_curvature: float,
     distance: float,
     key: str,
-) -> tuple[Network, int, tuple[float, float]]:
-    """The network of the seeded lines that are kept, how many ends lie inside, and `TracedNetwork.missed`."""
+) -> tuple[Network, int, Floats]:
+    """The network of the seeded lines that are kept, how many ends lie inside, and what the surface misses, 1/m, (k,).
+
+    That is a bound of what its positions alone make of the lines' normal curvature: they follow the continuous shape
+    operator.
+    """
     if not len(crossings.a):
         raise InputError(
             f"no two lamellas cross: {flow.count} are {flow.lengths.max(initial=0.0):.3g} m long at most",
@@ -243,7 +257,6 @@ def _network(
     sideways = np.cross(look.normal, tangents)
     closed = np.zeros(flow.count, bool)
     darboux = Darboux(look.mean + turned.real, turning(tangents, sideways, s, offsets, closed), -turned.imag)
-    # lines follow the continuous shape operator; what the positions alone say of them is told
     mean, deviator = ground.measured(where)
     missed = np.abs(mean - look.mean + ((deviator - look.deviator) * heading**2).real) + ground.uncertain(where)
     node_sample = np.empty(len(kinds), np.int64)
@@ -286,5 +299,5 @@ def _network(
             pattern=pattern,
         ),
         int(inner.sum()),
-        (float(missed.max()), float(np.percentile(missed, 95))),
+        np.asarray(missed, np.float64),
     )

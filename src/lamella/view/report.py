@@ -31,6 +31,11 @@ SAMPLE_LIMIT = 100_000
 VERTEX_LIMIT = 30_000
 """Surface vertices in a report."""
 
+CORNER_LIMIT = 24
+"""Corners of the boundary in a report's table."""
+
+CORNER_COLUMNS = ("Place, m", "Angle, °", "Node angle off, °", "Utilisation")
+
 PASCAL_TO_MEGAPASCAL = 1e-6
 MISSING = 65535
 
@@ -49,6 +54,8 @@ class ReportData:
         Kind of surface, "unduloid".
     figures : tuple of (section, label, value, unit)
         Key figures, already formatted; sections appear in the order of their first figure.
+    corners : tuple of (place, angle, node angle, utilisation)
+        Corners of the boundary, already formatted, in the order of the summary; none: no table.
     warnings : tuple of str
         Shown above everything else.
     surface : SurfaceMesh
@@ -66,6 +73,7 @@ class ReportData:
     version: str
     kind: str
     figures: tuple[tuple[str, str, str, str], ...]
+    corners: tuple[tuple[str, str, str, str], ...]
     warnings: tuple[str, ...]
     surface: SurfaceMesh
     mean_curvature: float
@@ -110,7 +118,7 @@ def report_html(data: ReportData) -> str:
             "version": html.escape(data.version),
             "subtitle": html.escape(one_line(_subtitle(data))),
             "warnings": _warnings_html(data.warnings),
-            "figures": _figures_html(data.figures),
+            "figures": _figures_html(data.figures) + _corners_html(data.corners),
             "notes": "".join(f'<p class="note">{html.escape(note)}</p>' for note in notes),
             "css": _asset("report.css"),
             "data": _json_for_html(payload),
@@ -172,6 +180,25 @@ def _figures_html(figures: tuple[tuple[str, str, str, str], ...]) -> str:
         f"<table><caption>{html.escape(section)}</caption><tbody>{''.join(rows)}</tbody></table>"
         for section, rows in sections.items()
     )
+
+
+def _corners_html(corners: tuple[tuple[str, str, str, str], ...]) -> str:
+    """A table with a row a corner, and how many more the summary has."""
+    if not corners:
+        return ""
+    head = "".join(f'<th scope="col">{html.escape(column)}</th>' for column in CORNER_COLUMNS)
+    rows = "".join(
+        f'<tr><th scope="row">{html.escape(corner[0])}</th>'
+        + "".join(f'<td class="short">{html.escape(value)}</td>' for value in corner[1:])
+        + "</tr>"
+        for corner in corners[:CORNER_LIMIT]
+    )
+    left = len(corners) - CORNER_LIMIT
+    if left > 0:
+        rows += f'<tr><th colspan="{len(CORNER_COLUMNS)}">{left:,} more: summary.json, network.corners</th></tr>'
+    caption = "<caption>Corners of the boundary</caption>"
+    body = f"<thead><tr>{head}</tr></thead><tbody>{rows}</tbody>"
+    return f'\n<table class="columns">{caption}{body}</table>'
 
 
 def _json_for_html(payload: Spec) -> str:

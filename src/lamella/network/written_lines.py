@@ -1,0 +1,137 @@
+"""Centre lines as they are written: tangents and normal curvature from the points of their samples alone.
+
+On elements a centre line has a small kink wherever it goes over from one element to the next, by as much as the
+elements' tangent planes differ there, and next to an umbilic or a corner of the rim its points are as good as the
+surface is. The surface's derivatives, inside the elements, know nothing of this; who builds or measures the line meets
+it. So the figures of a net are taken from both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.blocks import blocks
+from lamella.network.network import Network
+from lamella.surface.points import Floats
+from lamella.surface.vectors import dots, lengths
+
+Integers = NDArray[np.int64]
+
+# samples to either side of one through which a polynomial is laid, and its degree
+BESIDE, DEGREE = 3, 4
+# part of a polynomial's term that is new over the terms before it: less is rounding
+NOTHING = 1e-13
+# lines of more samples are not judged by their first and last ones, where the polynomial is one-sided
+SHORT = 12
+
+
+@dataclass(frozen=True)
+class WrittenLines:
+    """What the written points of a network tell of its lines.
+
+    Attributes
+    ----------
+    tangents : (k, 3)
+        Unit tangents at the samples.
+    bend : (k,)
+        Normal curvature, 1/m.
+    inner : (i,) int
+        Samples whose normal curvature tells something: all but the first and last ones of open lines, unless these are
+        short.
+    """
+
+    tangents: Floats
+    bend: Floats
+    inner: Integers
+
+    @classmethod
+    def of(cls, network: Network) -> WrittenLines:
+        """Those of a network.
+
+        By the polynomial of degree four in the arc length that fits seven neighbouring samples best (Savitzky and
+        Golay, Anal. Chem. 36 (1964), 1627-1639, doi:10.1021/ac60214a047), the nearest seven at the ends. Off by the
+        fourth power of the samples' distance; a kink reads as curvature over the samples beside it.
+        """
+        chords = np.r_[0.0, lengths(np.diff(network.sample_points, axis=0))]
+        chords[network.sample_offsets[:-1]] = 0.0
+        bends = lengths(_derivatives(network, chords)[1])
+        # the arc over a chord, by the circle through its ends
+        bends[1:] = (bends[1:] + bends[:-1]) / 2
+        first, second = _derivatives(network, chords * (1 + (bends * chords) ** 2 / 24))
+        tangents = first / np.maximum(lengths(first), np.finfo(float).tiny)[:, None]
+        return cls(tangents, dots(second, network.sample_normals), _inner(network))
+
+    def bend_off(self, network: Network, wanted: float) -> Floats:
+        """Difference of the normal curvature at the samples from a wanted one, 1/m: the larger of both, (k,)."""
+        off = np.abs(network.sample_darboux.kn - wanted)
+        off[self.inner] = np.maximum(off[self.inner], np.abs(self.bend[self.inner] - wanted))
+        return off
+
+    def node_angles(self, network: Network) -> Floats:
+        """Angles between the A and the B lamella at every regular node, deg, by surface and by points, (2, n)."""
+        return np.stack([network.node_angles, network.angles_between(self.tangents)])
+
+
+def angle_figures(angles: Floats) -> dict[str, float]:
+    """What summary.json tells of node angles (2, n) deg: the worse of both ways to measure them."""
+    off = np.abs(90 - angles).max(0)
+    return {
+        "node_angle_min_deg": float(angles.min()),
+        "node_angle_max_deg": float(angles.max()),
+        "node_angle_deviation_max_deg": float(off.max()),
+        "node_angle_deviation_mean_deg": float(off.mean()),
+    }
+
+
+def _derivatives(network: Network, steps: Floats) -> tuple[Floats, Floats]:
+    """First and second derivatives at all samples, (k, 3) each, by the length of the steps to them, (k,) m."""
+    along, count = np.cumsum(steps), np.diff(network.sample_offsets)
+    half = np.minimum(BESIDE, (count - 1) // 2)
+    first, second = np.zeros((2, *network.sample_points.shape))
+    for reach in np.unique(half[half > 0]).tolist():
+        samples = np.flatnonzero(np.repeat(half == reach, count))
+        for block in blocks(len(samples)):
+            at = samples[block]
+            window, away = _windows(network, at, reach, along)
+            # numbers that differ little are fitted: from the sample itself
+            apart = network.sample_points[window] - network.sample_points[at][:, None]
+            first[at], second[at] = _fitted(away, apart)
+    return first, second
+
+
+def _inner(network: Network) -> Integers:
+    count = np.diff(network.sample_offsets)
+    place = np.arange(count.sum()) - np.repeat(network.sample_offsets[:-1], count)
+    last = np.repeat(count - 1, count)
+    whole = np.repeat(network.closed | (count <= SHORT), count)
+    return np.flatnonzero(whole | ((place >= BESIDE) & (place <= last - BESIDE)))
+
+
+def _windows(network: Network, samples: Integers, reach: int, along: Floats) -> tuple[Integers, Floats]:
+    """The 2 reach + 1 samples around each (s,), and how far along the line they are from it, m, (s, 2 reach + 1)."""
+    owner = np.searchsorted(network.sample_offsets, samples, side="right") - 1
+    begin = network.sample_offsets[owner]
+    last = network.sample_offsets[owner + 1] - 1 - begin
+    place = (samples - begin)[:, None] + np.arange(-reach, reach + 1)
+    closed = (network.closed[owner] & (last > 2 * reach))[:, None]
+    turn = np.where(closed, np.floor_divide(place, last[:, None]), 0)
+    shift = np.where(closed[:, 0], 0, np.minimum(place[:, 0], 0) + np.maximum(place[:, -1] - last, 0))
+    window = begin[:, None] + place - turn * last[:, None] - shift[:, None]
+    length = along[begin + last] - along[begin]
+    return window, along[window] - along[samples][:, None] + turn * length[:, None]
+
+
+def _fitted(away: Floats, points: Floats) -> tuple[Floats, Floats]:
+    """First and second derivatives, (s, 3), at 0 of the polynomials that fit points (s, w, 3) at arguments (s, w)."""
+    scale = np.abs(away).max(1)
+    degree = min(DEGREE, away.shape[1] - 1)
+    powers = (away / scale[:, None])[:, :, None] ** np.arange(degree + 1)
+    q, r = np.linalg.qr(powers)
+    # of samples in one place fewer derivatives follow
+    diagonal = np.einsum("sii->si", r)
+    diagonal[np.abs(diagonal) < NOTHING] = 1 / NOTHING
+    coefficients = np.linalg.solve(r, np.matmul(q.transpose(0, 2, 1), points))
+    return coefficients[:, 1] / scale[:, None], 2 * coefficients[:, 2] / scale[:, None] ** 2
