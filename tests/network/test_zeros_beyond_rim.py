@@ -7,11 +7,13 @@ import json
 import numpy as np
 import pytest
 
+from lamella import compute, parse_project
 from lamella.files.network_json import network_bytes
 from lamella.network.beyond_rim import zeros_beyond_rim
+from lamella.network.element_network import element_network
 from lamella.network.make import make_network
 from lamella.network.network import SINGULAR
-from lamella.network.umbilic_depth import UmbilicDepths
+from lamella.network.umbilic_depth import UmbilicDepths, depth_errors
 from lamella.summary import network_summary
 from measure_network import measure
 from surface.weierstrass import weierstrass
@@ -59,3 +61,30 @@ def test_how_an_umbilic_moves_from_the_rim(way) -> None:
     away = np.linalg.norm(position[0] - rim[nearest]) - depths.depth[0]
     # about half as large as the disc of the parameter
     assert depths.change(surface, moved)[0] == pytest.approx(away, abs=0.03 * off / 2)
+
+
+def test_umbilics_on_the_rim_are_not_listed() -> None:
+    """Whether a zero on the rim is found within or beyond is an error of the surface; farther within it is one."""
+    listed = []
+    for inside in (0.05, 1e-4, -1e-4):
+        surface = weierstrass([(1 - inside) * np.exp(0.4j)], rings=10)
+        net = element_network(surface, cells=12)
+        listed.append(len(net.describe()["umbilics"]))
+        # on exact elements as sure as the elements' order allows
+        assert depth_errors(surface).max(initial=0.0) < 1e-3
+    assert listed == [1, 0, 0]
+
+
+@pytest.mark.slow
+def test_umbilics_on_straight_beams_are_listed_alike() -> None:
+    """On a straight beam D is the geodesic torsion alone: its zeros lie on the beam, within the surface's error."""
+    corners = np.array([[0, 0, 0], [4, 0, 0.8], [4, 2, -0.5], [2, 2, 0.6], [2, 4, -0.4], [0, 4, 0.7]])
+    turn = np.linalg.qr(np.random.default_rng(8).normal(size=(3, 3)))[0]
+    listed = []
+    for moved, tolerance in ((np.eye(3), 0.01), (turn, 0.01), (np.diag([1, 1, -1]), 0.01), (np.eye(3), 0.006)):
+        loop = {"points": (corners @ moved.T).tolist(), "interpolation": "polyline"}
+        project = {"surface": {"kind": "form-found", "tolerance": tolerance, "boundary": [loop]}}
+        figures = compute(parse_project(project | {"network": {"cells": 8}}), until="network").summary["network"]
+        listed.append(np.array([one["point"] for one in figures["umbilics"]]).reshape(-1, 3) @ moved)
+    for one in listed[1:]:
+        assert one == pytest.approx(listed[0], abs=2e-3 * 6)

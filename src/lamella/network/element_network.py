@@ -91,15 +91,16 @@ class ElementNetwork:
         """Further figures of the network for summary.json."""
         nodes = self.network.node_points[self.network.node_kinds == SINGULAR]
         reach = 1e-6 * float(np.linalg.norm(np.ptp(self.network.node_points, axis=0)))
+        # whether one on the rim lies within is decided by the surface's errors
+        inner = ~self.on_rim
         umbilics = [
             {
                 "point": point.tolist(),
                 "order": int(order),
                 "rays": int(2 * (order + 2)),
-                "boundary": bool(rim),
                 "node": bool((np.linalg.norm(nodes - point, axis=1) < reach).any()) if len(nodes) else False,
             }
-            for point, order, rim in zip(self.umbilics.position, self.umbilics.orders, self.on_rim, strict=True)
+            for point, order in zip(self.umbilics.position[inner], self.umbilics.orders[inner], strict=True)
         ]
         return {
             "singular_nodes": [
@@ -163,11 +164,12 @@ class ElementNetwork:
                 f"{max(rounded):.3g} cells: node angles and normal curvatures pay for it"
                 + (f"; {self.lattice.advice}" if self.lattice.advice else "")
             )
-        missed = [umbilic for umbilic in self.describe()["umbilics"] if not umbilic["node"] and not umbilic["boundary"]]
+        umbilics = self.describe()["umbilics"]
+        missed = [umbilic for umbilic in umbilics if not umbilic["node"]]
         if missed:
             places = "; ".join(coordinates(umbilic["point"], 3) for umbilic in missed)
             yield (
-                f"{len(missed)} of {len(self.umbilics.orders)} umbilics are no nodes of the net (at {places} m): "
+                f"{len(missed)} of {len(umbilics)} umbilics are no nodes of the net (at {places} m): "
                 f"lamellas pass around them; {self._remedy()}"
             )
         if not rounded:
@@ -361,9 +363,10 @@ def lay_net(
     refuse_umbilic(surface)
     assert not is_traced(surface, pattern)
     umbilics = surface.umbilics
-    told = ", ".join(f"order {m}" for m in umbilics.orders.tolist())
-    progress(f"  {len(umbilics.orders)} umbilics" + (f" ({told})" if told else ""))
     mesh = make_net_mesh(surface, umbilics)
+    inner = umbilics.orders[mesh.umbilics >= 0].tolist()
+    told = ", ".join(f"order {m}" for m in inner)
+    progress(f"  {len(inner)} umbilics" + (f" ({told})" if told else ""))
     iso = integrate(mesh, mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)])
     progress(
         f"  isothermic coordinates on {mesh.connectivity.node_count:,} nodes: off by {iso.residual:.1e} of their slope"

@@ -19,6 +19,7 @@ from scipy.spatial import cKDTree
 from lamella.network.beyond_rim import zeros_beyond_rim
 from lamella.network.inverse import find_places
 from lamella.network.rosette import RINGS, Rosette, rosette
+from lamella.network.umbilic_depth import depth_errors
 from lamella.surface.element.bisect import Parts, bisect, whole
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.lagrange import lagrange
@@ -35,7 +36,8 @@ Flags = NDArray[np.bool_]
 
 # of the elements
 ORDER = 4
-# an umbilic this near to the boundary, over the surface's size, is on it: no loop runs around it
+# an umbilic this near to the boundary, over the surface's size, or as near as its place is unsure, is on it: no loop
+# runs around it, and whether it lies within or beyond is nothing the surface tells
 ON_RIM, RIM_SAMPLES = 2e-3, 4000
 # the same of a corner of it that turns by this angle, radians: there Q goes like a power that is not whole (that of
 # pi / angle - 2 between straight beams, above 0 below a right angle), and elements put a zero next to it
@@ -153,7 +155,8 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     along = np.concatenate([rim.at(np.arange(RIM_SAMPLES) / RIM_SAMPLES) for rim in rims])
     zeros = umbilics.position.reshape(-1, 3)
     to_rim, _ = cKDTree(along).query(zeros)
-    inside = (to_rim > ON_RIM * size) & ~_near(zeros, surface.nodes[_corners(rims)], AT_CORNER * size)
+    inside = to_rim > np.clip(depth_errors(surface), ON_RIM * size, AT_CORNER * size)
+    inside &= ~_near(zeros, surface.nodes[_corners(rims)], AT_CORNER * size)
     radii = np.where(inside, _radii(surface, umbilics, to_rim), ON_RIM * size)
 
     beyond = zeros_beyond_rim(surface, ON_RIM * size)

@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
+from lamella.surface.element.umbilics import deviator_error
 from lamella.surface.points import Complexes, Floats
 
 # of an element: over which D is differentiated
@@ -80,6 +81,20 @@ class UmbilicDepths:
         if along is not None:
             change = change - (self.inwards * along[self.rim_node]).sum(1)
         return np.asarray(change)
+
+
+def depth_errors(surface: ElementSurface) -> Floats:
+    """How far the umbilics of a surface may lie from where they are found, across the rim, m, (z,).
+
+    Of simple ones, by the error of the deviator there. The middle of one of higher order is found as well as the
+    surface itself: 0.
+    """
+    umbilics = surface.umbilics
+    errors, simple = np.zeros(len(umbilics.orders)), umbilics.orders == 1
+    if simple.any():
+        depths = UmbilicDepths.of(surface)
+        errors[simple] = np.linalg.norm(depths.by_deviator, axis=1) * deviator_error(surface, depths.places.element)
+    return errors
 
 
 def _slopes(surface: ElementSurface, places: Places, axis: int) -> tuple[Complexes, Floats]:
