@@ -328,12 +328,10 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
             figures["network"] = f = summary.network_summary(network, density.requested)
         else:
             # heavy, and closed forms do without
-            from lamella.weaving import lay, trace, weave
+            from lamella.weaving import MANNERS, lay, trace, weave
 
             traced = is_traced(surface, table.pattern)
-            clock.start(
-                f"network: {'lines from even seeds' if traced else 'umbilics, isothermic coordinates, lamellas'}"
-            )
+            clock.start(f"network: {MANNERS[traced]}")
             with unit_first(surface):
                 if traced:
                     woven = trace(surface, project, progress)
@@ -364,6 +362,11 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
         figures["lamellas"] = f = summary.lamella_summary(network, lamellas, strip.material, project.material())
         f |= woven.corner_stresses(lamellas.utilisation) if woven else {}
         clock.stop("lamellas", f"{f['total_length']:.4g} m of lamella, utilisation up to {f['utilisation_max']:.2f}")
+        at_corner = None
+        if woven:
+            from lamella.corner_search import corner_help
+
+            at_corner = corner_help(woven, lamellas.utilisation, project, folder, progress)
         warnings += cautions.lamella_cautions(
             mesh,
             network,
@@ -371,7 +374,7 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
             project.fabrication.slot_width or 0.0,
             project.material().strength,
             lambda other: float(make(other).utilisation.max()),
-            partial(woven.at_corner, utilisation=lamellas.utilisation) if woven else None,
+            at_corner,
         )
         warnings += cautions.layer_cautions(network, lamellas, project.material())
     if network and lamellas and depth >= STAGES.index("fabrication"):

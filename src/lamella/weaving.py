@@ -14,6 +14,9 @@ from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import refuse_umbilic
 
+# how nets are made: on a lattice, or traced
+MANNERS = ("umbilics, isothermic coordinates, lamellas", "lines from even seeds")
+
 
 def lay(surface: Surface[Any], project: Project, step: float | None, progress: Progress) -> LaidNet:
     """The lattice of a surface of elements; of a given spacing l0 (sqrt(m)) where it was adjusted."""

@@ -216,8 +216,11 @@ class ElementNetwork:
             "utilisation_away_from_corners": float(utilisation[at < 0].max(initial=0.0)),
         }
 
-    def at_corner(self, point: Floats, utilisation: Floats) -> str:
-        """What helps at a point (3,) if a corner is why so much is used there and not farther away; else empty."""
+    def at_corner(self, point: Floats, utilisation: Floats, searched: Callable[[int, tuple[float, float]], str]) -> str:
+        """What helps at a point (3,) if a corner is why so much is used there and not farther away; else empty.
+
+        `searched` tells what a radius does: see `lamella.corner_search.radius_that_does`.
+        """
         reach = AT_CORNER * float(np.median(self.network.cell_edges))
         corner = self.corners.nearest(point, reach)
         if corner < 0:
@@ -226,11 +229,19 @@ class ElementNetwork:
         away = utilisation[self.corners.within(self.network.sample_points, radii) < 0].max(initial=0.0)
         if away > CONCENTRATED * utilisation.max():
             return ""
+        relief = self._relief(corner, searched)
         return (
             "the boundary has a corner there, which concentrates curvature (up to "
-            f"{away:.2f} more than {radii[corner]:.2g} m away from corners): {self.rounding(corner)}, "
-            "or more where that is not enough; "
+            f"{away:.2f} more than {radii[corner]:.2g} m away from corners): {relief}; "
         )
+
+    def _relief(self, corner: int, searched: Callable[[int, tuple[float, float]], str]) -> str:
+        """What lowers the stress at a corner."""
+        if not self.curves or self.corners.sliding[corner]:
+            return self.rounding(corner)
+        most = float(self.corners.fillets[corner])
+        does = searched(int(self.corners.loops[corner]), (float(np.median(self.network.cell_edges)), most))
+        return does or f"no corner_radius that was tried, up to the {most:.2g} m its loop has room for, brings it to 1"
 
     def rounding(self, corner: int) -> str:
         """What makes a corner one that a net can follow."""

@@ -48,6 +48,8 @@ class RimCorners:
         Within which the elements do not follow the curvature, m.
     fillets : (c,)
         Largest `corner_radius` of the corner's loop, m.
+    loops : (c,) int
+        Number of the corner's loop.
     sliding : (c,) bool
         Whether a part that slides begins or ends there: such a corner has no fillet.
     """
@@ -57,6 +59,7 @@ class RimCorners:
     radii: Floats
     cores: Floats
     fillets: Floats
+    loops: NDArray[np.int64]
     sliding: NDArray[np.bool_]
 
     @classmethod
@@ -65,7 +68,7 @@ class RimCorners:
         connectivity, nodes = surface.connectivity, surface.nodes
         size = diagonal(nodes)
         rows: list[tuple[Floats, ...]] = []
-        for rim in element_rims(connectivity, nodes, surface.rim_loop):
+        for loop, rim in enumerate(element_rims(connectivity, nodes, surface.rim_loop)):
             turned = np.flatnonzero(rim.turns > LEAST_TURN)
             arc = rim.starts[turned] * rim.length
             gap = np.diff(np.append(arc, arc[:1] + rim.length))
@@ -80,6 +83,7 @@ class RimCorners:
                     radius,
                     CORNER_CORE / CORNER_PART * radius,
                     most,
+                    np.full(len(vertices), loop),
                 )
             )
         columns = [np.concatenate(column) for column in zip(*rows, strict=True)]

@@ -104,7 +104,7 @@ class TracedNetwork:
         """None: what nets of isothermic coordinates tell apart, see `ElementNetwork`."""
         return {}
 
-    def at_corner(self, _: Floats, utilisation: Floats) -> str:
+    def at_corner(self, _: Floats, utilisation: Floats, searched: object) -> str:
         """Nothing, see `corner_stresses`."""
         return ""
 
