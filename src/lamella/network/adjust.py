@@ -64,6 +64,8 @@ KEPT = 0.3
 # limits this many times as large are looked for, at most, where the given ones do not do; in so many halvings, from so
 # many of the places reached, and tried with more than what suffices to first order: steps are few where room is left
 MOST_REACH, REACH_HALVINGS, MOST_WIDER, WIDER = 8.0, 6, 2, 1.5
+# cells: misses that small change what is offered by less than what is added to it
+OFFERED = 2e-3
 # of the misses: what first order leaves at most where it says that they vanish; and times the limits: what takes more
 # to first order is not tried. The film's own bending has come to 1.3 times the first order, either way
 UNDONE, HOPELESS = 0.02, 3.0
@@ -243,7 +245,7 @@ class _Search:
             self.reach, self.steps = reach * WIDER, 0
             self.progress(f"  how much change would do: with {self.reach:.2g} times as much")
             try:
-                there = self.descend(aim)
+                there = self.descend(aim, goal=OFFERED)
             except LostError:
                 continue
             return self.films.freedom.enough(there.net.shares)
@@ -300,11 +302,11 @@ class _Search:
                 return count
         return 0
 
-    def descend(self, aim: Aim, *, hasty: bool = False) -> Aim:
-        """Steps on the coarse film, until the misses are gone; in haste, until one leaves most of them."""
+    def descend(self, aim: Aim, *, hasty: bool = False, goal: float = CLOSED) -> Aim:
+        """Steps on the coarse film, until misses are below a goal, cells; in haste, until one leaves most of them."""
         self._tell(aim)
         for _ in range(MOST_STEPS):
-            if worst(aim.misses) < CLOSED:
+            if worst(aim.misses) < goal:
                 return aim
             if self.steps >= MOST_IN_ALL:
                 raise LostError(aim, f"not reached in {MOST_IN_ALL} steps")
