@@ -8,7 +8,7 @@ its origin, its numbers and what it does on the rim, has to go with them too.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +16,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from lamella import Catenoid, Cylinder, Enneper, Helicoid, Scherk, make_network
-from lamella.network.element_network import element_network
+from lamella.network.element_lattice import choose_lattice
+from lamella.network.element_network import element_network, lay_net
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
 from lamella.surface.boundary import make_loop
 from lamella.surface.boundary.pieces import lines
@@ -336,3 +337,28 @@ def test_nets_of_random_surfaces_go_with_them() -> None:
     print(f"{alike} alike, {seams} with seams, {ties} with an end on a margin")
     assert alike >= 9
     assert ties <= 1
+
+
+@pytest.mark.slow
+def test_density_between_several_odd_umbilics_goes_with_the_surface() -> None:
+    """w has no one value there: cells are counted on the area in its plane, which no cut and no element changes."""
+    t = TAU * np.arange(18) / 18
+    height = 0.45 * np.cos(5 * t) + 0.25 * np.cos(2 * t + 0.5) + 0.12 * np.sin(3 * t)
+    rim = np.column_stack([4 * np.cos(t) + 0.2 * np.cos(2 * t), 3 * np.sin(t), height])
+    chosen = []
+    for name in (None, "turned", "mirrored", "in millimetres"):
+        move = MOTIONS[name] if name else None
+        scale = move.scale if move else 1.0
+        laid = lay_net(film(Case((rim,), False, 0.05, 12), motion=move), cells=12)
+        assert laid.umbilics.orders.tolist() == [1, 1, 1]
+        pick = partial(choose_lattice, laid.iso, laid.around, seams=False)
+        lattices = [pick(None, d * scale) for d in (0.3, 0.4, 0.5, 0.62, 0.8)] + [pick(c, None) for c in (9, 12, 16)]
+        steps = np.array([one.step for one in lattices]) / np.sqrt(scale)
+        chosen.append((steps, [(one.cells, one.better_closes) for one in lattices]))
+        # all that are asked for are met, within what closing may move them
+        assert np.array([one.edge for one in lattices[:5]]) / scale == pytest.approx(
+            [0.3, 0.4, 0.5, 0.62, 0.8], rel=0.15
+        )
+    for steps, rest in chosen[1:]:
+        assert rest == chosen[0][1]
+        assert steps == pytest.approx(chosen[0][0], rel=1e-4)
