@@ -12,7 +12,7 @@ from lamella.drawing_origin import NOWHERE, Origin, origin_of
 from lamella.errors import InputError
 from lamella.project_values import METRES
 from lamella.surface.boundary.arcs import arc_through, circle
-from lamella.surface.boundary.checks import check_loops
+from lamella.surface.boundary.checks import check_corner_count, check_loops
 from lamella.surface.boundary.choosing import choose_loop
 from lamella.surface.boundary.curve import Loop, Sliding, make_loop
 from lamella.surface.boundary.fillets import rounded_loop
@@ -68,6 +68,7 @@ def boundary_loops(table: FormFoundTable, folder: Path, drawn: Drawn | None = No
     drawn = {} if drawn is None else drawn
     loops = tuple(unchecked_loop(table, k, folder, drawn) for k in range(len(table.boundary)))
     check_loops(loops)
+    check_corner_count(loops, table.most_nodes, table.tolerance)
     return loops
 
 
