@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -121,6 +122,11 @@ def test_an_odd_number_of_cells_leaves_an_umbilic_between_the_nodes() -> None:
     assert warning.startswith("1 of 2 umbilics are no nodes of the net (at ")
     # an even number next to it
     assert re.search(r"cells = 2[46] closes it with all umbilics on nodes$", warning)
+    # without such a number: what is refused on meshes is not offered there
+    nowhere = replace(net.lattice, advice="", better_closes=False)
+    for curves, ways in ((True, "'round' or 'adjust'"), (False, "'round'")):
+        (warning,) = replace(net, lattice=nowhere, curves=curves).warnings()
+        assert warning.endswith(f"closing = {ways} may close it")
     # the missed one lies in the middle of a cell of six sides, and the net closes around it
     assert all(joint.closed for joint in net.joints)
     assert (net.network.node_kinds == SEAM).sum() == 0

@@ -143,9 +143,9 @@ class ElementNetwork:
         advice = self.lattice.advice
         if advice and self.lattice.better_closes:
             return advice
-        return (f"{advice}; " if advice else "no density near this one closes it; ") + (
-            "closing = 'round' or 'adjust' may close it"
-        )
+        # a mesh has no curves to be adjusted
+        ways = "'round' or 'adjust'" if self.curves else "'round'"
+        return (f"{advice}; " if advice else "no density near this one closes it; ") + f"closing = {ways} may close it"
 
     def warnings(self) -> Iterator[str]:
         """Where the net does not meet itself, and umbilics that are no nodes."""
