@@ -119,6 +119,12 @@ REFUSED: list[tuple[str, Tables, str, list[Callable[[Tables, str], Tables]]]] = 
         [put("network.normal_curvature", 0), put("network.normal_curvature", 1)],
     ),
     (
+        "all too short from seeds",
+        {"surface": SADDLE, "network": {"normal_curvature": 0.1, "cells": 6, "minimum_length": 99.0}, "lamella": ONE},
+        "network.minimum_length",
+        [put("network.minimum_length", 0)],
+    ),
+    (
         "higher than round",
         {"surface": UNDULOID | {"neck_radius": 0.2, "bulge_radius": 0.3, "height": [-0.1, 0.1]}}
         | {"lamella": ONE | {"height": 0.6}},
@@ -159,7 +165,7 @@ REFUSED: list[tuple[str, Tables, str, list[Callable[[Tables, str], Tables]]]] = 
 
 
 # lines from seeds are traced twice
-SLOW = ("curvature of lines from seeds",)
+SLOW = ("curvature of lines from seeds", "all too short from seeds")
 
 
 @pytest.mark.parametrize(

@@ -132,7 +132,8 @@ def trace_faces(
     if endless or (len(count) and count.max() > MOST_CORNERS):
         corners = "many" if endless else f"{count.max()}"
         raise InputError(
-            f"the net is too coarse for this surface: a face between lamellas and rim has {corners} corners",
+            f"the net is too coarse for this surface: a face between lamellas and rim has {corners} corners "
+            f"(limit {MOST_CORNERS})",
             "raise network.cells (or lower network.spacing)",
             "network.cells",
         )

@@ -41,6 +41,7 @@ from lamella.network.written_lines import WrittenLines, angle_figures
 from lamella.progress import Progress, silent
 from lamella.surface.darboux import Darboux
 from lamella.surface.points import Floats
+from lamella.wording import rounded
 
 Integers = NDArray[np.int64]
 Booleans = NDArray[np.bool_]
@@ -183,7 +184,9 @@ def traced_network(
         distance = _next_distance(known)
     assert chosen is not None
     seeded, flow, crossings, step = chosen
-    network, inner, missed = _network(ground, seeded, flow, crossings, pattern, mean_curvature, step, key)
+    network, inner, missed = _network(
+        ground, seeded, flow, crossings, pattern, mean_curvature, step, minimum_length, key
+    )
     written = WrittenLines.of(network)
     if pattern.normal_curvature is not None:
         missed = np.maximum(missed, written.bend_off(network, pattern.normal_curvature))
@@ -203,6 +206,26 @@ def _next_distance(known: list[tuple[float, float]]) -> float:
     return float(np.exp(b + (a - b) * np.clip(-low / (high - low), 0.1, 0.9)))
 
 
+def _none_cross(seeded: Seeded, kept: Flow, distance: float, minimum_length: float, key: str) -> InputError:
+    """Why no two of the seeded lines that are kept cross; seeds are a distance (m) apart."""
+    count, longest = seeded.flow.count, float(seeded.flow.lengths.max())
+    short = count - kept.count
+    if short:
+        return InputError(
+            f"no two lamellas cross: {short} of {count} are shorter than minimum_length = {minimum_length:g} median "
+            f"cell edges, the longest of them {longest:.3g} m",
+            "write minimum_length = 0, with which none is left out",
+            "network.minimum_length",
+        )
+    return InputError(
+        f"no two lamellas cross: the longest of {count} is {longest:.3g} m, and they are {distance:.3g} m apart",
+        f"write spacing = {rounded(longest / 3, up=False):g} m or less"
+        if key == "network.spacing"
+        else f"write cells = {int(np.ceil(3 * seeded.count * distance / longest))} or more",
+        key,
+    )
+
+
 def _network(
     ground: Ground,
     seeded: Seeded,
@@ -211,6 +234,7 @@ def _network(
     pattern: Pattern,
     mean_curvature: float,
     distance: float,
+    minimum_length: float,
     key: str,
 ) -> tuple[Network, int, Floats]:
     """The network of the seeded lines that are kept, how many ends lie inside, and what the surface misses, 1/m, (k,).
@@ -219,11 +243,7 @@ def _network(
     operator.
     """
     if not len(crossings.a):
-        raise InputError(
-            f"no two lamellas cross: {flow.count} are {flow.lengths.max(initial=0.0):.3g} m long at most",
-            "raise network.cells, or lower network.spacing and network.minimum_length",
-            key,
-        )
+        raise _none_cross(seeded, flow, distance, minimum_length, key)
     whole = whole_edge(flow, crossings)
     spacing = whole if np.isfinite(whole) else distance
     stops = merged_stops(flow, line_stops(flow, crossings), SAME_NODE * spacing)
