@@ -22,6 +22,7 @@ from lamella.network.lines import is_traced
 from lamella.network.net_mesh import NetMesh, make_net_mesh, onto_surface
 from lamella.network.network import REGULAR, SINGULAR, Network, Period
 from lamella.network.pattern import LAMELLAS, Pattern
+from lamella.network.recut import straightened
 from lamella.network.rim_corners import RimCorners
 from lamella.network.rounding import largest_part, rounded_coordinates, stubs, turned
 from lamella.network.trace_elements import trace_elements
@@ -379,6 +380,9 @@ def lay_net(
     told = ", ".join(f"order {m}" for m in inner)
     progress(f"  {len(inner)} umbilics" + (f" ({told})" if told else ""))
     iso = integrate(mesh, mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)])
+    if seams:
+        iso = straightened(iso, surface)
+        mesh = iso.mesh
     progress(
         f"  isothermic coordinates on {mesh.connectivity.node_count:,} nodes: off by {iso.residual:.1e} of their slope"
     )
