@@ -26,6 +26,8 @@ from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.find import find_film
 
 TAU = 2 * np.pi
+# of the size: twice the error of surfaces on coarse elements; of ends of lamellas on a seam
+ACCURACY, SEAM_ACCURACY = 5e-4, 5e-3
 COARSE = 2e-2
 TURN = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
 TURN *= np.sign(np.linalg.det(TURN))
@@ -90,8 +92,11 @@ def same(one: Network, other: Network, motion: Motion | None = None) -> float:
         mine = one.stop_nodes[one.stop_offsets[k] : one.stop_offsets[k + 1]]
         theirs = other.stop_nodes[other.stop_offsets[j] : other.stop_offsets[j + 1]]
         assert len(mine) == len(theirs), name
-        worst = max(worst, float(np.linalg.norm(one.node_points[mine] - points[theirs], axis=1).max()))
-    return worst / size_of(one)
+        apart = np.linalg.norm(one.node_points[mine] - points[theirs], axis=1) / size_of(one)
+        # a lamella that meets a seam at a small angle ends far along it for a small shift
+        apart[one.node_kinds[mine] == SEAM] *= ACCURACY / SEAM_ACCURACY
+        worst = max(worst, float(apart.max()))
+    return worst
 
 
 def on_a_margin(one: Network, other: Network) -> bool:
@@ -134,6 +139,13 @@ def lobes() -> np.ndarray:
     return np.column_stack([5 * reach * np.cos(t), 4.4 * np.sin(t), height])
 
 
+def skew_ring() -> tuple[np.ndarray, ...]:
+    """A round hole off the middle of a rim that rises and falls: its umbilics are not whole cells apart."""
+    t = TAU * np.arange(20) / 20
+    outer = np.column_stack([6 * np.cos(t), 4.6 * np.sin(t), 1.4 * np.cos(2 * t + 0.3) + 0.3 * np.cos(3 * t)])
+    return outer, np.column_stack([0.5 + 1.3 * np.cos(t), 1.2 * np.sin(t) - 0.2, 0.2 + 0.1 * np.cos(2 * t)])
+
+
 def box_path(width: float, depth: float, height: float) -> np.ndarray:
     """Six edges of a box, each at right angles to the next, around two opposite corners of it."""
     steps = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]])
@@ -146,6 +158,7 @@ CASES = {
     "two rings": Case(rings(), False, 0.0, 14),
     "six beams": Case((box_path(3.0, 3.0, 3.0),), True, 0.0, 12),
     "three lobes": Case((lobes(),), False, 0.02, 13),
+    "skew ring": Case(skew_ring(), False, 0.0, 11),
 }
 
 
@@ -156,9 +169,6 @@ def woven(name: str) -> tuple[ElementSurface, Network]:
     return surface, element_network(surface, cells=case.cells).network
 
 
-# of the size: twice the error of surfaces on coarse elements
-ACCURACY = 5e-4
-
 MOVED = [("four beams", name) for name in MOTIONS] + [
     ("waving", "turned"),
     ("waving", "mirrored"),
@@ -166,7 +176,14 @@ MOVED = [("four beams", name) for name in MOTIONS] + [
     ("six beams", "turned"),
     ("three lobes", "turned"),
     ("three lobes", "mirrored"),
+    ("skew ring", "turned"),
+    ("skew ring", "mirrored"),
 ]
+
+
+def test_the_skew_ring_has_seams() -> None:
+    _, network = woven("skew ring")
+    assert (network.node_kinds == SEAM).sum() >= 8
 
 
 @pytest.mark.parametrize(("case", "motion"), MOVED)
@@ -178,7 +195,15 @@ def test_a_moved_surface_has_the_moved_net(case: str, motion: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "case", ["four beams", "waving", "two rings", "three lobes", pytest.param("six beams", marks=pytest.mark.slow)]
+    "case",
+    [
+        "four beams",
+        "waving",
+        "two rings",
+        "three lobes",
+        "skew ring",
+        pytest.param("six beams", marks=pytest.mark.slow),
+    ],
 )
 def test_finer_elements_have_the_same_net(case: str) -> None:
     _, network = woven(case)
@@ -294,7 +319,7 @@ def test_of_umbilics_alike_the_first_one_goes_with_the_surface() -> None:
 
 
 def drawn(seed: int) -> Case:
-    """Quadrilaterals and hexagons of beams, waving discs with pressure or without, and rings within waving curves."""
+    """Quadrilaterals and hexagons of beams, rings, waving discs with pressure or without, and with a hole."""
     rng = np.random.default_rng(seed)
     kind, cells = seed % 5, int(rng.integers(8, 25))
     if kind == 0:
@@ -306,12 +331,16 @@ def drawn(seed: int) -> Case:
         outer, inner = rings()
         low, high = (1 + 0.15 * rng.uniform(size=(2, 1))) * [1.0, 0.9, 1.0]
         return Case((outer * low, inner * high), False, float(rng.uniform(-0.05, 0.05)), cells)
-    return Case((waving(seed),), False, float(rng.choice([0.0, 0.02, -0.03])), cells)
+    if kind == 3:
+        return Case((waving(seed),), False, float(rng.choice([0.0, 0.02, -0.03])), cells)
+    t = TAU * np.arange(12) / 12
+    hole = np.column_stack([1.2 * np.cos(t), 1.1 * np.sin(t), 0.1 * np.cos(2 * t)]) + rng.uniform(-0.6, 0.6, 3)
+    return Case((waving(seed), hole), False, 0.0, cells)
 
 
 @pytest.mark.slow
 def test_nets_of_random_surfaces_go_with_them() -> None:
-    """Where a net meets itself it is one and the same; where it does not, its seam lies along the elements."""
+    """One and the same net, also where it does not meet itself: its seam is a straight line of the plane of w."""
     alike, seams, ties = 0, 0, 0
     for seed in range(15):
         case = drawn(seed)
@@ -319,9 +348,7 @@ def test_nets_of_random_surfaces_go_with_them() -> None:
         network = element_network(surface, cells=case.cells).network
         double = element_network(surface, cells=2 * case.cells).network
         crossings = network.node_points[np.isin(network.node_kinds, (REGULAR, SINGULAR))]
-        if (network.node_kinds == SEAM).any():
-            seams += 1
-            continue
+        seams += bool((network.node_kinds == SEAM).any())
         assert off(crossings, double.node_points) < 1e-9 * size_of(network), seed
         nets = [(element_network(film(case, 2e-3), cells=case.cells).network, None)]
         nets += [
@@ -335,8 +362,9 @@ def test_nets_of_random_surfaces_go_with_them() -> None:
         assert worst < ACCURACY, seed
         alike += 1
     print(f"{alike} alike, {seams} with seams, {ties} with an end on a margin")
-    assert alike >= 9
-    assert ties <= 1
+    assert alike + ties == 15
+    assert seams >= 3
+    assert ties <= 2
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.network.straight_walk import PARTS, FlatTriangles, Heads, cross
+from lamella.network.straight_walk import PARTS, FlatTriangles, Heads
 from lamella.network.tight_lines import CLEAR, Course, Passed, tightened
 from lamella.surface.points import Complexes, Floats
 
@@ -27,8 +27,10 @@ FAN, RIM_FAN, WIDE = 12, 9, 1.0
 AS_SHORT = 2e-3
 # of a loop: places this near to each other are one
 ONE_PLACE = 0.02
-# times that an end is moved on to the next element
-MOST_MOVES = 4
+# times that an end is moved; it has arrived when it is moved by less than this part of the line's length
+MOST_MOVES, AT_GOAL = 6, 1e-4
+# small triangles around an umbilic that are tried for a line's direction
+MOST_WEDGES = 8
 
 
 @dataclass(frozen=True)
@@ -334,16 +336,25 @@ def _at_right_angles(flat: FlatTriangles, taken: Flags, sight: _Sight) -> Course
 
 def _to_nearest(flat: FlatTriangles, taken: Flags, sight: _Sight) -> tuple[Course, float] | None:
     """A line to the nearest place of a loop, and where its start belongs on its element's edge."""
-    goal = sight.foot
+    start, goal = sight.start, sight.foot
     for _ in range(MOST_MOVES):
-        passed = _followed(flat, taken, sight.start, sight.end, goal)
+        passed = _followed(flat, taken, start, sight.end, goal)
         if passed is None:
             return None
-        line = tightened(flat, sight.start.begin, sight.end, passed)
-        if 0 <= line.last <= 1:
+        line = tightened(flat, start.begin, sight.end, passed)
+        if 0 <= line.last <= 1 and abs(line.goal - goal) < AT_GOAL * sight.length:
             return line.course, line.first
-        goal = line.goal
+        start, goal = replace(start, triangle=int(passed.triangle[0]), edge=int(passed.edge[0])), line.goal
     return None
+
+
+def _next_wedge(flat: FlatTriangles, start: _Start, goal: complex, aside: int) -> tuple[_Start, complex]:
+    """The next small triangle around an umbilic, beyond the last end (aside 1) or the first of the edge opposite."""
+    edge = (start.edge + (1 if aside > 0 else 2)) % 3
+    at = start.triangle, edge
+    triangle, back = int(flat.grid.neighbours[at]), int(flat.grid.neighbour_edges[at])
+    opposite = (back + (2 if aside > 0 else 1)) % 3
+    return _Start(start.begin, triangle, opposite, 0.5), complex(flat.sign[at] * goal + flat.shift[at])
 
 
 def _next_element(flat: FlatTriangles, start: _Start, share: float) -> _Start:
@@ -356,38 +367,48 @@ def _next_element(flat: FlatTriangles, start: _Start, share: float) -> _Start:
 
 def _followed(flat: FlatTriangles, taken: Flags, start: _Start, end: int, goal: complex) -> Passed | None:
     """A line to a goal, from small edge to small edge; None: it comes to what is taken, or to another loop."""
-    at = np.array([start.triangle]), np.array([start.edge])
-    first, last = flat.w[at], flat.w[at[0], (at[1] + 1) % 3]
+    if start.begin >= 0:
+        start, goal = _wedge_of(flat, start, goal)
+    first, last = (complex(flat.w[start.triangle, (start.edge + k) % 3]) for k in (0, 1))
     if start.begin < 0:
-        place = first + start.share * (last - first)
-        head = Heads.out(*at, place, goal - place)
-        passed = [(start.triangle, start.edge, start.share, 1.0, 0j)]
+        origin = first + start.share * (last - first)
+        head = Heads.out(*(np.array([x]) for x in (start.triangle, start.edge, origin, goal - origin)))
+        share = start.share
     else:
-        origin = flat.w[at[0], (at[1] + 2) % 3]
+        corner = (start.edge + 2) % 3
+        origin = complex(flat.w[start.triangle, corner])
         share = _where_crossed(origin, goal - origin, first, last)
-        place = first + share * (last - first)
-        passed = [(start.triangle, start.edge, float(share[0]), 1.0, 0j)]
-        head = Heads.out(at[0], (at[1] + 2) % 3, place, goal - origin).through(flat, at[1], place)
+        head = Heads.out(*(np.array([x]) for x in (start.triangle, corner, origin, goal - origin)))
+        head = head.through(flat, np.array([start.edge]), np.array([origin]))
+    passed = [(start.triangle, start.edge, float(np.clip(share, CLEAR, 1 - CLEAR)), 1.0, 0j)]
     for _ in range(flat.most_steps):
         if taken[head.triangle[0]]:
             return None
-        # aimed anew from where it is: edges are passed clear of their ends
-        head = replace(head, heading=head.sign * goal + head.shift - head.place)
-        edge, share, _ = head.exits(flat)
-        share = np.clip(share, CLEAR, 1 - CLEAR)
-        passed.append(
-            (int(head.triangle[0]), int(edge[0]), float(share[0]), float(head.sign[0]), complex(head.shift[0]))
-        )
+        # `place` stays where the line set out: which vertices lie to its left is a matter of one straight line
+        edge, share_there, _ = head.exits(flat)
+        there = int(head.triangle[0]), int(edge[0]), float(np.clip(share_there[0], CLEAR, 1 - CLEAR))
+        passed.append((*there, float(head.sign[0]), complex(head.shift[0])))
         loop = int(flat.loop[head.triangle, edge][0])
         if loop >= 0:
             return Passed(*(np.array(part) for part in zip(*passed, strict=True))) if end == -1 - loop else None
-        one, other = flat.w[head.triangle, edge], flat.w[head.triangle, (edge + 1) % 3]
-        head = head.through(flat, edge, one + share * (other - one))
+        head = head.through(flat, edge, head.place)
     return None
 
 
-def _where_crossed(origin: Complexes, towards: Complexes, first: Complexes, last: Complexes) -> Floats:
-    """Shares of segments at which lines cross them, clear of their ends."""
-    across = cross(towards, last - first)
-    share = cross(towards, origin - first) / np.where(across == 0, np.inf, across)
-    return np.asarray(np.clip(share, CLEAR, 1 - CLEAR))
+def _wedge_of(flat: FlatTriangles, start: _Start, goal: complex) -> tuple[_Start, complex]:
+    """The small triangle around an umbilic through which the line to a goal leaves it, and the goal on its sheet."""
+    for _ in range(MOST_WEDGES):
+        first, last, origin = (complex(flat.w[start.triangle, (start.edge + k) % 3]) for k in range(3))
+        share = _where_crossed(origin, goal - origin, first, last)
+        if 0 <= share <= 1:
+            break
+        start, goal = _next_wedge(flat, start, goal, 1 if share > 1 else -1)
+    return start, goal
+
+
+def _where_crossed(origin: complex, towards: complex, first: complex, last: complex) -> float:
+    """Share of a segment at which a line crosses it; below 0 or above 1 beyond its ends."""
+    along = last - first
+    across = towards.real * along.imag - towards.imag * along.real
+    apart = origin - first
+    return (towards.real * apart.imag - towards.imag * apart.real) / across if across else 0.5

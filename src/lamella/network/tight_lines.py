@@ -20,7 +20,7 @@ Integers = NDArray[np.int64]
 _CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 _AXES = np.array([_CORNERS[b] - _CORNERS[a] for a, b in EDGES])
 # of a small edge: a line passes as far as this from its ends; of an element's edge on the rim
-CLEAR, CLEAR_RIM = 0.03, 0.01
+CLEAR, CLEAR_RIM = 0.01, 0.01
 # steps of Newton's method, and how far one goes at most
 STEPS, LONGEST_STEP = 12, 0.3
 # of an element's edge: how far beyond it the end of a line is looked for
@@ -136,7 +136,9 @@ def tightened(flat: FlatTriangles, begin: int, end: int, passed: Passed, free: b
     local = one + share[:, None] * (other - one)
     for index, at in ((0, first), (-1, last)) if begin < 0 else ((-1, last),):
         local[index] = _CORNERS[edge[index]] + np.clip(at, CLEAR_RIM, 1 - CLEAR_RIM) * _AXES[edge[index]]
-    return Tight(Course(begin, end, element, edge, local, passed.triangle), first, last, goal)
+    # a place inside that had to keep clear of the end of its small edge is not on the line
+    kept = (edge >= 0) | ((share > CLEAR) & (share < 1 - CLEAR))
+    return Tight(Course(begin, end, element[kept], edge[kept], local[kept], passed.triangle), first, last, goal)
 
 
 def _nearest_pair(
