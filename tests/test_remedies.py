@@ -156,6 +156,18 @@ REFUSED: list[tuple[str, Tables, str, list[Callable[[Tables, str], Tables]]]] = 
         [put("surface.neck_radius", 0)],
     ),
     (
+        "next to infinity",
+        {"surface": SCHERK | {"extent": 1.570796}, "network": {"cells": 5}, "lamella": ONE},
+        "network.cells",
+        [put("network.cells", 0), put("surface.extent", 1)],
+    ),
+    (
+        "principal lines next to infinity",
+        {"surface": SCHERK | {"extent": 1.570796}, "network": {"cells": 4, "kind": "principal"}},
+        "network.cells",
+        [put("network.cells", 0), put("surface.extent", 1)],
+    ),
+    (
         "slots",
         {"surface": UNDULOID, "lamella": ONE, "fabrication": {"slot_width": 1e-3}},
         "fabrication.slot_width",

@@ -73,6 +73,10 @@ class Segments:
         return np.asarray(self.domain.surface.metric(zeta) * np.abs(derivative)).reshape(len(segment), len(sigma))
 
 
+class Stretched(InputError):
+    """Cells stretch so much that no series reaches full accuracy."""
+
+
 class ArcLengths:
     """Arc length along every segment as a Legendre series in 2 sigma - 1.
 
@@ -96,8 +100,7 @@ class ArcLengths:
 
     Raises
     ------
-    InputError
-        The cells stretch so much that no series reaches full accuracy.
+    Stretched
     """
 
     def __init__(self, segments: Pieces, tail: float = TAIL, settle: int = 10**9, points: int = POINTS) -> None:
@@ -106,15 +109,18 @@ class ArcLengths:
         self._series: list[tuple[Floats, Floats]] = []
         self._group, self._member = np.zeros(count, np.int64), np.zeros(count, np.int64)
         left = np.arange(count)
+        reached = 0.0
         while len(left):
             if points > MOST_POINTS:
-                raise InputError(
-                    f"{len(left)} pieces of lamella stretch too much for their length to be measured",
-                    "raise network.cells, or end the surface earlier",
-                    "network.cells",
+                raise Stretched(
+                    f"{len(left)} pieces of lamella stretch too much for their length to be measured: to "
+                    f"{reached:.2g} of the mean speed along them (limit {tail:g})",
+                    where="network.cells",
                 )
             speed, length = _speed_series(segments, left, points)
-            done = (np.abs(speed[-2:]).max(0) <= tail * speed[0]) | (points >= settle)
+            end = np.abs(speed[-2:]).max(0) / speed[0]
+            reached = float(end.max())
+            done = (end <= tail) | (points >= settle)
             self._group[left[done]] = len(self._series)
             self._member[left[done]] = np.arange(done.sum())
             self.length[left[done]] = length[done]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.errors import InputError
-from lamella.network.arcs import ArcLengths, Segments
+from lamella.network.arcs import ArcLengths, Segments, Stretched
 from lamella.network.domain import Lines
 from lamella.network.domain_of import domain_of
 from lamella.network.lattice import build_lattice
@@ -88,7 +88,10 @@ def _nearest(surface: ClosedForm, whole: float, cells: int, spacing: float, patt
             domain = domain_of(surface, whole / count, pattern)
             lines = domain.lines()
             lines = lines.take(lines.end > lines.start)
-            length = ArcLengths(Segments(domain, build_lattice(domain, lines))).length
+            try:
+                length = ArcLengths(Segments(domain, build_lattice(domain, lines))).length
+            except Stretched:
+                length = np.zeros(0)
             misses[count] = abs(float(np.median(length)) - spacing) if len(length) else np.inf
         return misses[count]
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lamella.blocks import blocks
 from lamella.errors import InputError
-from lamella.network.arcs import ArcLengths, Segments
+from lamella.network.arcs import ArcLengths, Segments, Stretched
 from lamella.network.density import Density
 from lamella.network.domain import A
 from lamella.network.domain_of import domain_of
@@ -107,8 +107,18 @@ def trace_closed_form(surface: ClosedForm, density: Density, *, minimum_length: 
     Raises
     ------
     InputError
-        No lamella crosses another one.
+        No lamella crosses another one; or cells that stretch too much, next to where a surface runs to infinity.
     """
+    try:
+        return _traced(surface, density, minimum_length)
+    except Stretched as error:
+        from lamella.network.less_stretched import less_stretched
+
+        remedy = less_stretched(surface, density, lambda other, there: _traced(other, there, minimum_length))
+        raise InputError(error.message, remedy, error.where) from None
+
+
+def _traced(surface: ClosedForm, density: Density, minimum_length: float) -> Network:
     domain = domain_of(surface, density.step, density.pattern)
     lines = domain.lines().every(density.pattern)
     lines = lines.take(lines.end > lines.start)
