@@ -243,6 +243,25 @@ def test_cells_smaller_than_the_strip() -> None:
     assert not warned(tables | {"lamella": tables["lamella"] | {"height": float(height) / 1000}}, "cell edges")
 
 
+@pytest.mark.parametrize(
+    "tables",
+    [
+        pytest.param(
+            {"surface": {"kind": "enneper", "order": 3, "radius": 0.9, "scale": 3.0}, "network": {"cells": 19}},
+            id="enneper",
+        ),
+        pytest.param({"surface": SADDLE, "network": {"cells": 16}}, id="film", marks=pytest.mark.slow),
+    ],
+)
+def test_curves_that_end_just_behind_a_node(tables: Tables) -> None:
+    """With as many cells as are named no cell edge is shorter than a tenth of the strip's height."""
+    tables = tables | {"lamella": ONE | {"height": 0.05, "thickness": 0.001}}
+    message = warned(tables, "shorter than a tenth of the strip's height")
+    other = re.search(r"with (\d+) cells there are none", message)
+    assert other
+    assert not warned(tables | {"network": {"cells": int(other[1])}}, "shorter than a tenth of the strip's height")
+
+
 def arches() -> list[dict[str, Any]]:
     """Four arching sides that meet at about 60 degrees in plan and at more on the film."""
     corners = np.array([[0, 0, 0], [3.5, 0, 0], [3.5, 3.0, 0], [0, 3.0, 0]])
@@ -320,7 +339,12 @@ def test_strips_that_meet_beyond_the_rim(cells: int, layers: int, end_distance: 
     assert message
     if "write fabrication" not in message:
         # no end is short enough: the strips themselves, as wide as their layers, meet
-        assert "move the rim" in message
+        other = re.search(r"with (\d+) cells there are none; or move the rim", message)
+        assert bool(other) == (cells == 17)
+        if other:
+            assert not warned(tables | {"network": {"cells": int(other[1])}}, "beyond the rim")
+        else:
+            assert "with 21 to 29 cells there are such too" in message
         shortest = {"end_distance": 0.0031, "rim_overhang": 0.0}
         assert warned(tables | {"fabrication": shortest}, "beyond the rim")
         return

@@ -26,6 +26,8 @@ LARGE = 250.0
 SLENDER = 2500.0
 # of the strip's height: nodes closer to each other are reported
 SMALL = 0.1
+# of that: shorter edges than this are in no net that is offered, so that there are none on finer elements either
+CLEARLY = 1.2
 # share of the radius of curvature beyond which half the strip's height is no small strip any more
 DEEP = 0.5
 # share of the strength beyond which the stress of layers beside the centre line matters
@@ -80,10 +82,18 @@ def surface_file_cautions(surface: Surface[Any]) -> Iterator[str]:
         )
 
 
-def network_cautions(network: Network, height: float, closing: str = "open", *, traced: bool = False) -> Iterator[str]:
+def network_cautions(
+    network: Network,
+    height: float,
+    closing: str = "open",
+    *,
+    traced: bool = False,
+    without: Callable[[Callable[[Network], bool]], str] | None = None,
+) -> Iterator[str]:
     """Lamellas left out, cells much larger than others or too small for the strip, needless wishes.
 
-    `traced` is whether the lines come from seeds, one by one, and not from a lattice.
+    `traced` is whether the lines come from seeds, one by one, and not from a lattice; `without` finds
+    another number of cells whose net has no such fault, in words (`lamella.other_cells`).
     """
     if closing != "open":
         yield f"network.closing = {closing!r} has nothing to do: every net of a closed-form surface closes by itself"
@@ -107,7 +117,7 @@ def network_cautions(network: Network, height: float, closing: str = "open", *, 
             f"{large[0].ratio:.3g} x ({places}): {_why_large(network, traced, large[0].ratio)}"
         )
     if network.pattern.kind == "lamellas":
-        yield from _small_cells(network, height)
+        yield from _small_cells(network, height, without)
     median = float(np.median(network.cell_edges))
     if median < height and network.pattern.kind == "lamellas":
         yield (
@@ -123,16 +133,19 @@ def _fewer(network: Network, median: float, height: float) -> str:
     return f"at most {cells} cells, or " if cells >= LEAST_CELLS else ""
 
 
-def _small_cells(network: Network, height: float) -> Iterator[str]:
+def _small_cells(
+    network: Network, height: float, without: Callable[[Callable[[Network], bool]], str] | None
+) -> Iterator[str]:
     """Nodes so close to each other that no two slots fit."""
     count, small = small_cells(network, SMALL * height)
     if small:
         places = "; ".join(f"{1000 * one.edge:.2g} mm at ({coordinates(one.point, 3)}) m" for one in small)
         are = "is" if count == 1 else "are"
+        other = without(lambda net: small_cells(net, CLEARLY * SMALL * height)[0] > 0) if without else ""
         yield (
             f"{counted(count, 'cell edge')} {are} shorter than a tenth of the strip's height ({100 * height:.3g} mm), "
-            f"down to {1000 * small[0].edge:.2g} mm ({places}): a lamella ends just behind a node there; another "
-            "number of cells moves its end"
+            f"down to {1000 * small[0].edge:.2g} mm ({places}): a lamella ends just behind a node there"
+            + (f"; {other}" if other else "")
         )
 
 

@@ -16,8 +16,8 @@ from lamella.cautions import order_caution
 from lamella.drawing_origin import drawing_origin, told_from
 from lamella.errors import InputError
 from lamella.network.lines import is_traced
-from lamella.pipeline import Clock, Planned, Results, complete, plan
-from lamella.progress import Progress, silent
+from lamella.pipeline import Planned, Results, complete, plan
+from lamella.progress import Clock, Progress, silent
 from lamella.project import FormFoundTable, MeshTable, Project
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason

@@ -19,7 +19,8 @@ from lamella.network.density import Density, choose_density
 from lamella.network.lines import check_traced, is_traced
 from lamella.network.network import Network
 from lamella.network.trace import trace_closed_form
-from lamella.progress import Progress, silent
+from lamella.other_cells import OtherCells
+from lamella.progress import Clock, Progress, silent
 from lamella.project import FormFoundTable, Project
 from lamella.project_file import located, read_project
 from lamella.strip.lamellas import Lamellas, Section, make_lamellas
@@ -83,24 +84,6 @@ class Results:
     def origin(self) -> Origin:
         """Point of the drawing that points are measured from, m; not 0 where it is in survey coordinates."""
         return drawing_origin(self.surface)
-
-
-class Clock:
-    """CPU seconds of each stage."""
-
-    def __init__(self, progress: Progress) -> None:
-        self.seconds: dict[str, float] = {}
-        self.progress, self._start = progress, 0.0
-
-    def start(self, message: str) -> None:
-        """Say what begins."""
-        self.progress(message)
-        self._start = time.process_time()
-
-    def stop(self, stage: str, result: str) -> None:
-        """Say what has come out of it."""
-        self.seconds[stage] = round(time.process_time() - self._start, 4)
-        self.progress(f"  {result} ({self.seconds[stage]:.2f} s)")
 
 
 Planned = tuple[Surface[Any], "Density | None", "Adjusted | None"]
@@ -317,7 +300,8 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
         if reason:
             depth = 0
             warnings.append(f"the run ends with the surface: it is {reason}, and has no net of lamellas")
-    network = lamellas = parts = nesting = None
+    network = lamellas = parts = nesting = others = None
+    told: list[str] = []
     woven: ElementNetwork | TracedNetwork | None = None
     if depth >= STAGES.index("network"):
         table = project.network
@@ -341,7 +325,9 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
             figures["network"] = f = summary.network_summary(network, woven.requested) | woven.describe()
             if adjusted:
                 figures["network"]["adjustment"] = adjusted.figures
-            warnings += woven.warnings()
+            told = list(woven.warnings())
+            warnings += told
+        others = OtherCells(project, surface, network, len(told))
         clock.stop(
             "network",
             f"{network.cells} cells: {f['lamellas']} lamellas, {f['nodes']:,} nodes, cell edge "
@@ -352,6 +338,7 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
             project.lamella.height,
             table.closing if density else "open",
             traced=is_traced(surface, table.pattern),
+            without=others.without,
         )
     if network and depth >= STAGES.index("lamellas"):
         strip = project.lamella
@@ -377,10 +364,18 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
             at_corner,
         )
         warnings += cautions.layer_cautions(network, lamellas, project.material())
-    if network and lamellas and depth >= STAGES.index("fabrication"):
+    if network and lamellas and others and depth >= STAGES.index("fabrication"):
         cut = project.fabrication
         clock.start("fabrication: parts and sheets")
-        parts = make_parts(network, lamellas, density=project.material().density, **cut.model_dump())
+        parts = make_parts(
+            network,
+            lamellas,
+            density=project.material().density,
+            others=lambda fault: others.without(
+                lambda net: fault(net, make_lamellas(net, section, project.material(), surface=surface))
+            ),
+            **cut.model_dump(),
+        )
         nesting = nest(parts, sheet=cut.sheet, gap=cut.gap)
         figures["fabrication"] = f = summary.fabrication_summary(parts, nesting, figures["surface"]["area"])
         clock.stop("fabrication", f"{f['parts']:,} parts, {f['mass']:.4g} kg, {f['sheets']} sheets")

@@ -1,4 +1,4 @@
-"""Lines of progress while something takes long."""
+"""Lines of progress while something takes long, and how long it took."""
 
 from __future__ import annotations
 
@@ -31,3 +31,21 @@ def patient(progress: Progress) -> Progress:
         progress(message)
 
     return tell
+
+
+class Clock:
+    """CPU seconds of each stage."""
+
+    def __init__(self, progress: Progress) -> None:
+        self.seconds: dict[str, float] = {}
+        self.progress, self._start = progress, 0.0
+
+    def start(self, message: str) -> None:
+        """Say what begins."""
+        self.progress(message)
+        self._start = time.process_time()
+
+    def stop(self, stage: str, result: str) -> None:
+        """Say what has come out of it."""
+        self.seconds[stage] = round(time.process_time() - self._start, 4)
+        self.progress(f"  {result} ({self.seconds[stage]:.2f} s)")

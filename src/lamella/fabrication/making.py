@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,7 @@ def make_parts(
     slot_width: float | None = None,
     sheet: tuple[float, float] = (12.0, 2.0),
     gap: float = 0.01,
+    others: Callable[[Callable[[Network, Lamellas], bool]], str] | None = None,
 ) -> Parts:
     """Flat parts of every lamella.
 
@@ -56,6 +57,8 @@ def make_parts(
         Length and width of the sheets parts are cut from, m.
     gap : float
         Between parts, and from parts to the sheet's edge, m.
+    others : callable, optional
+        Finds another number of cells whose net and lamellas have no such fault, in words.
 
     Returns
     -------
@@ -76,6 +79,7 @@ def make_parts(
     rays = int((degree_a + degree_b)[singular].max(initial=0))
     strips = LayerStrips.of(network, lamellas, slot_width)
     clear = strips.clear_hub(rays)
+    given_hub = hub_radius
     wanted_hub = max(LEAST_HUB, clear) if hub_radius is None else hub_radius
     # the first slot of a ray stays on it
     hub_radius = min(wanted_hub, max(strips.first_slot(crossing) - 1.5 * slot_width, 0.0))
@@ -124,7 +128,24 @@ def make_parts(
                 after[index] = max(after[index], pieces[-1].end - strip.stations[-1])
             parts.extend(pieces)
     notes.collisions, notes.too_far = end_collisions(network, before, after, strips.reach)
-    return Parts(tuple(parts), tuple(notes.sentences(rules, len(network.ids) * strips.kinds, len(parts))))
+    if others and notes.collisions and not notes.ends_help(rules):
+        notes.other_cells = others(
+            lambda net, there: (
+                make_parts(
+                    net,
+                    there,
+                    density=density,
+                    end_distance=end_distance,
+                    rim_overhang=rim_overhang,
+                    hub_radius=given_hub,
+                    slot_width=slot_width,
+                    sheet=sheet,
+                    gap=gap,
+                ).colliding
+            )
+        )
+    warnings = tuple(notes.sentences(rules, len(network.ids) * strips.kinds, len(parts)))
+    return Parts(tuple(parts), warnings, bool(notes.collisions))
 
 
 def _lamella_parts(

@@ -33,6 +33,8 @@ class Notes:
         Pairs of strips whose ends meet beyond the rim.
     too_far : float
         How much shorter the ends would have to be, m.
+    other_cells : str
+        With how many cells no ends meet, in words; empty: not searched.
     hub_cut : float
         Radius (m) asked of the hubs where it would have taken the first slots with it, else 0.
     hub_needed : float
@@ -47,6 +49,7 @@ class Notes:
     unslotted: list[tuple[str, float]] = field(default_factory=list)
     collisions: list[str] = field(default_factory=list)
     too_far: float = 0.0
+    other_cells: str = ""
     hub_cut: float = 0.0
     hub_needed: float = 0.0
 
@@ -110,11 +113,15 @@ class Notes:
                 f"to node{offset} and {1e3 * (spread + 0.75 * between):.1f} mm from a node to an end"
             )
 
+    def ends_help(self, rules: Rules) -> bool:
+        """Whether shorter ends, with their slots still in them, keep strips apart beyond the rim."""
+        return rules.end_distance - self.too_far - ROUNDING > rules.least_end_distance
+
     def _shorter(self, rules: Rules) -> str:
         """Ends so short that no strips meet beyond the rim."""
+        if not self.ends_help(rules):
+            return f"{self.other_cells}; or move the rim" if self.other_cells else "move the rim"
         end_distance = rules.end_distance - self.too_far - ROUNDING
-        if not end_distance > rules.least_end_distance:
-            return "move the rim, or choose another number of cells"
         overhang = max(rules.rim_overhang - self.too_far - ROUNDING, 0.0)
         lengths = f"fabrication.end_distance = {rounded(end_distance, up=False):g}"
         if rules.rim_overhang:

@@ -151,10 +151,13 @@ class Parts:
         In the lamellas' order, pieces of a split one behind each other.
     warnings : tuple of str
         What the user should know about them.
+    colliding : bool
+        Whether strips meet beyond the rim.
     """
 
     parts: tuple[Part, ...]
     warnings: tuple[str, ...]
+    colliding: bool = False
 
     @property
     def mass(self) -> float:
