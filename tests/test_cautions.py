@@ -13,6 +13,7 @@ from exact_elements import sphere_cap
 from lamella import InputError, compute, make_surface, parse_project
 from lamella.cautions import lamella_cautions, network_cautions, surface_file_cautions
 from lamella.network.cell_sizes import small_cells
+from lamella.strip.material import MATERIALS
 
 
 def warnings(kind: str, until: str = "lamellas", tables: dict[str, Any] | None = None, **surface: Any) -> list[str]:
@@ -112,7 +113,17 @@ def test_one_is_and_several_are() -> None:
         utilisation = np.zeros_like(results.lamellas.utilisation)
         utilisation[results.network.sample_offsets[:count]] = 2.5
         lamellas = replace(results.lamellas, utilisation=utilisation)
-        told = next(lamella_cautions(results.mesh, results.network, lamellas, 0.003, 2e8, lambda section: 1.0))
+        told = next(
+            lamella_cautions(
+                results.mesh,
+                results.network,
+                lamellas,
+                0.003,
+                MATERIALS["1.4301"],
+                MATERIALS,
+                lambda section, material: 1.0,
+            )
+        )
         assert told.startswith("utilisation reaches 2.50 in lamella A1 at (")
         assert f"({count} of 48 lamellas {'is' if count == 1 else 'are'} over 1)" in told
 

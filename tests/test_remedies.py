@@ -12,6 +12,7 @@ import pytest
 
 from lamella import InputError, compute, parse_project
 from lamella.check import check_project
+from lamella.strip.material import MATERIALS
 
 Tables = dict[str, Any]
 UNDULOID = {"kind": "unduloid", "neck_radius": 1.6, "bulge_radius": 2.8, "height": [-1.0, 1.0]}
@@ -203,9 +204,9 @@ def warned(tables: Tables, word: str) -> str:
     [
         {"surface": UNDULOID, "lamella": ONE | {"thickness": 0.008}},
         {"surface": CATENOID | {"neck_radius": 0.9}, "lamella": ONE | {"height": 0.12, "marks": "relaxed"}},
-        {"surface": SADDLE, "network": {"cells": 10}, "lamella": ONE | {"thickness": 0.004, "material": "S235"}},
+        {"surface": SCHERK | {"extent": 1.3, "scale": 1.0}, "lamella": ONE | {"material": "C24", "thickness": 0.006}},
     ],
-    ids=["thick", "twisted", "film"],
+    ids=["thick", "twisted", "timber"],
 )
 def test_strips_that_are_overstressed(tables: Tables) -> None:
     """As thin, as low or of a material as strong as is said: no warning is left, and not needlessly far below 1."""
@@ -227,12 +228,47 @@ def test_strips_that_are_overstressed(tables: Tables) -> None:
         "shear_modulus": material.shear_modulus,
         "strength": 1e6 * float(strength[1]),
     }
+    if shear := re.search(r"shear strength of ([\d.]+) MPa", ways):
+        own["shear_strength"] = 1e6 * float(shear[1])
     changed.append(tables | {"materials": {"own": own}, "lamella": tables["lamella"] | {"material": "own"}})
     assert len(changed) > 1
     for there in changed:
         results = compute(parse_project(there))
         assert 0.9 < results.summary["lamellas"]["utilisation_max"] <= 1
         assert not any("utilisation reaches" in message for message in results.summary["warnings"])
+
+
+@pytest.mark.parametrize(
+    ("surface", "strip"),
+    [
+        (UNDULOID, {"thickness": 0.0137}),
+        (CATENOID | {"neck_radius": 0.5}, {"height": 0.12, "thickness": 0.002}),
+        (
+            UNDULOID | {"neck_radius": 0.2, "bulge_radius": 0.3, "height": [-0.3, 0.3]},
+            {"height": 0.2, "thickness": 0.006},
+        ),
+        (CATENOID | {"neck_radius": 0.2}, {"height": 0.12, "thickness": 0.002, "layers": 2}),
+        pytest.param(SADDLE, {"thickness": 0.004, "material": "S235"}, marks=pytest.mark.slow),
+        (SCHERK | {"extent": 1.3, "scale": 1.0}, {"thickness": 0.012, "material": "D40"}),
+    ],
+    ids=["material", "lower", "smaller", "layers", "film", "timber"],
+)
+def test_strips_for_which_no_known_material_is_strong_enough(surface: Tables, strip: Tables) -> None:
+    """No strength above that of all materials is offered: the one named, with the section named, bears the strain."""
+    tables = {"surface": surface, "network": {"cells": 16}, "lamella": ONE | strip}
+    message = warned(tables, "utilisation reaches")
+    ways = message.partition("over 1): ")[2]
+    assert "a strength of" not in message
+    name, rest = re.search(r"lamella.material = '([^']+)'(.*) brings it to 1", ways).groups()  # type: ignore[union-attr]
+    assert name in MATERIALS
+    changed: Tables = {"material": name}
+    for measure in ("thickness", "height"):
+        if found := re.search(rf"{measure} of ([\d.]+) mm", rest):
+            changed[measure] = float(found[1]) / 1000
+    if found := re.search(r"section of ([\d.]+) x ([\d.]+) mm", rest):
+        changed |= {"height": float(found[1]) / 1000, "thickness": float(found[2]) / 1000}
+    results = compute(parse_project(tables | {"lamella": tables["lamella"] | changed}), until="lamellas")
+    assert (0.9 if len(changed) > 1 else 0) < results.summary["lamellas"]["utilisation_max"] <= 1
 
 
 def test_cells_smaller_than_the_strip() -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any, Literal
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,9 @@ from lamella.drawing_origin import coordinates
 from lamella.network.cell_sizes import MOST_RATIO, large_cells, small_cells
 from lamella.network.density import LEAST_CELLS, MOST_NODES
 from lamella.network.network import SINGULAR, Network
+from lamella.overstress import Used, ways_to_stand
 from lamella.strip.lamellas import Lamellas, Section, layer_drift
 from lamella.strip.material import Material
-from lamella.strip.sections import bearable
 from lamella.surface.element.surface import SMOOTHED_ORDER, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
@@ -183,14 +183,15 @@ def lamella_cautions(
     network: Network,
     lamellas: Lamellas,
     slot_width: float,
-    strength: float,
-    utilisation: Callable[[Section], float],
+    material: Material,
+    known: Mapping[str, Material],
+    used: Used,
     at_corner: Callable[[NDArray[np.float64]], str] | None = None,
 ) -> Iterator[str]:
     """Overstress, strips too high for the surface's curvature, layers that differ by more than their slots allow.
 
-    `strength` is the material's, Pa; `utilisation` the largest one of another section of it; `at_corner` what helps
-    at a point next to a corner of the boundary.
+    `known` are materials by name, `used` is the largest utilisation of another section and material; `at_corner` what
+    helps at a point next to a corner of the boundary.
     """
     worst = int(np.argmax(lamellas.utilisation))
     if lamellas.utilisation[worst] > 1:
@@ -201,7 +202,7 @@ def lamella_cautions(
             f"utilisation reaches {lamellas.utilisation[worst]:.2f} in lamella {network.ids[lamella]} at ({point}) m "
             f"({over} of {len(network.ids)} lamellas {'is' if over == 1 else 'are'} over 1): "
             + (at_corner(network.sample_points[worst]) if at_corner else "")
-            + _bearable(lamellas, strength, utilisation)
+            + ways_to_stand(network, lamellas, material, known, used)
         )
     half = lamellas.section.height / 2
     curvature = float(max(np.abs(mesh.k1).max(), np.abs(mesh.k2).max()))
@@ -223,16 +224,6 @@ def lamella_cautions(
                 f"{play * 1000:.3g} mm, up to {drift.max() * 1000:.3g} mm: write lamella.layer_lengths = 'own', or "
                 "choose one layer"
             )
-
-
-def _bearable(lamellas: Lamellas, strength: float, utilisation: Callable[[Section], float]) -> str:
-    """What brings the utilisation to 1."""
-    measures: tuple[Literal["thickness", "height"], ...] = ("thickness", "height")
-    found = {measure: bearable(lamellas.section, measure, utilisation) for measure in measures}
-    ways = [f"a {measure} of {value * 1000:g} mm" for measure, value in found.items() if value is not None]
-    needed = rounded(strength * float(lamellas.utilisation.max()) / 1e6, up=True)
-    ways.append(f"a material as stiff with a strength of {needed:g} MPa")
-    return f"{' or '.join(ways)} brings it to 1"
 
 
 def _nearer(section: Section, share: float) -> str:

@@ -359,8 +359,9 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
             network,
             lamellas,
             project.fabrication.slot_width or 0.0,
-            project.material().strength,
-            lambda other: float(make(other).utilisation.max()),
+            project.material(),
+            project.known_materials(),
+            lambda other, of: float(make(other, material=of).utilisation.max()),
             at_corner,
         )
         warnings += cautions.layer_cautions(network, lamellas, project.material())

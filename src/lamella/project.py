@@ -323,8 +323,11 @@ class Project(Table):
 
     def material(self) -> Material:
         """The material of the lamellas."""
-        own = {name: Material(**table.model_dump()) for name, table in self.materials.items()}
-        return find_material(self.lamella.material, own)
+        return find_material(self.lamella.material, self.known_materials())
+
+    def known_materials(self) -> dict[str, Material]:
+        """All materials by name, the project's own among them."""
+        return MATERIALS | {name: Material(**table.model_dump()) for name, table in self.materials.items()}
 
     def to_toml(self) -> str:
         """The project with its defaults filled in, as TOML (`Results.project` has those of the pipeline as well)."""

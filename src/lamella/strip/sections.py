@@ -14,6 +14,8 @@ MARGIN = 0.995
 # of the present measure, below which it is no remedy
 LEAST = 0.2
 HALVINGS = 6
+# a section of this share of the present one in height and thickness is no strip any more
+LEAST_SCALE = 1e-3
 
 
 def bearable(
@@ -53,3 +55,24 @@ def bearable(
         middle = (low * high) ** 0.5
         low, high = (middle, high) if fits(middle) else (low, middle)
     return rounded(MARGIN * low, up=False)
+
+
+def bearable_scale(section: Section, utilisation: Callable[[Section], float]) -> tuple[float, float] | None:
+    """The largest height and thickness, m, in the present proportion with which no lamella is overstressed.
+
+    None: not even a section of `LEAST_SCALE` of the present one would do.
+    """
+
+    def scaled(share: float) -> Section:
+        return replace(section, height=share * section.height, thickness=share * section.thickness)
+
+    high, low = 1.0, 0.5
+    while utilisation(scaled(low)) > 1:
+        high, low = low, low / 2
+        if low < LEAST_SCALE:
+            return None
+    for _ in range(HALVINGS):
+        middle = (low * high) ** 0.5
+        low, high = (middle, high) if utilisation(scaled(middle)) <= 1 else (low, middle)
+    small = scaled(MARGIN * low)
+    return rounded(small.height, up=False), rounded(small.thickness, up=False)
