@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lamella import InputError, parse_project
+from lamella import InputError, compute, make_surface, parse_project
+from lamella.check import check_project
 from lamella.project import FormFoundTable
 from lamella.surface.boundary import boundary_loops
 from lamella.surface.boundary.curve import Loop
@@ -50,6 +51,51 @@ def test_a_zigzag() -> None:
     assert kept
     (loop,) = loops_of(ellipse(int(kept[1]), 0.3), most_nodes=90_000)
     assert len(loop.corners) == int(kept[1]) == 36
+
+
+class Told(Exception):
+    """Ends a search as soon as it has said what is looked for."""
+
+
+@pytest.mark.parametrize(("count", "teeth"), [(30, 0.0), (60, 0.3), (150, 0.0)])
+def test_what_many_corners_cost_is_said_at_once(count: int, teeth: float) -> None:
+    """Before a film is looked for, with the nodes, the time and what takes less; by a check and by a run."""
+    boundary = [{"points": ellipse(count, teeth).tolist(), "interpolation": "polyline"}]
+    project = parse_project({"surface": {"kind": "form-found", "boundary": boundary}})
+    for start in (check_project, compute):
+        told: list[str] = []
+
+        def tell(line: str, told: list[str] = told) -> None:
+            told.append(line)
+            if "corners" in line:
+                raise Told
+
+        with pytest.raises(Told):
+            start(project, progress=tell)
+        assert not any("nodes of order" in line for line in told)
+        found = re.search(r"has (\d+) corners.* about ([\d,]+) to ([\d,]+) nodes .* about (\d+) min", told[-1])
+        assert found
+        corners, least, most, minutes = (int(number.replace(",", "")) for number in found.groups())
+        assert (corners, least, most) == (count, 1000 * count, 2700 * count)
+        assert minutes == max(round(2.7 * count / 60), 1)
+        assert ("most_nodes" in told[-1]) == (most > 100_000)
+
+
+@pytest.mark.parametrize(
+    ("interpolation", "surface"),
+    [
+        pytest.param("spline", {}, id="spline"),
+        pytest.param("polyline", {"tolerance": 0.2}, id="tolerance", marks=pytest.mark.slow),
+    ],
+)
+def test_what_takes_less_is_found_in_seconds(interpolation: str, surface: dict[str, Any]) -> None:
+    """Followed, what is said to take less is not said again, and the film takes fewer nodes than were said."""
+    boundary = [{"points": ellipse(36).tolist(), "interpolation": interpolation}]
+    project = parse_project({"surface": {"kind": "form-found", "boundary": boundary, **surface}})
+    told: list[str] = []
+    found = make_surface(project, progress=told.append)
+    assert not any("corners" in line for line in told)
+    assert len(found.nodes) < 36 * 1000  # type: ignore[attr-defined]
 
 
 def test_what_is_not_refused() -> None:

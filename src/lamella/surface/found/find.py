@@ -62,13 +62,15 @@ def surface_of_table(table: FormFoundTable, folder: Path, progress: Progress = s
 
 def _of_table(table: FormFoundTable, folder: Path, progress: Progress) -> ElementSurface:
     from lamella.surface.boundary import boundary_loops
+    from lamella.surface.boundary.corner_cost import corner_cost
 
     if table.origin:
         progress(f"  {measured_from(table.origin)}")
     loops = boundary_loops(table, folder)
     remarks = remarks_on(loops)
-    for remark in remarks:
-        progress(f"  {remark}")
+    for remark in (*remarks, corner_cost(loops, table.most_nodes, table.tolerance)):
+        if remark:
+            progress(f"  {remark}")
     found = find_film(
         loops,
         table.mean_curvature or 0.0,
