@@ -298,6 +298,21 @@ def test_curves_that_end_just_behind_a_node(tables: Tables) -> None:
     assert not warned(tables | {"network": {"cells": int(other[1])}}, "shorter than a tenth of the strip's height")
 
 
+@pytest.mark.slow
+def test_faces_that_are_left_out() -> None:
+    """Around an umbilic that is no node, next to the rim; with as many cells as are named none is left out."""
+    t = 2 * np.pi * np.arange(12) / 12
+    draw = np.random.default_rng(7)
+    waves = zip((2, 3, 4), draw.uniform(0.2, 0.7, 3), draw.uniform(0, 6, 3), strict=True)
+    z = sum(a * np.cos(k * t + b) for k, a, b in waves)
+    points = np.stack([4 * np.cos(t), 3 * np.sin(t), z], axis=1).round(3)
+    surface = {"kind": "form-found", "tolerance": 2e-2, "boundary": [{"points": points.tolist()}]}
+    tables: Tables = {"surface": surface, "network": {"cells": 5}, "lamella": ONE}
+    other = re.search(r"with (\d+) cells there are none", warned(tables, "more than six corners"))
+    assert other
+    assert not warned(tables | {"network": {"cells": int(other[1])}}, "more than six corners")
+
+
 def arches() -> list[dict[str, Any]]:
     """Four arching sides that meet at about 60 degrees in plan and at more on the film."""
     corners = np.array([[0, 0, 0], [3.5, 0, 0], [3.5, 3.0, 0], [0, 3.0, 0]])

@@ -105,9 +105,10 @@ def network_cautions(
         )
     if len(network.faces_left_out):
         places = "; ".join(coordinates(point, 3) for point in network.node_points[network.faces_left_out[:3]])
+        other = without(lambda net: len(net.faces_left_out) > 0) if without else ""
         yield (
             f"{counted(len(network.faces_left_out), 'face')} of more than six corners between lamellas and rim left "
-            f"out (near {places} m): with {2 * network.cells} cells they are about half as large"
+            f"out (near {places} m): {other or f'with {2 * network.cells} cells they are about half as large'}"
         )
     count, large = large_cells(network)
     if large:

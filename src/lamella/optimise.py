@@ -243,7 +243,11 @@ def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell)
     lines = polylines(given.mesh)
     long = [line for line in lines if len(line) >= STRIP_POINTS]
     if not long:
-        raise InputError("no polyline has four vertices", "use a larger mesh")
+        longest = max((len(line) for line in lines), default=0)
+        raise InputError(
+            f"no polyline has {STRIP_POINTS} vertices, the longest has {longest}",
+            f"give a mesh with at least {STRIP_POINTS - 1} quads in a row",
+        )
     if wishes.rounds is not None:
         common["rounds"] = wishes.rounds
     surface = _surface(given, wishes, tell)

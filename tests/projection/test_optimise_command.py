@@ -5,6 +5,7 @@ what is told of the mesh, exit codes, refusals that write nothing.
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -144,6 +145,23 @@ def test_not_all_conditions_exits_with_1(tmp_path: Path, capsys: pytest.CaptureF
     assert "the way to 0.97 ended there: iterations used up" in capsys.readouterr().err
     run(put(tmp_path / "b.ply", patch), "sphere-stars", "--radius", 2, "--iterations", 1, code=1)
     assert "allow more with --iterations" in capsys.readouterr().err
+
+
+def test_meshes_too_small_for_planar_strips(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Refused with the vertices there are and that are needed; with as many quads in a row as are named it goes."""
+    (tmp_path / "u.toml").write_text(PROJECT)
+    options = ["--as", "planar", "--height", "0.05", "--surface", str(tmp_path / "u.toml"), "--rounds", "1"]
+    centre = 0.25 * UNDULOID.period
+    small = put(tmp_path / "a.ply", lamella_patch(UNDULOID, 3, 0.2, centre))
+    assert main(["optimise", str(small), "--out", str(tmp_path / "s.ply"), *options]) == 2
+    said = capsys.readouterr().err
+    found = re.search(r"no polyline has (\d+) vertices, the longest has (\d+)\s+remedy: .*at least (\d+) quads", said)
+    assert found
+    needed, longest, quads = map(int, found.groups())
+    assert (needed, longest) == (4, 3)
+    assert not (tmp_path / "s.ply").exists()
+    large = put(tmp_path / "b.ply", lamella_patch(UNDULOID, quads + 1, 0.2, centre))
+    assert main(["optimise", str(large), "--out", str(tmp_path / "s.ply"), *options]) == 0
 
 
 def test_planar_strips(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
