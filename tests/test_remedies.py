@@ -290,9 +290,17 @@ def test_cells_smaller_than_the_strip() -> None:
     ],
 )
 def test_curves_that_end_just_behind_a_node(tables: Tables) -> None:
-    """With as many cells as are named no cell edge is shorter than a tenth of the strip's height."""
+    """With as many cells, or a strip as low, as is named no cell edge is shorter than a tenth of the strip's height."""
     tables = tables | {"lamella": ONE | {"height": 0.05, "thickness": 0.001}}
     message = warned(tables, "shorter than a tenth of the strip's height")
+    # half of the height and more is offered
+    low = re.search(r"a strip up to ([\d.]+) mm high", message)
+    down = re.search(r"down to ([\d.]+) mm", message)
+    assert down
+    assert bool(low) == (float(down[1]) > 2.5)
+    if low:
+        strip = tables["lamella"] | {"height": float(low[1]) / 1000}
+        assert not warned(tables | {"lamella": strip}, "shorter than a tenth of the strip's height")
     other = re.search(r"with (\d+) cells there are none", message)
     assert other
     assert not warned(tables | {"network": {"cells": int(other[1])}}, "shorter than a tenth of the strip's height")

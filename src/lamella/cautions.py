@@ -26,7 +26,9 @@ LARGE = 250.0
 SLENDER = 2500.0
 # of the strip's height: nodes closer to each other are reported
 SMALL = 0.1
-# of that: shorter edges than this are in no net that is offered, so that there are none on finer elements either
+# of the strip's height: one lower than that is another design, and is not offered
+LOWER = 0.5
+# of SMALL: shorter edges than this are in no net that is offered, so that there are none on finer elements either
 CLEARLY = 1.2
 # share of the radius of curvature beyond which half the strip's height is no small strip any more
 DEEP = 0.5
@@ -142,11 +144,13 @@ def _small_cells(
     if small:
         places = "; ".join(f"{1000 * one.edge:.2g} mm at ({coordinates(one.point, 3)}) m" for one in small)
         are = "is" if count == 1 else "are"
+        lower = rounded(1000 * small[0].edge / SMALL, up=False)
         other = without(lambda net: small_cells(net, CLEARLY * SMALL * height)[0] > 0) if without else ""
         yield (
             f"{counted(count, 'cell edge')} {are} shorter than a tenth of the strip's height ({100 * height:.3g} mm), "
             f"down to {1000 * small[0].edge:.2g} mm ({places}): a lamella ends just behind a node there"
             + (f"; {other}" if other else "")
+            + (f"; a strip up to {lower:g} mm high has room there" if lower >= 1000 * LOWER * height else "")
         )
 
 
