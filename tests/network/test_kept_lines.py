@@ -204,7 +204,7 @@ def test_what_is_refused(tmp_path: Path) -> None:
         assert refused.value.where == f"network.{key}"
     rng = np.random.default_rng(3)
     write_grid(
-        tmp_path / "m.obj", lambda u, v: (u, v, u * v / 4 + rng.normal(0, 0.04, len(u))), (-2, 2), (-2, 2), 12, 12
+        tmp_path / "m.obj", lambda u, v: (u, v, u * v / 4 + rng.normal(0, 0.15, len(u))), (-2, 2), (-2, 2), 12, 12
     )
     with pytest.raises(InputError, match="too rough"):
         run_on(tmp_path / "m.obj", normal_curvature=0.0)

@@ -13,7 +13,6 @@ from lamella.drawing_origin import measured_from, origin_figure, told_from
 from lamella.errors import InputError
 from lamella.progress import Progress, silent
 from lamella.surface.boundary import Loop, check_loops
-from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.found.film import Film, harmonic_over_itself
 from lamella.surface.found.find import adapted, notes_on
@@ -23,7 +22,7 @@ from lamella.surface.imported.as_film import as_film, border_loops
 from lamella.surface.imported.clean import CleanMesh, clean
 from lamella.surface.imported.edges import face_normals, find_edges, vertex_areas
 from lamella.surface.imported.fit import Fit, fit_mean_curvature
-from lamella.surface.imported.keep import kept_surface
+from lamella.surface.imported.keep import distances, kept_surface
 from lamella.surface.imported.nearest import nearest_of_family
 from lamella.surface.imported.raw_mesh import Floats, RawMesh
 from lamella.surface.imported.read_mesh import read_mesh
@@ -82,6 +81,40 @@ def _meant(raw: RawMesh, table: MeshTable, progress: Progress) -> ElementSurface
     if table.mean_curvature == "varying":
         kept = kept_surface(mesh, loops, table, raw.source, notes, progress)
         return replace(kept, figures=kept.figures | origin_figure(raw.origin))
+    try:
+        return _constant(raw, mesh, loops, notes, table, progress)
+    except InputError as error:
+        if not error.remedy.startswith(KEEP):
+            raise
+        raise _with_open_ways(error, mesh, loops, table, raw.source) from None
+
+
+def _with_open_ways(
+    error: InputError, mesh: CleanMesh, loops: tuple[Loop, ...], table: MeshTable, source: str
+) -> InputError:
+    """An error that offers to keep the mesh's own surface; without that offer where this is refused too."""
+    if _crumpled(mesh):
+        return InputError(error.message, error.remedy.removeprefix(f"{KEEP}; or "), error.where)
+    try:
+        kept_surface(mesh, loops, table, source, (), silent)
+    except InputError as refused:
+        return InputError(
+            f'{error.message}; with mean_curvature = "varying" {refused.message}',
+            f"{refused.remedy}{error.remedy.removeprefix(KEEP)}",
+            refused.where,
+        )
+    return error
+
+
+def _constant(
+    raw: RawMesh,
+    mesh: CleanMesh,
+    loops: tuple[Loop, ...],
+    notes: tuple[str, ...],
+    table: MeshTable,
+    progress: Progress,
+) -> ElementSurface:
+    """The surface of constant mean curvature that a mesh means."""
     fit = fit_mean_curvature(mesh.points, mesh.faces)
     given = None if table.mean_curvature == "fit" else float(table.mean_curvature)
     progress(
@@ -104,7 +137,7 @@ def _meant(raw: RawMesh, table: MeshTable, progress: Progress) -> ElementSurface
 
     found = adapted(first, settled, table.tolerance, table.most_nodes, first.steps, False, progress)
     mean_curvature = found.equilibrium.mean_curvature
-    distance = _distances(found.equilibrium.film, mesh.points)
+    distance = distances(found.equilibrium.film, mesh.points)
     _refuse_far(distance, found.equilibrium)
     for note in (*mesh.notes, *notes):
         progress(f"  {note}")
@@ -151,7 +184,7 @@ def _coarse(
         raise
     if free:
         first = nearest_of_family(first, mesh.points, areas, progress)
-    distance = _distances(first.film, mesh.points)
+    distance = distances(first.film, mesh.points)
     typical = float(np.sqrt(areas @ distance**2 / areas.sum()))
     progress(f"  nearest to the vertices: H = {first.mean_curvature:.6g} 1/m, {1000 * typical:.3g} mm off")
     # vertices off by d change the curvature of edges of length h by up to 8 d / h^2
@@ -182,12 +215,6 @@ def _crumpled(mesh: CleanMesh) -> bool:
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     one, other = (find_edges(mesh.faces).inner_pairs // 3).T
     return bool((normals[one] * normals[other]).sum(1).mean() < CRUMPLED)
-
-
-def _distances(film: Film, points: Floats) -> Floats:
-    """Distances of points from a film, m, (n,)."""
-    _, position = ClosestPoint(film.connectivity, film.nodes)(points)
-    return np.asarray(np.linalg.norm(position - points, axis=1))
 
 
 def _refuse_far(distance: Floats, here: Equilibrium) -> None:

@@ -13,6 +13,7 @@ doi:10.1016/j.cma.2003.12.032.)
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,7 +22,7 @@ from scipy.sparse.linalg import splu
 
 from lamella.errors import InputError
 from lamella.progress import Progress
-from lamella.surface.boundary import Loop
+from lamella.surface.boundary import Loop, check_loops
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.curvature import element_points, frames
 from lamella.surface.element.edge_basis import edge_rule
@@ -31,12 +32,12 @@ from lamella.surface.element.varying import VaryingSurface
 from lamella.surface.found.film import Film
 from lamella.surface.found.meshing import start_sizes, with_sizes
 from lamella.surface.found.no_film import NoFilmError
-from lamella.surface.imported.as_film import as_film
+from lamella.surface.imported.as_film import as_film, border_loops
 from lamella.surface.imported.clean import CleanMesh
-from lamella.surface.imported.edges import vertex_areas
+from lamella.surface.imported.edges import Booleans, vertex_areas, vertex_normals
 from lamella.surface.imported.raw_mesh import Integers
 from lamella.surface.imported.vertex_fits import VertexFits, disagreement, fit_vertices, through_vertices
-from lamella.surface.imported.vertex_noise import without_scatter
+from lamella.surface.imported.vertex_noise import READING, Smoothed, without_scatter
 from lamella.surface.points import Floats
 
 if TYPE_CHECKING:
@@ -62,6 +63,10 @@ RELAXED_ORDER = 3
 RELAXING = 3
 # of the curvature scale: a mesh whose curvature jumps by more is refused
 ROUGHEST = 0.5
+# of the curvature scale: what scatter leaves open at half of the vertices; with more, even signs are unknown
+OPEN = 1.0
+# of that limit, what a scatter that is offered may leave open in each of some draws; halvings until one does
+ENOUGH, DRAWS, MOST_HALVINGS = 0.7, 3, 6
 
 
 class Kept(NamedTuple):
@@ -70,14 +75,11 @@ class Kept(NamedTuple):
     Attributes
     ----------
     film : Film
-    distance : (n,)
-        Of the mesh's vertices, m.
     jump : float
         Root mean square of the jump of the curvature between elements, over the curvature scale.
     """
 
     film: Film
-    distance: Floats
     jump: float
 
 
@@ -216,7 +218,7 @@ def kept_film(
         )
         if best is not None and jump >= best.jump:
             break
-        best = Kept(film, distance, jump)
+        best = Kept(film, jump)
         if jump <= AIM * tolerance or bool((least(mesh.points) >= wanted(mesh.points)).all()):
             break
     assert best is not None
@@ -263,7 +265,7 @@ def through_film(
     )
     if jump > SMOOTH:
         return None
-    return Kept(film, np.linalg.norm(film.nodes[: len(mesh.points)] - mesh.points, axis=1), jump)
+    return Kept(film, jump)
 
 
 def _relaxed(film: Film, vertices: int, detail: Progress) -> Film:
@@ -282,11 +284,11 @@ def _relaxed(film: Film, vertices: int, detail: Progress) -> Film:
     return film
 
 
-def vertex_errors(film: Film, fits: VertexFits, faces: Integers) -> Floats:
+def vertex_errors(film: Film, fits: VertexFits, faces: Integers, smoothed: Smoothed | None) -> Floats:
     """How far normal curvatures of a film may be off at each vertex of its mesh, 1/m, (v,).
 
     What the fits around neighbouring vertices disagree by is what they are off themselves, and the film may depart
-    from them.
+    from them. Of vertices that scattered, what the scatter leaves unknown comes in addition, at the border as well.
     """
     connectivity = film.connectivity
     vertex, element, local = _seen_at_vertices(film, fits.points, faces)
@@ -297,7 +299,9 @@ def vertex_errors(film: Film, fits: VertexFits, faces: Integers) -> Floats:
     off = np.einsum("abn,anc,bnd->ncd", own, axes, axes) - fits.second_forms(vertex, fits.points[vertex])
     result = np.zeros(len(fits.points))
     np.maximum.at(result, vertex, np.linalg.norm(off, axis=(1, 2)))
-    return np.asarray(disagreement(fits, faces) + result)
+    if smoothed is None:
+        return np.asarray(disagreement(fits, faces) + result)
+    return np.asarray(disagreement(fits, faces, 1.0) + smoothed.curvature_error + result)
 
 
 def _seen_at_vertices(film: Film, points: Floats, faces: Integers) -> tuple[Integers, Integers, Floats]:
@@ -326,20 +330,23 @@ def kept_surface(
         The mesh is so rough that it has no curvature to speak of.
     """
     progress("  laying smooth elements through the vertices")
+    given = mesh.points
     flat = as_film(mesh, loops)
     # the border's vertices are where their curves are
-    points = flat.nodes
-    smoothed = without_scatter(points, mesh.faces, flat.mesh.loop >= 0)
-    fits = fit_vertices(points, mesh.faces)
+    fits = fit_vertices(flat.nodes, mesh.faces)
     kept = through_film(mesh, flat, loops, fits, table, progress)
-    scatter = float(np.sqrt((disagreement(fits, mesh.faces) ** 2).mean()))
-    if smoothed is not None and (kept is None or scatter > ROUGH * _scale(kept.film)):
-        fits = fit_vertices(smoothed.points, mesh.faces)
+    smoothed = None
+    uneven = float(np.sqrt((disagreement(fits, mesh.faces) ** 2).mean()))
+    if kept is None or uneven > ROUGH * _scale(kept.film):
+        smoothed = without_scatter(given, mesh.faces, flat.mesh.loop >= 0)
+    if smoothed is not None:
+        mesh = replace(mesh, points=smoothed.points)
+        loops, notes = border_loops(mesh, table.corner_angle)
+        check_loops(loops)
+        notes += (_moved(smoothed, given, flat.mesh.loop >= 0),)
+        flat = as_film(mesh, loops)
+        fits = fit_vertices(flat.nodes, mesh.faces, READING)
         kept = through_film(mesh, flat, loops, fits, table, progress)
-        notes += (
-            f"its vertices scatter by {1000 * smoothed.scatter:.2g} mm about a smooth surface; that was taken, which "
-            f"moves vertices by up to {1000 * smoothed.move:.2g} mm",
-        )
     if kept is None:
         kept = kept_film(mesh, loops, table.order, table.tolerance, table.most_nodes, progress)
     film, scale = kept.film, _scale(kept.film)
@@ -352,8 +359,11 @@ def kept_surface(
         )
     for note in (*mesh.notes, *notes):
         progress(f"  {note}")
-    errors = vertex_errors(film, fits, mesh.faces)
+    errors = vertex_errors(film, fits, mesh.faces, smoothed)
     typical = float(np.sqrt(np.average(errors**2, weights=vertex_areas(mesh.points, mesh.faces)))) / scale
+    if smoothed is not None and np.median(errors) > OPEN * scale:
+        raise _too_scattered(smoothed, mesh.faces, flat.mesh.loop >= 0, float(np.median(errors)) / scale, scale)
+    distance = distances(film, given)
     doubts: tuple[str, ...] = ()
     if typical > table.tolerance:
         doubts = (
@@ -371,8 +381,9 @@ def kept_surface(
         "curvature_error": typical,
         "source": source,
         "treatment": [*mesh.notes, *notes],
-        "distance_max": float(kept.distance.max()),
-        "distance_rms": float(np.sqrt((kept.distance**2).mean())),
+        "vertex_scatter": smoothed.scatter if smoothed else 0.0,
+        "distance_max": float(distance.max()),
+        "distance_rms": float(np.sqrt((distance**2).mean())),
         "tolerance": table.tolerance,
     }
     mean = _mean(film)
@@ -380,6 +391,58 @@ def kept_surface(
     return VaryingSurface(
         "mesh", mean, basis, film.nodes, rim_loop, figures, doubts, vertices=mesh.points, vertex_errors=errors
     )
+
+
+def _moved(smoothed: Smoothed, given: Floats, border: Booleans) -> str:
+    """What was done to vertices that scatter."""
+    move = 1000 * np.linalg.norm(smoothed.points - given, axis=1)
+    rim = float(move[border].max(initial=0))
+    return (
+        f"its vertices scatter by {1000 * smoothed.scatter:.2g} mm (standard deviation) about a smooth surface; that "
+        f"was taken, which moves vertices by up to {move.max():.2g} mm ({np.sqrt((move**2).mean()):.2g} mm root mean "
+        f"square), " + (f"those of the border by up to {rim:.2g} mm" if rim else "none of the border")
+    )
+
+
+def _too_scattered(smoothed: Smoothed, faces: Integers, border: Booleans, error: float, scale: float) -> InputError:
+    enough = _endurable(smoothed, faces, border, scale)
+    return InputError(
+        f"the mesh is too rough to tell a curvature: its vertices scatter by {1000 * smoothed.scatter:.2g} mm "
+        f"(standard deviation) about a smooth surface, which leaves normal curvatures open by {error:.2g} of the "
+        f"curvature scale {scale:.4g} 1/m at half of them (limit {OPEN:g})",
+        f"with these edges vertices have to be known to {1000 * enough:.2g} mm (standard deviation)"
+        if enough
+        else "give a finer mesh: with these edges no scatter is small enough",
+        "surface.file",
+    )
+
+
+def _endurable(smoothed: Smoothed, faces: Integers, border: Booleans, scale: float) -> float:
+    """A scatter of the same mesh that leaves half of its curvatures open by less than the limit, m; 0: there is none.
+
+    By draws, since what is left open does not go with the scatter in proportion: more of it is smoothed more.
+    """
+    normals = vertex_normals(smoothed.points, faces)
+    for scatter in smoothed.scatter * np.cumprod(np.full(MOST_HALVINGS, 0.5)):
+        for seed in range(DRAWS):
+            noise = scatter * np.random.default_rng(seed).normal(size=(len(normals), 1))
+            points = smoothed.points + noise * normals
+            found = without_scatter(points, faces, border)
+            if found is None:
+                errors = disagreement(fit_vertices(points, faces), faces)
+            else:
+                errors = disagreement(fit_vertices(found.points, faces, READING), faces, 1.0) + found.curvature_error
+            if np.median(errors) > ENOUGH * OPEN * scale:
+                break
+        else:
+            return float(scatter)
+    return 0.0
+
+
+def distances(film: Film, points: Floats) -> Floats:
+    """Distances of points from a film, m, (n,)."""
+    _, position = ClosestPoint(film.connectivity, film.nodes)(points)
+    return np.asarray(np.linalg.norm(position - points, axis=1))
 
 
 def _mean(film: Film) -> float:

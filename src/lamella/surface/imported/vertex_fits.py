@@ -38,6 +38,9 @@ leaves open. On coarse meshes that is a third of the error of even weights."""
 NEWTON = 4
 """Steps to a graph; quadratic from within the sagitta of an edge."""
 
+LEAST_RISE = 0.01
+"""Of directions from a graph, per length: flatter ones meet it where it says nothing."""
+
 ONE_SIDED = 3.0
 """What fits with all their vertices on one side err by over what they disagree by: measured up to 2.2, on a torus."""
 
@@ -80,7 +83,10 @@ class VertexFits:
             graph = (_powers(x, y) * c).sum(1)
             zx = (i * x[:, None] ** np.maximum(i - 1, 0) * y[:, None] ** j * c).sum(1) / reach
             zy = (j * x[:, None] ** i * y[:, None] ** np.maximum(j - 1, 0) * c).sum(1) / reach
-            t -= (z - graph) / (step[2] - zx * step[0] - zy * step[1])
+            rise = step[2] - zx * step[0] - zy * step[1]
+            rise = np.where(np.abs(rise) < LEAST_RISE, np.copysign(LEAST_RISE, rise), rise)
+            # where a graph is met nowhere near, as between the sides of a slit, steps must not run off
+            t -= np.clip((z - graph) / rise, -reach, reach)
         return t
 
     def second_forms(self, vertex: Integers, there: Floats) -> Floats:
@@ -120,15 +126,15 @@ def _powers(x: Floats, y: Floats) -> Floats:
     return np.asarray(x[..., None] ** EXPONENTS[:, 0] * y[..., None] ** EXPONENTS[:, 1])
 
 
-def fit_vertices(points: Floats, faces: Integers) -> VertexFits:
-    """Fit a graph through and around each vertex (v, 3) of a clean mesh."""
+def fit_vertices(points: Floats, faces: Integers, degree: int = 4) -> VertexFits:
+    """Fit a graph of a degree, at most, through and around each vertex (v, 3) of a clean mesh."""
     normals = vertex_normals(points, faces)
     first, second = tangents(normals)
     coefficients, reach = np.zeros((len(points), len(EXPONENTS))), np.ones(len(points))
     for block in local_heights(points, faces, normals, 0):
         others = block.present & (block.neighbours != block.vertices[:, None])
         weight = np.where(others, 1 / (NEAR + block.x**2 + block.y**2) ** FALL, 0)
-        found = solved(_powers(block.x, block.y), weight, block.z, others)
+        found = solved(_powers(block.x, block.y)[:, :, : TERMS[degree]], weight, block.z, others)
         coefficients[block.vertices, : found.shape[1]] = found * block.reach[:, None]
         reach[block.vertices] = block.reach
     return VertexFits(points, first, second, normals, coefficients, reach)
@@ -153,16 +159,19 @@ def local_heights(points: Floats, faces: Integers, normals: Floats, neighbours: 
         offset = points[around] - points[vertices][:, None, :]
         present = present & (np.einsum("vkj,vj->vk", normals[around], normals[vertices]) > SAME_SIDE)
         x, y, z = (np.einsum("vkj,vj->vk", offset, axis[vertices]) for axis in (first, second, normals))
-        reach = np.maximum(np.where(present, np.hypot(x, y), 0).max(axis=1), np.finfo(float).tiny)
+        away = np.hypot(x, y)
+        reach = np.where(present, away, 0).max(axis=1)
+        # a vertex of which all neighbours lie on another side, at the end of a slit say: a plane, over their distance
+        reach = np.where(reach > 0, reach, np.maximum(away.max(axis=1), np.linalg.norm(offset, axis=2).max(axis=1)))
         x, y, z = (np.where(present, part, 0) / reach[:, None] for part in (x, y, z))
         yield Heights(vertices, around, present, reach, x, y, z)
 
 
 def solved(basis: Floats, weight: Floats, z: Floats, present: Booleans) -> Floats:
     """Coefficients (v, terms) of the nearest polynomials, of as high a degree as the vertices there (v, k) can say."""
-    extra = basis.shape[2] - len(EXPONENTS)
     fewest = int(present.sum(axis=1).min())
-    terms = next((count for count in TERMS.values() if fewest >= NEIGHBOURS_PER_TERM * count), TERMS[1]) + extra
+    known = (count for count in TERMS.values() if count <= basis.shape[2] and fewest >= NEIGHBOURS_PER_TERM * count)
+    terms = next(known, TERMS[1])
     basis = basis[:, :, :terms]
     weighted = basis * weight[:, :, None]
     matrix = weighted.transpose(0, 2, 1) @ basis
@@ -171,10 +180,10 @@ def solved(basis: Floats, weight: Floats, z: Floats, present: Booleans) -> Float
     return np.asarray(np.linalg.solve(matrix, weighted.transpose(0, 2, 1) @ z[:, :, None])[:, :, 0])
 
 
-def disagreement(fits: VertexFits, faces: Integers) -> Floats:
+def disagreement(fits: VertexFits, faces: Integers, one_sided: float = ONE_SIDED) -> Floats:
     """Largest difference of curvature at each vertex between its graph and those of its neighbours, 1/m, (v,).
 
-    Times `ONE_SIDED` on the border, where neighbours err alike.
+    Times `one_sided` on the border, where neighbours err alike.
     """
     edges = find_edges(faces)
     ends = edges.ends
@@ -185,7 +194,7 @@ def disagreement(fits: VertexFits, faces: Integers) -> Floats:
     size = np.linalg.norm(off, axis=(1, 2))
     result = np.zeros(len(fits.points))
     np.maximum.at(result, here, size)
-    return np.where(edges.border_vertices(len(result)), ONE_SIDED * result, result)
+    return np.where(edges.border_vertices(len(result)), one_sided * result, result)
 
 
 def through_vertices(flat: Film, loops: tuple[Loop, ...], fits: VertexFits, order: int) -> Film:
