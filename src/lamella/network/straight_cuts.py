@@ -1,10 +1,10 @@
-"""Where a surface is cut: along the shortest straight lines of the plane of w.
+"""Where a surface is cut: along straight lines of the plane of w.
 
-In the metric |dw| shortest lines are straight and lengths are numbers of cells. Boundary loops are connected by a
-minimum spanning tree, and every umbilic of odd order hangs on the nearest loop. So a net that does not meet itself
-across a piece of the cut is interrupted along a line that is the surface's own, on whatever elements and turned in
-whatever way, and over as few cells as can be; and what fails at one umbilic, or around one hole, fails along one line.
-Lines that are shortest do not cross; where an umbilic is in the way of the shortest one the next ones keep clear of it.
+In the metric |dw| shortest lines are straight and lengths are numbers of cells. Every umbilic of odd order hangs on the
+nearest loop by the shortest line; boundary loops are connected by a minimum spanning tree of lines that leave a hole
+halfway between the umbilics nearest to it. So a net that does not meet itself across a piece of the cut is interrupted
+along a line that is the surface's own, on whatever elements and turned in whatever way; and what fails at one umbilic,
+or around one hole, fails along one line. Shortest lines do not cross, and none goes through a triangle that is taken.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class _Sight:
 
 
 class CrossedError(ValueError):
-    """A line that does not arrive."""
+    """Lines that do not arrive, or cross, or leave coordinates with several values."""
 
 
 def straight_cuts(flat: FlatTriangles) -> list[Course]:
@@ -228,7 +228,7 @@ def _foot(origin: Complexes, first: Complexes, last: Complexes) -> Floats:
 
 
 def _from_umbilic(flat: FlatTriangles, taken: Flags, vertex: int) -> list[_Sight]:
-    """The shortest straight lines from an umbilic to each loop and each other umbilic."""
+    """The shortest straight line from an umbilic to each loop."""
     triangle, corner = np.nonzero(flat.grid.faces == vertex)
     triangle, corner = np.repeat(triangle, FAN), np.repeat(corner, FAN)
     edge = (corner + 1) % 3
