@@ -113,7 +113,7 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
     elif nodes is not None and project.network.closing == "adjust" and not density:
         until = "surface"
         left.append("whether the boundary can be adjusted so that the net closes, and what its strips are")
-    results = _computed(coarse, (surface, density, None), until, folder)
+    results = _computed(coarse, (surface, density, None), until, folder, _finer(project, coarse))
     if results.network:
         nodes = len(results.network.node_points)
     return Checked(surface, cells, nodes, tuple(results.summary["warnings"]), coarse is not project, tuple(left))
@@ -131,11 +131,19 @@ def _laid(project: Project, surface: Surface[Any], progress: Progress) -> tuple[
     return lattice.cells, lattice.estimated_nodes
 
 
-def _computed(project: Project, planned: Planned, until: str | None, folder: Path) -> Results:
+def _finer(project: Project, coarse: Project) -> float:
+    """By how much smaller the tolerance of a run is than that of its check."""
+    one, other = project.surface, coarse.surface
+    if not isinstance(one, FormFoundTable | MeshTable) or not isinstance(other, FormFoundTable | MeshTable):
+        return 1.0
+    return other.tolerance / one.tolerance
+
+
+def _computed(project: Project, planned: Planned, until: str | None, folder: Path, finer: float) -> Results:
     """What the stages of a run make of a surface."""
     files = project.files.model_copy(update={"mesh_tolerance": max(COARSE_MESH, project.files.mesh_tolerance)})
     light = project.model_copy(update={"files": files})
-    return complete(light, planned, Clock(silent), until=until, folder=folder)
+    return complete(light, planned, Clock(silent), until=until, folder=folder, finer=finer)
 
 
 def _coarse(project: Project, left: list[str]) -> Project:

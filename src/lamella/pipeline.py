@@ -274,13 +274,20 @@ def compute(
     return complete(project, _planned(project, until, Path(folder), progress), clock, until=until, folder=Path(folder))
 
 
-def complete(project: Project, planned: Planned, clock: Clock, *, until: str | None, folder: Path) -> Results:
-    """The stages of a project whose surface is there, see `compute`; the clock runs for the surface already."""
+def complete(
+    project: Project, planned: Planned, clock: Clock, *, until: str | None, folder: Path, finer: float = 1.0
+) -> Results:
+    """The stages of a project whose surface is there, see `compute`; the clock runs for the surface already.
+
+    Errors of the surface's elements are warned of as on a surface of a tolerance `finer` times smaller.
+    """
     with told_from(drawing_origin(planned[0])):
-        return _complete(project, planned, clock, until=until, folder=folder)
+        return _complete(project, planned, clock, until=until, folder=folder, finer=finer)
 
 
-def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | None, folder: Path) -> Results:
+def _complete(
+    project: Project, planned: Planned, clock: Clock, *, until: str | None, folder: Path, finer: float
+) -> Results:
     depth, progress = _last_of(project, until), clock.progress
     warnings: list[str] = []
     if depth < STAGES.index("lamellas") and until is None:
@@ -325,7 +332,7 @@ def _complete(project: Project, planned: Planned, clock: Clock, *, until: str | 
             figures["network"] = f = summary.network_summary(network, woven.requested) | woven.describe()
             if adjusted:
                 figures["network"]["adjustment"] = adjusted.figures
-            told = list(woven.warnings())
+            told = list(woven.warnings(finer))
             warnings += told
         others = OtherCells(project, surface, network, len(told))
         clock.stop(

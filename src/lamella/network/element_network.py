@@ -148,8 +148,14 @@ class ElementNetwork:
         ways = "'round' or 'adjust'" if self.curves else "'round'"
         return (f"{advice}; " if advice else "no density near this one closes it; ") + f"closing = {ways} may close it"
 
-    def warnings(self) -> Iterator[str]:
-        """Where the net does not meet itself, and umbilics that are no nodes."""
+    def warnings(self, finer: float = 1.0) -> Iterator[str]:
+        """Where the net does not meet itself, umbilics that are no nodes, and where elements do not tell directions.
+
+        Parameters
+        ----------
+        finer : float
+            By how much smaller the tolerance of the surface that is to be judged is than that of this one.
+        """
         open_, rounded = (
             [joint.off_cells for joint in self.joints if joint.off_cells > CLOSES and joint.closed == closed]
             for closed in (False, True)
@@ -174,9 +180,9 @@ class ElementNetwork:
                 f"lamellas pass around them; {self._remedy()}"
             )
         if not rounded:
-            yield from self._astray()
+            yield from self._astray(finer)
 
-    def _astray(self) -> Iterator[str]:
+    def _astray(self, finer: float) -> Iterator[str]:
         """Lamellas whose normal curvature is another one, on the surface or by their written points."""
         network = self.network
         if network.pattern.kind != "lamellas":
@@ -186,6 +192,7 @@ class ElementNetwork:
         yield from self._unresolved(off)
         # what elements do not resolve is told apart
         off[self.corners.within(network.sample_points, self.corners.cores) >= 0] = 0.0
+        off /= finer
         far = off > ASTRAY
         if far.any():
             worst = network.sample_points[off.argmax()]

@@ -47,10 +47,14 @@ def cut_straight(iso: Isothermic, surface: ElementSurface) -> Isothermic:
     CrossedError
         The lines are not found, or cross each other, or leave coordinates with several values.
     """
-    if not any(not piece.stub for piece in iso.transitions):
+    if all(piece.stub for piece in iso.transitions):
         return iso
     flat = FlatTriangles.of(iso)
-    split = split_elements(flat, straight_cuts(flat), surface)
+    courses = straight_cuts(flat)
+    if not courses:
+        # what turns w lies on the rim
+        return iso
+    split = split_elements(flat, courses, surface)
     mesh = split.mesh
     sign, cut, turns = root_signs(mesh, split.cut)
     plain = Poisson.of(mesh, sign)

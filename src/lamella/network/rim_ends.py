@@ -1,9 +1,8 @@
-"""What happens where lamellas, or their crossings, lie on the rim, or on a seam, but for the surface's own error.
+"""What happens where lamellas, or their crossings, lie on the rim but for the surface's own error.
 
 A straight beam is an asymptotic line: a line of the lattice along it is the beam and no lamella. A crossing on the rim
-is one boundary node, at which both lamellas end, whether the error of the surface puts it inside or beyond. At a seam a
-lamella ends in a crossing as near as that. All are decided with margins in cells that are the same for all surfaces,
-far above the error of any.
+is one boundary node, at which both lamellas end, whether the error of the surface puts it inside or beyond. Both are
+decided with margins in cells that are the same for all surfaces, far above the error of any.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from lamella.network.cell_map import CellMap
 from lamella.network.crossings import Crossings
-from lamella.network.level_lines import RIM, SEAM_END, SINGULAR_END
+from lamella.network.level_lines import RIM, SINGULAR_END
 from lamella.network.tracks import A, B, Tracks
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import ElementRim
@@ -35,7 +34,7 @@ RIM_SAMPLES = 4000
 
 
 class Ends(NamedTuple):
-    """Ends of chains on the rim and on seams.
+    """Ends of chains on the rim.
 
     Attributes
     ----------
@@ -46,7 +45,7 @@ class Ends(NamedTuple):
     shared : int
         How many such numbers there are.
     boundary : (n,) bool
-        Crossings that are boundary nodes; those on a seam are nodes like others.
+        Crossings that are boundary nodes.
     places : Places
         Where the chains meet the rim, (2 c).
     """
@@ -58,10 +57,10 @@ class Ends(NamedTuple):
     places: Places
 
 
-def _to_ends(tracks: Tracks, tips: Floats, crossings: Crossings, kind: int = RIM) -> Floats:
-    """How far the crossings are from both ends of a kind of their chains, cells, (2, n, 2); inf: no such end."""
+def _to_ends(tracks: Tracks, tips: Floats, crossings: Crossings) -> Floats:
+    """How far the crossings are from both ends of their chains on the rim, cells, (2, n, 2); inf: no such end."""
     away = np.abs(crossings.tau[:, :, None] - tips[crossings.chain])
-    return np.where(tracks.ends[crossings.chain] == kind, away, np.inf)
+    return np.where(tracks.ends[crossings.chain] == RIM, away, np.inf)
 
 
 def along_rim(
@@ -133,10 +132,6 @@ def settled_ends(cells: CellMap, tracks: Tracks, tips: Floats, places: Places, c
     for family in (A, B):
         # what is left of a line behind a boundary node is no piece of its own
         at, side = np.nonzero(boundary[:, None] & (away[family] < ALONG))
-        chain = crossings.chain[family, at]
-        node[chain, side], tips[chain, side] = at, crossings.tau[family, at]
-    for family, away_there in enumerate(_to_ends(tracks, tips, crossings, SEAM_END)):
-        at, side = np.nonzero(away_there < AT_END)
         chain = crossings.chain[family, at]
         node[chain, side], tips[chain, side] = at, crossings.tau[family, at]
     count = len(boundary)

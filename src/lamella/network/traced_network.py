@@ -109,8 +109,14 @@ class TracedNetwork:
         """Nothing, see `corner_stresses`."""
         return ""
 
-    def warnings(self) -> Iterator[str]:
-        """Where there are no lamellas, and lamellas of another normal curvature than was asked for."""
+    def warnings(self, finer: float = 1.0) -> Iterator[str]:
+        """Where there are no lamellas, and lamellas of another normal curvature than was asked for.
+
+        Parameters
+        ----------
+        finer : float
+            By how much smaller the tolerance of the surface that is to be judged is than that of this one.
+        """
         wanted = self.network.pattern.normal_curvature
         unreal, flat = self.reach.unreal, self.reach.flat
         if wanted is not None and max(unreal, flat) > LEAST_SHARE:
@@ -123,7 +129,7 @@ class TracedNetwork:
                 f"{', '.join(parts)}: no lamellas there, {self.inner_ends} of their ends lie inside the surface "
                 "(another normal_curvature moves that edge)"
             )
-        most, usual = self.missed
+        most, usual = (miss / finer for miss in self.missed)
         if wanted is not None and most > PROMISED * self.scale:
             yield (
                 f"the normal curvature of the lamellas is off by up to {most:.2g} 1/m, "
