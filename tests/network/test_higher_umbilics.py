@@ -64,7 +64,10 @@ def test_umbilics_much_nearer_to_each_other_than_a_cell() -> None:
     inside = np.linalg.norm(results.surface.umbilics.position[:, :2], axis=1) < 2
     assert results.surface.umbilics.orders[inside].tolist() == [1, 1]
     assert results.summary["network"]["isothermic_residual"] < 1e-4
-    assert results.summary["network"]["node_angle_deviation_max_deg"] < 0.05
+    assert results.network is not None
+    assert np.abs(results.network.node_angles - 90).max() < 0.05
+    # written points tell less where a lamella turns around the umbilic that is no node, 0.05 m away
+    assert results.summary["network"]["node_angle_deviation_max_deg"] < 0.1
 
 
 @pytest.mark.slow
