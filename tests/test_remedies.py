@@ -384,7 +384,8 @@ def test_corners_whose_loop_has_no_room_for_a_radius_that_does() -> None:
 
 
 @pytest.mark.parametrize(
-    ("cells", "layers", "end_distance"), [(17, 1, 0.05), (25, 1, 0.05), (25, 1, 0.3), (25, 2, 0.08), (17, 2, 0.02)]
+    ("cells", "layers", "end_distance"),
+    [(17, 1, 0.05), (25, 1, 0.05), (25, 1, 0.3), pytest.param(25, 2, 0.08, marks=pytest.mark.slow), (17, 2, 0.02)],
 )
 def test_strips_that_meet_beyond_the_rim(cells: int, layers: int, end_distance: float) -> None:
     """With ends as short as is said none meet, and with ends a little longer some do."""

@@ -238,6 +238,7 @@ def corners_of(path: Path) -> np.ndarray:
     return np.array([[p.X, p.Y, p.Z] for box in boxes for p in (box.Min, box.Max)])
 
 
+@pytest.mark.slow
 def test_check_tells_places_in_the_drawings_coordinates(tmp_path: Path) -> None:
     tables = film(drawn_by_points(tmp_path, FAR)) | {"lamella": {"thickness": 0.004}}
     told = " ".join(check_project(parse_project(tables), folder=tmp_path).warnings)

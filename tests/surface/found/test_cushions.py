@@ -90,6 +90,7 @@ def test_cushion_of_given_volume(inner, volume, beyond_vertical) -> None:
     assert found.surface("cushion").area() == pytest.approx(area, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_largest_volume_is_reported() -> None:
     """Beyond the volume at which the family turns back there is no such cushion."""
     inner = 0.36

@@ -138,6 +138,7 @@ def test_foot_of_a_ring_slides_inwards_to_the_neck(height) -> None:
     assert found.stability.verdict == "stable"
 
 
+@pytest.mark.slow
 def test_no_film_down_to_the_ground_beyond_half_the_limit() -> None:
     """0.6627434 radii, half of 1.3254868: the search says that it ended, no bound for sliding loops is known here."""
     with pytest.raises(InputError, match="did not arrive") as error:

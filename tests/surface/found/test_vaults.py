@@ -80,6 +80,7 @@ def test_behind_pi_radii_the_stable_film_bulges() -> None:
     assert np.abs(r - Piece(2 * R - bulge, bulge, R, about_bulge=True).radius_at(x)).max() < 1e-3 * R
 
 
+@pytest.mark.slow
 def test_where_no_stable_film_is_the_unstable_one_is_told() -> None:
     """At 4 radii bulging vaults of H = 1 / (2 R) are gone too: a sphere of radius 2 R is 3.46 R long there."""
     length = 16.0
