@@ -233,12 +233,12 @@ def test_lines_that_wind_around_are_refused_with_a_normal_curvature_that_does(
     tmp_path: Path, stretch: float, uneven: float
 ) -> None:
     """Closed principal lines, and spirals; the remedy followed to the letter gives a net."""
-    write_grid(tmp_path / "m.obj", half_ring(stretch, uneven), (0, 2 * np.pi), (0.2, np.pi - 0.2), 32, 8, around=True)
+    write_grid(tmp_path / "m.obj", half_ring(stretch, uneven), (0, 2 * np.pi), (0.2, np.pi - 0.2), 40, 10, around=True)
     with pytest.raises(InputError) as refused:
-        run_on(tmp_path / "m.obj", kind="principal", cells=8)
+        run_on(tmp_path / "m.obj", kind="principal", cells=12)
     assert refused.value.where == "network.kind"
     value = re.search(r'kind = "(\w+)" and normal_curvature = (-?[0-9.e-]+)', refused.value.remedy)
     assert value is not None
-    network = run_on(tmp_path / "m.obj", kind=value[1], normal_curvature=float(value[2]), cells=8).network
+    network = run_on(tmp_path / "m.obj", kind=value[1], normal_curvature=float(value[2]), cells=12).network
     assert network is not None
     assert (network.node_kinds == REGULAR).sum() > 50
