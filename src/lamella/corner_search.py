@@ -7,19 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from lamella.errors import InputError
 from lamella.network.element_network import ElementNetwork
 from lamella.network.traced_network import TracedNetwork
-from lamella.pipeline import make_surface
 from lamella.progress import Progress, silent
 from lamella.project import FormFoundTable, Project
 from lamella.strip.lamellas import Section, make_lamellas
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.points import Floats
+from lamella.surface.surface import Surface
 from lamella.weaving import lay, weave
 from lamella.wording import rounded
 
@@ -33,16 +33,23 @@ ENOUGH = 0.9
 """Utilisation on a coarse surface below which a finer one is tried."""
 
 
+SurfaceOf = Callable[[Project], Surface[Any]]
+
+
 def corner_help(
-    woven: ElementNetwork | TracedNetwork, utilisation: Floats, project: Project, folder: Path, progress: Progress
+    woven: ElementNetwork | TracedNetwork,
+    utilisation: Floats,
+    project: Project,
+    surface_of: SurfaceOf,
+    progress: Progress,
 ) -> Callable[[Floats], str]:
     """What helps at a point (3,) next to a corner of the boundary, in words, for strips with a utilisation (k,)."""
-    searched = partial(radius_that_does, project, folder, progress=progress)
+    searched = partial(radius_that_does, project, surface_of, progress=progress)
     return partial(woven.at_corner, utilisation=utilisation, searched=searched)
 
 
 def radius_that_does(
-    project: Project, folder: Path, loop: int, radii: tuple[float, float], progress: Progress = silent
+    project: Project, surface_of: SurfaceOf, loop: int, radii: tuple[float, float], progress: Progress = silent
 ) -> str:
     """A radius of a boundary loop's corners that brings the utilisation to 1 and below; empty: none was found.
 
@@ -50,8 +57,8 @@ def radius_that_does(
     ----------
     project : Project
         Of a surface found between curves.
-    folder : Path
-        Where the files it names are looked for.
+    surface_of : callable
+        The surface that a project describes.
     loop : int
         Number of the loop.
     radii : (float, float)
@@ -70,11 +77,11 @@ def radius_that_does(
             break
         progress(f"    corner_radius = {radius:g} m tried for {name!r}")
         try:
-            used = _utilisation(_with_radius(project, loop, radius, coarse), folder)
+            used = _utilisation(_with_radius(project, loop, radius, coarse), surface_of)
             # what is said is what a run finds: lamellas lie elsewhere on a finer surface, and peaks are narrow
             if used <= ENOUGH and coarse > table.tolerance:
                 progress(f"    the surface with corner_radius = {radius:g} m as fine as asked for")
-                used = _utilisation(_with_radius(project, loop, radius, table.tolerance), folder)
+                used = _utilisation(_with_radius(project, loop, radius, table.tolerance), surface_of)
         except InputError:
             continue
         tried.append((used, radius))
@@ -95,9 +102,9 @@ def _with_radius(project: Project, loop: int, radius: float, tolerance: float) -
     return project.model_copy(update={"surface": surface, "network": network})
 
 
-def _utilisation(project: Project, folder: Path) -> float:
+def _utilisation(project: Project, surface_of: SurfaceOf) -> float:
     """The largest one of the project's strips."""
-    surface = make_surface(project, folder)
+    surface = surface_of(project)
     assert isinstance(surface, ElementSurface)
     network = weave(lay(surface, project, None, silent), project).network
     section = Section(**project.lamella.model_dump(exclude={"material"}))

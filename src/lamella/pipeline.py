@@ -351,16 +351,16 @@ def _complete(
         strip = project.lamella
         clock.start(f"lamellas: {strip.height * 1000:g} x {strip.thickness * 1000:g} mm, {strip.material}")
         section = Section(**strip.model_dump(exclude={"material"}))
-        make = partial(make_lamellas, network, material=project.material(), surface=surface)
-        lamellas = make(section)
+        strips = partial(make_lamellas, section=section, material=project.material(), surface=surface)
+        lamellas = strips(network)
         figures["lamellas"] = f = summary.lamella_summary(network, lamellas, strip.material, project.material())
         f |= woven.corner_stresses(lamellas.utilisation) if woven else {}
         clock.stop("lamellas", f"{f['total_length']:.4g} m of lamella, utilisation up to {f['utilisation_max']:.2f}")
-        at_corner = None
+        advice = None
         if woven:
             from lamella.corner_search import corner_help
 
-            at_corner = corner_help(woven, lamellas.utilisation, project, folder, progress)
+            advice = corner_help(woven, lamellas.utilisation, project, partial(make_surface, folder=folder), progress)
         warnings += cautions.lamella_cautions(
             mesh,
             network,
@@ -368,8 +368,8 @@ def _complete(
             project.fabrication.slot_width or 0.0,
             project.material(),
             project.known_materials(),
-            lambda other, of: float(make(other, material=of).utilisation.max()),
-            at_corner,
+            lambda other, of: float(strips(network, section=other, material=of).utilisation.max()),
+            advice,
         )
         warnings += cautions.layer_cautions(network, lamellas, project.material())
     if network and lamellas and others and depth >= STAGES.index("fabrication"):
@@ -379,9 +379,7 @@ def _complete(
             network,
             lamellas,
             density=project.material().density,
-            others=lambda fault: others.without(
-                lambda net: fault(net, make_lamellas(net, section, project.material(), surface=surface))
-            ),
+            others=lambda fault: others.without(lambda net: fault(net, strips(net))),
             **cut.model_dump(),
         )
         nesting = nest(parts, sheet=cut.sheet, gap=cut.gap)
@@ -390,8 +388,7 @@ def _complete(
         warnings += parts.warnings
 
     content: dict[str, Any] = {"schema": SCHEMA, "version": __version__, "name": project.name}
-    content |= {stage: figures.get(stage) for stage in STAGES}
-    content |= {"warnings": warnings, "seconds": clock.seconds}
+    content |= {stage: figures.get(stage) for stage in STAGES} | {"warnings": warnings, "seconds": clock.seconds}
     content = summary.cleaned(with_drawn_points(content, drawing_origin(surface)))
     return Results(project, surface, mesh, network, lamellas, parts, nesting, content, folder, adjusted)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from lamella.network.net_mesh import NetMesh
 from lamella.network.straight_cuts import CrossedError
-from lamella.network.straight_walk import FlatTriangles
+from lamella.network.straight_walk import FlatTriangles, share_of_edge
 from lamella.network.tight_lines import Course
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.lagrange import EDGES
@@ -140,7 +140,7 @@ def _add(
         if edge < 0:
             waiting.append((float(barycentric[k].min()), (x, y)))
             continue
-        share = (x, y, 1 - y)[edge]
+        share = share_of_edge(course.local[k], edge)
         other, back = int(connectivity.neighbours[here, edge]), int(connectivity.neighbour_edges[here, edge])
         loop = -1 if other >= 0 else -1 - (course.end if k else course.begin)
         vertex = vertices.new(loop)

@@ -409,6 +409,5 @@ def _wedge_of(flat: FlatTriangles, start: _Start, goal: complex) -> tuple[_Start
 def _where_crossed(origin: complex, towards: complex, first: complex, last: complex) -> float:
     """Share of a segment at which a line crosses it; below 0 or above 1 beyond its ends."""
     along = last - first
-    across = towards.real * along.imag - towards.imag * along.real
-    apart = origin - first
-    return (towards.real * apart.imag - towards.imag * apart.real) / across if across else 0.5
+    across = (towards.conjugate() * along).imag
+    return (towards.conjugate() * (origin - first)).imag / across if across else 0.5

@@ -67,12 +67,7 @@ class FlatTriangles:
         points[fine.elements] = np.einsum("gk,mkc->mgc", shapes, iso.mesh.nodes[connectivity.elements])
         w = (iso.value @ shapes.T)[:, faces].reshape(-1, 3)
         grid = connect(fine.elements[:, faces].reshape(-1, 3), fine.node_count, 1)
-        # which edge of the element a small edge lies on
-        on_edge = np.full((len(faces), 3), -1)
-        for edge, nodes in enumerate(fine.basis.edge_nodes):
-            there = np.isin(faces, nodes)
-            for local, (a, b) in enumerate(EDGES):
-                on_edge[there[:, a] & there[:, b], local] = edge
+        on_edge = edges_of_element()
         outer = np.broadcast_to(on_edge >= 0, (len(connectivity.faces), *on_edge.shape)).reshape(-1, 3)
         through = np.where(outer, iso.across[:, on_edge].reshape(-1, 3), 0)
         signs = np.array([1.0, *(piece.sign for piece in iso.transitions)])
@@ -110,7 +105,7 @@ class FlatTriangles:
 
         It runs as the element's edge does.
         """
-        share = (local[0], local[1], 1 - local[1])[edge] * PARTS
+        share = share_of_edge(local, edge) * PARTS
         part = int(np.clip(np.floor(share), 0, PARTS - 1))
         nodes = lagrange(PARTS).edge_nodes[edge]
         faces = local_faces(PARTS)
@@ -209,6 +204,22 @@ class Heads:
             sign * self.sign,
             sign * self.shift + shift,
         )
+
+
+def edges_of_element() -> Integers:
+    """Edge of its element on which each edge of each small triangle lies, -1: none, (PARTS^2, 3)."""
+    faces = local_faces(PARTS)
+    result = np.full((len(faces), 3), -1)
+    for edge, nodes in enumerate(lagrange(PARTS).edge_nodes):
+        there = np.isin(faces, nodes)
+        for local, (a, b) in enumerate(EDGES):
+            result[there[:, a] & there[:, b], local] = edge
+    return result
+
+
+def share_of_edge(local: Floats, edge: int) -> float:
+    """Share of an element's local edge at local coordinates (2,) on it."""
+    return float((local[0], local[1], 1 - local[1])[edge])
 
 
 def cross(one: Complexes, other: Complexes) -> Floats:

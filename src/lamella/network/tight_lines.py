@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.network.straight_walk import PARTS, FlatTriangles, cross
+from lamella.network.straight_walk import PARTS, FlatTriangles, cross, edges_of_element, share_of_edge
 from lamella.surface.element.lagrange import EDGES, lagrange, local_faces
 from lamella.surface.points import Complexes, Floats
 
@@ -108,14 +108,14 @@ def tightened(flat: FlatTriangles, begin: int, end: int, passed: Passed, free: b
     small = lagrange(PARTS).nodes[local_faces(PARTS)]
     element, number = np.divmod(passed.triangle, len(small))
     one, other = small[number, passed.edge], small[number, (passed.edge + 1) % 3]
-    edge = _element_edge(one, other)
+    edge = edges_of_element()[number, passed.edge]
     local = one + passed.share[:, None] * (other - one)
 
     def rim(index: int) -> tuple[np.polynomial.Polynomial, float]:
         nodes = connectivity.basis.edge_nodes[edge[index]]
         value = (flat.iso.value[element[index], nodes] - passed.shift[index]) * passed.sign[index]
         along = np.arange(len(nodes)) / (len(nodes) - 1)
-        return np.polynomial.Polynomial(np.linalg.solve(np.vander(along, increasing=True), value)), _share(
+        return np.polynomial.Polynomial(np.linalg.solve(np.vander(along, increasing=True), value)), share_of_edge(
             local[index], int(edge[index])
         )
 
@@ -185,18 +185,3 @@ def _on_line(
         step = np.where(slope == 0, 0.0, -off / np.where(slope == 0, 1.0, slope))
         share = np.clip(share + np.clip(step, -LONGEST_STEP, LONGEST_STEP), CLEAR, 1 - CLEAR)
     return share
-
-
-def _share(local: Floats, edge: int) -> float:
-    """Share of an element's edge at local coordinates on it."""
-    return float(((local - _CORNERS[edge]) * _AXES[edge]).sum() / (_AXES[edge] ** 2).sum())
-
-
-def _element_edge(first: Floats, last: Floats) -> Integers:
-    """Edge of the element on which small edges lie, -1: none, (n,)."""
-    result = np.full(len(first), -1)
-    for edge in range(3):
-        third = (edge + 2) % 3
-        both = [np.abs(np.column_stack([1 - end.sum(1), end])[:, third]) < 1e-9 for end in (first, last)]
-        result[both[0] & both[1]] = edge
-    return result
