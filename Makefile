@@ -5,8 +5,8 @@ BIN := .venv/bin
 ONE := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1
 
 # what can differ between processors, besides the examples: elements and films
-NUMERICS := tests/surface/element tests/surface/found/test_last_bits.py tests/surface/found/test_rings.py \
-	tests/surface/imported/test_imported_last_bits.py tests/projection/test_star_measures.py tests/test_sparse.py
+NUMERICS := tests/surface/element tests/surface/form_finding/test_last_bits.py tests/surface/form_finding/test_rings.py \
+	tests/surface/from_mesh/test_imported_last_bits.py tests/projection/test_star_measures.py tests/test_sparse.py
 
 .PHONY: demo test slow kernels lint types bench docs clean
 

@@ -17,14 +17,14 @@ os.environ.setdefault("RAYON_NUM_THREADS", "1")
 
 import numpy as np
 
-from lamella import sparse
+from lamella.base import sparse
 from lamella.surface.boundary.arcs import circle
 from lamella.surface.boundary.curve import make_loop
 from lamella.surface.boundary.splines import closed_spline
-from lamella.surface.found.chart import make_chart
-from lamella.surface.found.film import Film, harmonic_over_itself
-from lamella.surface.found.meshing import start_film, with_sizes
-from lamella.surface.found.newton import find_equilibrium
+from lamella.surface.form_finding.chart import make_chart
+from lamella.surface.form_finding.film import Film, harmonic_over_itself
+from lamella.surface.form_finding.meshing import start_film, with_sizes
+from lamella.surface.form_finding.newton import find_equilibrium
 
 
 class Clock:

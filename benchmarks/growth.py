@@ -22,7 +22,7 @@ def measure(cells: int) -> dict[str, float]:
     import numpy as np
 
     from lamella import compute, parse_project
-    from lamella.surface.closed_forms import CLOSED_FORMS
+    from lamella.surface.closed_forms.kinds import CLOSED_FORMS
 
     surface = {"kind": "unduloid", "neck_radius": 1.6, "bulge_radius": 2.8, "height": [-4.0, 4.0]}
     project = parse_project({"name": "growth", "surface": surface, "network": {"cells": cells}})

@@ -24,10 +24,10 @@ os.environ.setdefault("RAYON_NUM_THREADS", "1")
 import numpy as np
 from film import annulus
 
-from lamella import sparse
-from lamella.network.element_network import ElementNetwork, element_network
+from lamella.base import sparse
+from lamella.network.elements.element_network import ElementNetwork, element_network
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.found.newton import find_equilibrium
+from lamella.surface.form_finding.newton import find_equilibrium
 
 # elements, cells around the oculus, repetitions
 SIZES = ((1_250, 42, 9), (3_750, 72, 5), (12_500, 132, 3))

@@ -23,7 +23,8 @@ os.environ.setdefault("RAYON_NUM_THREADS", "1")
 
 import numpy as np
 
-from lamella import Catenoid, sparse
+from lamella import Catenoid
+from lamella.base import sparse
 from lamella.projection.normal_equations import NormalEquations
 from lamella.projection.problems.asymptotic import asymptotic
 from lamella.projection.problems.crossing import AngleForm

@@ -14,11 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from lamella import __version__, compute, read_project, write
-from lamella.example_files import list_examples
-from lamella.files.network_json import network_schema
-from lamella.files.optimise_json import optimise_schema
-from lamella.pipeline import Results
-from lamella.project import (
+from lamella.command.examples import list_examples
+from lamella.files.write.network_json import network_schema
+from lamella.files.write.optimise_json import optimise_schema
+from lamella.project.tables import (
     FURTHER_TABLES,
     SURFACE_TABLES,
     AdjustTable,
@@ -33,6 +32,7 @@ from lamella.project import (
     Table,
     project_schema,
 )
+from lamella.stages.pipeline import Results
 from lamella.strip.material import MATERIALS
 from lamella.view.drawing_picture import draw_part, draw_sheets
 from lamella.view.picture import draw

@@ -24,9 +24,9 @@ from lamella import (
     sphere_stars,
     straighten,
 )
-from lamella.network.element_network import element_network
+from lamella.command.optimise_mesh import strip_mesh
+from lamella.network.elements.element_network import element_network
 from lamella.network.network import Network
-from lamella.optimise import strip_mesh
 from lamella.projection.polylines import diagonal_ring
 from lamella.projection.problems.planar_strips import PlanarStrips
 from lamella.projection.quad_mesh import QuadMesh

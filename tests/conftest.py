@@ -30,7 +30,7 @@ from lamella import (
     read_project,
     write,
 )
-from lamella.surface.closed_form import ClosedForm
+from lamella.surface.closed_forms.closed_form import ClosedForm
 
 # the same draws at every run: a change is judged by what it changes
 settings.register_profile("same", derandomize=True)

@@ -11,8 +11,8 @@ import pytest
 
 from exact_elements import sphere_cap
 from lamella import InputError, compute, make_surface, parse_project
-from lamella.cautions import lamella_cautions, network_cautions, surface_file_cautions
 from lamella.network.cell_sizes import small_cells
+from lamella.stages.warnings import lamella_cautions, network_cautions, surface_file_cautions
 from lamella.strip.material import MATERIALS
 
 
@@ -205,7 +205,7 @@ def test_a_surface_file_without_nurbs_is_told(monkeypatch: pytest.MonkeyPatch, o
     surface = sphere_cap(order)
     assert list(surface_file_cautions(surface)) == []
     count = 3 * len(surface.connectivity.elements)
-    monkeypatch.setattr("lamella.files.surface_3dm.MOST_PATCHES", count - 1)
+    monkeypatch.setattr("lamella.files.write.surface_3dm.MOST_PATCHES", count - 1)
     (told,) = surface_file_cautions(surface)
     assert f"NURBS would be {count:,} patches (limit {count - 1:,})" in told
     # no order is higher than 4

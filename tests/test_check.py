@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lamella import InputError, compute, parse_project
-from lamella.check import COARSE, MOST_TRACED, check_project
+from lamella.stages.check import COARSE, MOST_TRACED, check_project
 from network.test_adjust import sketch
 from network.test_kept_lines import hypar, write_grid
 

@@ -14,9 +14,9 @@ import pytest
 
 from command_line import FILES, UNDULOID, contents, lamella
 from lamella import __version__
-from lamella.cli import main
-from lamella.project import FURTHER_TABLES, SURFACE_TABLES, BoundaryTable
-from lamella.project_file import parse_project
+from lamella.command.main import main
+from lamella.project.read import parse_project
+from lamella.project.tables import FURTHER_TABLES, SURFACE_TABLES, BoundaryTable
 
 COMMANDS = ("run", "new", "check", "optimise", "examples", "schema")
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -88,7 +88,7 @@ def test_wrong_arguments(here: Path, capsys: pytest.CaptureFixture[str], argumen
 def test_help_is_instant() -> None:
     """It imports nothing heavy."""
     code = (
-        "import sys\nfrom lamella.cli import main\n"
+        "import sys\nfrom lamella.command.main import main\n"
         "try: main(['--help'])\nexcept SystemExit: pass\n"
         "heavy = {'numpy', 'scipy', 'pydantic', 'orjson', 'ezdxf', 'rhino3dm', 'tomli_w'} & set(sys.modules)\n"
         "sys.exit(f'imported {heavy}' if heavy else 0)"

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 import lamella
-from lamella.cli import _parser
+from lamella.command.main import _parser
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"

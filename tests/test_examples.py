@@ -14,12 +14,12 @@ from conftest import EXAMPLES, run_of_example
 from kernels import same_text
 from lamella import Places, Unduloid, parse_project, read_project
 from lamella.fabrication.schedule import COLUMNS
-from lamella.files.network_json import network_bytes
-from lamella.network.gluing import integrate
-from lamella.network.holonomy import around_vertex, holonomies
-from lamella.network.net_mesh import make_net_mesh
+from lamella.files.write.network_json import network_bytes
+from lamella.network.isothermic.holonomy import around_vertex, holonomies
+from lamella.network.isothermic.integration_mesh import make_net_mesh
+from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.network import SINGULAR
-from lamella.project import FURTHER_TABLES
+from lamella.project.tables import FURTHER_TABLES
 from lamella.surface.boundary import boundary_loops
 from lamella.surface.element.geometry import normal_and_area, tangents
 from lamella.surface.element.quadrature import triangle_rule

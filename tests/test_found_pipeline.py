@@ -14,11 +14,11 @@ import pytest
 
 import lamella
 from lamella import InputError, compute, parse_project
-from lamella.cli import main
-from lamella.output import report_data
-from lamella.pipeline import STAGES
-from lamella.project import FormFoundTable, MeshTable, Project, Table
-from lamella.project_file import moved
+from lamella.command.main import main
+from lamella.project.read import moved
+from lamella.project.tables import FormFoundTable, MeshTable, Project, Table
+from lamella.stages.output import report_data
+from lamella.stages.pipeline import STAGES
 from lamella.surface.surface import Surface
 from test_pipeline import KEYS, PROJECT
 
@@ -59,14 +59,16 @@ def found(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> tu
         progress("    Newton step 1")
         return Found()
 
-    where = {"form-found": "lamella.surface.found.find", "mesh": "lamella.surface.imported.adopt"}[request.param]
+    where = {"form-found": "lamella.surface.form_finding.find", "mesh": "lamella.surface.from_mesh.fit_cmc"}[
+        request.param
+    ]
     module = ModuleType(where)
     module.surface_of_table = surface_of_table  # type: ignore[attr-defined]
     for name in (where.rpartition(".")[0], where):
         monkeypatch.setitem(sys.modules, name, module)
     project = parse_project(PROJECT).model_copy(update={"surface": FoundTable(kind=request.param)})
-    monkeypatch.setattr("lamella.pipeline.read_project", lambda path: project)
-    monkeypatch.setattr("lamella.project_file.read_project", lambda path: project)
+    monkeypatch.setattr("lamella.stages.pipeline.read_project", lambda path: project)
+    monkeypatch.setattr("lamella.project.read.read_project", lambda path: project)
     monkeypatch.setattr(Project, "to_toml", lambda self: "")
     return project, asked
 
@@ -187,9 +189,9 @@ def test_found_surfaces_on_the_command_line(
     assert main(["run", "films/film.toml", "-v", "--until", "surface"]) == 0
     assert "\n    Newton step 1\n" in capsys.readouterr().err
     laid = SimpleNamespace(lattice=SimpleNamespace(cells=10, estimated_nodes=1234))
-    monkeypatch.setattr("lamella.weaving.lay", lambda *_: laid)
+    monkeypatch.setattr("lamella.stages.weaving.lay", lambda *_: laid)
     warned = SimpleNamespace(summary={"warnings": []}, network=None)
-    monkeypatch.setattr("lamella.check.complete", lambda *_, **__: warned)
+    monkeypatch.setattr("lamella.stages.check.complete", lambda *_, **__: warned)
     assert main(["check", "films/film.toml"]) == 0
     told = capsys.readouterr()
     kind = found[0].surface.kind

@@ -11,16 +11,16 @@ import ezdxf
 import numpy as np
 import pytest
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.files.quad_mesh_files import read_quad_mesh
-from lamella.project_file import parse_project, read_project
+from lamella.files.read import raw_mesh
+from lamella.files.read.mesh import read_mesh
+from lamella.files.read.mesh_obj import read_obj
+from lamella.files.read.mesh_ply import read_ply
+from lamella.files.read.mesh_stl import read_stl
+from lamella.files.read.raw_mesh import BLOCK, blocks
+from lamella.project.read import parse_project, read_project
 from lamella.surface.boundary import boundary_loops
-from lamella.surface.imported import raw_mesh
-from lamella.surface.imported.raw_mesh import BLOCK, blocks
-from lamella.surface.imported.read_mesh import read_mesh
-from lamella.surface.imported.read_obj import read_obj
-from lamella.surface.imported.read_ply import read_ply
-from lamella.surface.imported.read_stl import read_stl
 
 UNDULOID = '[surface]\nkind = "unduloid"\nneck_radius = 1.6\nbulge_radius = 2.8\nheight = [-1.0, 1.0]\n'
 SECONDS = 15

@@ -14,9 +14,9 @@ import pytest
 
 import lamella
 from lamella import InputError, compute, parse_project, read_project
-from lamella.cli import main
-from lamella.files.network_json import network_schema
-from lamella.project import FabricationTable, LamellaTable
+from lamella.command.main import main
+from lamella.files.write.network_json import network_schema
+from lamella.project.tables import FabricationTable, LamellaTable
 
 # the other surfaces that are found are computed by test_examples.py
 FOUND = ("10_saddle", "15_vault", "16_hall")
@@ -228,7 +228,7 @@ def test_a_failing_writer_leaves_nothing(
     def fail(*arguments: object, **more: object) -> None:
         raise RuntimeError("a bug")
 
-    monkeypatch.setattr("lamella.output.write_report", fail)
+    monkeypatch.setattr("lamella.stages.output.write_report", fail)
     with pytest.raises(RuntimeError):
         run(surface=PROJECT["surface"], network=PROJECT["network"])
     assert list(tmp_path.iterdir()) == []

@@ -14,8 +14,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lamella import InputError, parse_project, read_project
-from lamella.pipeline import plan
-from lamella.project import FURTHER_TABLES, MATERIALS, SURFACE_TABLES, project_schema
+from lamella.project.tables import FURTHER_TABLES, MATERIALS, SURFACE_TABLES, project_schema
+from lamella.stages.pipeline import plan
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
 

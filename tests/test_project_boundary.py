@@ -15,8 +15,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lamella import InputError, parse_project, read_project
-from lamella.project import FormFoundTable, MeshTable, project_schema
-from lamella.starter import starter
+from lamella.project.starter import starter
+from lamella.project.tables import FormFoundTable, MeshTable, project_schema
 from lamella.surface.boundary import Loop, boundary_loops
 
 HEAD = '[surface]\nkind = "form-found"\n'

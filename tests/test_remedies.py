@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from lamella import InputError, compute, parse_project
-from lamella.check import check_project
+from lamella.stages.check import check_project
 from lamella.strip.material import MATERIALS
 
 Tables = dict[str, Any]

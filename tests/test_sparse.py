@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lamella.sparse import SingularError, SymmetricPattern, default_backend, packed
+from lamella.base.sparse import SingularError, SymmetricPattern, default_backend, packed
 
 
 def has_rslab() -> bool:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from lamella import compute, read_project
-from lamella.cli import main
-from lamella.project_surface import SURFACE_TABLES
+from lamella.command.main import main
+from lamella.project.surface_tables import SURFACE_TABLES
 
 
 @pytest.mark.parametrize("kind", SURFACE_TABLES)

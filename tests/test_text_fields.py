@@ -17,12 +17,12 @@ import pytest
 import rhino3dm
 
 from lamella import parse_project, quad_mesh, read_project
-from lamella.cli import main
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.base.wording import one_line, readable
+from lamella.command.main import main
 from lamella.files.quad_mesh_files import QuadFile, quad_mesh_bytes
-from lamella.files.text import csv_comment
+from lamella.files.write.text import csv_comment
 from lamella.projection.mesh_figures import mesh_figures
-from lamella.wording import one_line, readable
 
 BAD = "".join(
     ["\x1b[2J", "\x07", "\x00", "\x7f", "\x85", "\x9b", "\u202e", "\u2066", "\u200f", "\u2028", "\ufeff", "\U000e0041"]

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from lamella.errors import InputError as InputError
+    from lamella.base.errors import InputError as InputError
     from lamella.fabrication import make_parts as make_parts
     from lamella.fabrication import nest as nest
     from lamella.files.compas_json import compas_at as compas_at
@@ -32,14 +32,9 @@ if TYPE_CHECKING:
     from lamella.files.quad_mesh_files import read_quad_mesh as read_quad_mesh
     from lamella.network.make import make_network as make_network
     from lamella.network.network import Network as Network
-    from lamella.pipeline import Results as Results
-    from lamella.pipeline import compute as compute
-    from lamella.pipeline import make_surface as make_surface
-    from lamella.pipeline import run as run
-    from lamella.pipeline import write as write
-    from lamella.project import Project as Project
-    from lamella.project_file import parse_project as parse_project
-    from lamella.project_file import read_project as read_project
+    from lamella.project.read import parse_project as parse_project
+    from lamella.project.read import read_project as read_project
+    from lamella.project.tables import Project as Project
     from lamella.projection.foot_points import foot_surface as foot_surface
     from lamella.projection.problems.asymptotic import asymptotic as asymptotic
     from lamella.projection.problems.deform import deform as deform
@@ -48,6 +43,11 @@ if TYPE_CHECKING:
     from lamella.projection.problems.straighten import straighten as straighten
     from lamella.projection.quad_mesh import QuadMesh as QuadMesh
     from lamella.projection.quad_mesh import quad_mesh as quad_mesh
+    from lamella.stages.pipeline import Results as Results
+    from lamella.stages.pipeline import compute as compute
+    from lamella.stages.pipeline import make_surface as make_surface
+    from lamella.stages.pipeline import run as run
+    from lamella.stages.pipeline import write as write
     from lamella.strip.lamellas import Lamellas as Lamellas
     from lamella.strip.lamellas import Section as Section
     from lamella.strip.lamellas import make_lamellas as make_lamellas
@@ -55,20 +55,20 @@ if TYPE_CHECKING:
     from lamella.strip.material import find_material as find_material
     from lamella.surface.boundary import Loop as Loop
     from lamella.surface.boundary import make_loop as make_loop
-    from lamella.surface.catenoid import Catenoid as Catenoid
-    from lamella.surface.cylinder import Cylinder as Cylinder
-    from lamella.surface.delaunay import Nodoid as Nodoid
-    from lamella.surface.delaunay import Unduloid as Unduloid
+    from lamella.surface.closed_forms.catenoid import Catenoid as Catenoid
+    from lamella.surface.closed_forms.cylinder import Cylinder as Cylinder
+    from lamella.surface.closed_forms.delaunay import Nodoid as Nodoid
+    from lamella.surface.closed_forms.delaunay import Unduloid as Unduloid
+    from lamella.surface.closed_forms.enneper import Enneper as Enneper
+    from lamella.surface.closed_forms.helicoid import Helicoid as Helicoid
+    from lamella.surface.closed_forms.scherk import Scherk as Scherk
     from lamella.surface.element.places import Places as Places
     from lamella.surface.element.surface import ElementSurface as ElementSurface
-    from lamella.surface.enneper import Enneper as Enneper
-    from lamella.surface.found.find import find_film as find_film
-    from lamella.surface.helicoid import Helicoid as Helicoid
-    from lamella.surface.scherk import Scherk as Scherk
+    from lamella.surface.form_finding.find import find_film as find_film
 
 # imported on first use: `lamella --help` must not wait for scipy
 _HOMES = {
-    "InputError": "errors",
+    "InputError": "base.errors",
     "compas_at": "files.compas_json",
     "quad_mesh_of_compas": "files.compas_json",
     "read_quad_mesh": "files.quad_mesh_files",
@@ -76,14 +76,14 @@ _HOMES = {
     "nest": "fabrication",
     "make_network": "network.make",
     "Network": "network.network",
-    "Results": "pipeline",
-    "compute": "pipeline",
-    "make_surface": "pipeline",
-    "run": "pipeline",
-    "write": "pipeline",
-    "Project": "project",
-    "parse_project": "project_file",
-    "read_project": "project_file",
+    "Results": "stages.pipeline",
+    "compute": "stages.pipeline",
+    "make_surface": "stages.pipeline",
+    "run": "stages.pipeline",
+    "write": "stages.pipeline",
+    "Project": "project.tables",
+    "parse_project": "project.read",
+    "read_project": "project.read",
     "foot_surface": "projection.foot_points",
     "asymptotic": "projection.problems.asymptotic",
     "deform": "projection.problems.deform",
@@ -99,16 +99,16 @@ _HOMES = {
     "find_material": "strip.material",
     "Loop": "surface.boundary",
     "make_loop": "surface.boundary",
-    "Catenoid": "surface.catenoid",
-    "Cylinder": "surface.cylinder",
-    "Nodoid": "surface.delaunay",
-    "Unduloid": "surface.delaunay",
+    "Catenoid": "surface.closed_forms.catenoid",
+    "Cylinder": "surface.closed_forms.cylinder",
+    "Nodoid": "surface.closed_forms.delaunay",
+    "Unduloid": "surface.closed_forms.delaunay",
     "Places": "surface.element.places",
     "ElementSurface": "surface.element.surface",
-    "Enneper": "surface.enneper",
-    "find_film": "surface.found.find",
-    "Helicoid": "surface.helicoid",
-    "Scherk": "surface.scherk",
+    "Enneper": "surface.closed_forms.enneper",
+    "find_film": "surface.form_finding.find",
+    "Helicoid": "surface.closed_forms.helicoid",
+    "Scherk": "surface.closed_forms.scherk",
 }
 
 __all__ = ["__version__", *_HOMES]

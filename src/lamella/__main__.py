@@ -1,5 +1,5 @@
 """``python -m lamella``."""
 
-from lamella.cli import main
+from lamella.command.main import main
 
 raise SystemExit(main())

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from lamella.cli import main
+from lamella.command.main import main
 from lamella.files.own import write_summary
 
 

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from lamella import InputError, read_project
-from lamella.cli import main
-from lamella.network.density import BYTES_FIXED, BYTES_PER_NODE
-from lamella.pipeline import plan
+from lamella.command.main import main
+from lamella.network.lattice.density import BYTES_FIXED, BYTES_PER_NODE
+from lamella.stages.pipeline import plan
 
 from .projects import UNDULOID, surface
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from lamella import InputError, parse_project
-from lamella.cli import main
+from lamella.command.main import main
 
 from .projects import FULL, SURFACES, UNDULOID, surface
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from lamella.cli import main
+from lamella.command.main import main
 
 from .projects import FULL, SURFACES, UNDULOID, surface
 

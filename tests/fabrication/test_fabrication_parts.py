@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 from test_fabrication_strips import Strip, build, random_strips, sampled
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.fabrication import make_parts
 from lamella.fabrication.axis import Axis
 from lamella.fabrication.flat import extents, longest_fitting, outline_area

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 import rhino3dm
 
-from lamella.errors import InputError
-from lamella.files import bounded, rhino_model
-from lamella.files.bounded import BrokeDown, Limits, TookTooLong, limits_for, run_bounded
-from lamella.files.rhino_model import read_rhino
+from lamella.base.errors import InputError
+from lamella.files.read import bounded, rhino_model
+from lamella.files.read.bounded import BrokeDown, Limits, TookTooLong, limits_for, run_bounded
+from lamella.files.read.rhino_model import read_rhino
 
 ROOM = 2**29
 
@@ -23,7 +23,7 @@ ROOM = 2**29
 def work(folder: Path, monkeypatch: pytest.MonkeyPatch, body: str) -> str:
     """A module with this main function, where only the calling process finds it."""
     (folder / "own_work.py").write_text(
-        "import os, sys, time\nfrom lamella.files.bounded import Limits, limit_this_process\n"
+        "import os, sys, time\nfrom lamella.files.read.bounded import Limits, limit_this_process\n"
         f"def main(arguments):\n    limit_this_process(Limits(int(arguments[0]), int(arguments[1])))\n    {body}\n"
     )
     monkeypatch.syspath_prepend(str(folder))
@@ -159,7 +159,7 @@ def test_a_script_without_a_guarded_main_part_reads_a_rhino_file(rhino_file: byt
     (tmp_path / "json.py").write_text("raise SystemExit('the wrong json')\n")
     (tmp_path / "code").mkdir()
     (tmp_path / "code" / "script.py").write_text(
-        "from pathlib import Path\nfrom lamella.files.rhino_model import read_rhino\n"
+        "from pathlib import Path\nfrom lamella.files.read.rhino_model import read_rhino\n"
         "print(read_rhino(Path('model.3dm').read_bytes(), 'curves', 'key').unit)\n"
     )
     done = subprocess.run(

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.files import folder
 from lamella.files.exchange import exchange
 from lamella.files.folder import check_target, staged_folder

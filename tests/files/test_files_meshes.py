@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from test_files_samples import cylinder_mesh, cylinder_net
 
-from lamella.files.mesh_files import (
+from lamella.files.write.meshes import (
     surface_obj_bytes,
     surface_ply_bytes,
     write_network_obj,

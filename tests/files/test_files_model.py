@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 from test_files_samples import RADIUS, cylinder_mesh, cylinder_net, helix, inward
 
-from lamella.files import model_3dm
-from lamella.files.model_3dm import model_bytes
-from lamella.files.splines import RELATIVE_TOLERANCE, fit_spline
+from lamella.files.write import model_3dm
+from lamella.files.write.model_3dm import model_bytes
+from lamella.files.write.splines import RELATIVE_TOLERANCE, fit_spline
 
 NODE_LAYERS = ["nodes regular", "nodes boundary", "nodes singular", "nodes seam"]
 HERE = Path(__file__).parent
@@ -214,7 +214,7 @@ def test_a_failed_write_raises_and_leaves_the_older_file(tmp_path: Path) -> None
 import resource, sys
 from pathlib import Path
 from test_files_samples import RADIUS, cylinder_mesh, cylinder_net
-from lamella.files.model_3dm import model_bytes
+from lamella.files.write.model_3dm import model_bytes
 from lamella.files.whole import write_whole
 network, lamellas = cylinder_net()
 resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))

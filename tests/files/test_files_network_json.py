@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from test_files_samples import cylinder_net
 
-from lamella.files.network_json import network_bytes, network_schema, write_network
-from lamella.files.nodes_csv import write_nodes_csv
+from lamella.files.write.network_json import network_bytes, network_schema, write_network
+from lamella.files.write.nodes_csv import write_nodes_csv
 from lamella.network.network import NODE_KINDS
 
 VALIDATOR = jsonschema.Draft202012Validator(network_schema())

@@ -12,8 +12,8 @@ import rhino3dm
 from PIL import Image
 
 from lamella import quad_mesh
-from lamella.cli import main
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.command.main import main
 from lamella.files.ours import is_ours, signed_png
 from lamella.files.quad_mesh_files import QuadFile, quad_mesh_bytes
 from lamella.files.whole import write_new_whole

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.files.folder import check_target, staged_folder
 from lamella.files.own import foreign_entries, remove_run, run_files, write_summary
 

@@ -11,8 +11,8 @@ import pytest
 from lamella import InputError, QuadMesh, quad_mesh
 from lamella.files.compas_json import compas_at, quad_mesh_of_compas
 from lamella.files.quad_mesh_files import FORMATS, QuadFile, quad_mesh_bytes, read_quad_mesh
+from lamella.files.read.mesh_ply import read_ply
 from lamella.projection.mesh_figures import mesh_figures
-from lamella.surface.imported.read_ply import read_ply
 
 
 def sample() -> QuadMesh:

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 import lamella
 from exact_elements import catenoid_patch, sphere_cap, whole_catenoid
-from lamella.files import surface_3dm
-from lamella.files.surface_3dm import sag, surface_3dm_bytes, write_surface_3dm
-from lamella.output import write_files
+from lamella.files.write import surface_3dm
+from lamella.files.write.surface_3dm import sag, surface_3dm_bytes, write_surface_3dm
+from lamella.stages.output import write_files
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
 

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lamella.files.mesh_files import write_surface_obj, write_surface_ply
-from lamella.surface.catenoid import Catenoid
+from lamella.files.read.mesh import read_mesh
+from lamella.files.write.meshes import write_surface_obj, write_surface_ply
+from lamella.surface.closed_forms.catenoid import Catenoid
+from lamella.surface.closed_forms.enneper import Enneper
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.enneper import Enneper
-from lamella.surface.imported.read_mesh import read_mesh
-from surface.found.exact_patches import CatenoidPatch, SphereCap
-from surface.found.films import find_equilibrium, start, surface
+from surface.form_finding.exact_patches import CatenoidPatch, SphereCap
+from surface.form_finding.films import find_equilibrium, start, surface
 
 
 def off_the_faces(points, faces, distance, seed: int = 0) -> float:

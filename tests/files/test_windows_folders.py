@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.files import folder as folders
 from lamella.files import lock, own
 from lamella.files.folder import check_target, staged_folder

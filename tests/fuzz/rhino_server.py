@@ -10,8 +10,8 @@ import sys
 import time
 from typing import BinaryIO
 
-from lamella.files.bounded import Limits, limit_this_process
-from lamella.files.rhino_child import packed_model
+from lamella.files.read.bounded import Limits, limit_this_process
+from lamella.files.read.rhino_child import packed_model
 
 REQUEST = struct.Struct("<ddQIQ")
 """Seconds of computing, seconds on the clock, bytes of memory, kind, bytes of data."""

@@ -14,8 +14,8 @@ import ezdxf
 import numpy as np
 import rhino3dm
 
-from lamella.project import SURFACE_TABLES
-from lamella.starter import starter
+from lamella.project.starter import starter
+from lamella.project.tables import SURFACE_TABLES
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SIDE = 4

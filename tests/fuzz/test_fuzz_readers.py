@@ -21,17 +21,17 @@ from types import FrameType
 
 import pytest
 
-from lamella.check import check_project
-from lamella.errors import InputError
-from lamella.files import rhino_model
-from lamella.files.bounded import BrokeDown, Limits, TookTooLong
+from lamella.base.errors import InputError
 from lamella.files.quad_mesh_files import read_quad_mesh
-from lamella.project import SURFACE_TABLES, FormFoundTable, MeshTable
-from lamella.project_file import parse_project, read_project
+from lamella.files.read import rhino_model
+from lamella.files.read.bounded import BrokeDown, Limits, TookTooLong
+from lamella.files.read.mesh import READERS as MESHES
+from lamella.files.read.mesh import read_mesh
+from lamella.project.read import parse_project, read_project
+from lamella.project.tables import SURFACE_TABLES, FormFoundTable, MeshTable
+from lamella.stages.check import check_project
 from lamella.surface.boundary import boundary_loops
-from lamella.surface.imported.clean import clean
-from lamella.surface.imported.read_mesh import READERS as MESHES
-from lamella.surface.imported.read_mesh import read_mesh
+from lamella.surface.from_mesh.clean import clean
 
 from . import seed_files
 from .mutants import mutant
@@ -48,7 +48,7 @@ MOST_SECONDS = 20
 MOST_MEMORY = 2**30
 RHINO_SECONDS, RHINO_CLOCK = 0.5, 60.0
 """Limits for .3dm files here, of computing and on the clock: a good one takes milliseconds. One in fifteen damaged ones
-runs in the library without end, which the program gives `lamella.files.rhino_model.SECONDS`."""
+runs in the library without end, which the program gives `lamella.files.read.rhino_model.SECONDS`."""
 
 
 def read_loops(path: Path) -> None:
@@ -99,7 +99,7 @@ if ".off" in MESHES:
 
 
 class RhinoServer:
-    """Stands for `lamella.files.bounded.run_bounded`: the same limits, a quicker start."""
+    """Stands for `lamella.files.read.bounded.run_bounded`: the same limits, a quicker start."""
 
     def __init__(self) -> None:
         command = [sys.executable, "-m", "fuzz.rhino_server"]
@@ -217,7 +217,7 @@ def test_damaged_files_are_read_or_refused(name: str, tmp_path: Path, rhino: Rhi
 
 def test_every_kind_of_surface_and_file_is_damaged() -> None:
     from lamella.files.quad_mesh_files import FORMATS
-    from lamella.project_boundary import CURVE_FILES
+    from lamella.project.boundary_tables import CURVE_FILES
 
     covered = {name.split("-")[0]: set[str]() for name in READERS}
     for name, reader in READERS.items():

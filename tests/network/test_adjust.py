@@ -13,19 +13,19 @@ import pytest
 
 from conftest import EXAMPLES
 from lamella import InputError, compute, parse_project
-from lamella.network.adjust import Adjusted, adjust_boundary
-from lamella.network.adjustable_films import Films
-from lamella.network.element_network import ElementNetwork, element_network
+from lamella.network.adjust.adjust import Adjusted, adjust_boundary
+from lamella.network.adjust.adjustable_films import Films
+from lamella.network.elements.element_network import ElementNetwork, element_network
+from lamella.network.isothermic.transition_sensitivities import curvature_rates_of_volume
 from lamella.network.network import SEAM, SINGULAR
 from lamella.network.pattern import LAMELLAS, Pattern
-from lamella.network.shift_rates import curvature_rates_of_volume
-from lamella.pipeline import write
-from lamella.project import FormFoundTable
-from lamella.project_file import read_project
+from lamella.project.read import read_project
+from lamella.project.tables import FormFoundTable
+from lamella.stages.pipeline import write
 from lamella.surface.boundary import boundary_loops
 from lamella.surface.boundary.freedom import Freedom
-from lamella.surface.found.enclosed import enclosed_volume
-from lamella.surface.found.find import find_film
+from lamella.surface.form_finding.enclosed_volume import enclosed_volume
+from lamella.surface.form_finding.find import find_film
 
 HERE = Path()
 
@@ -140,7 +140,7 @@ def test_a_limit_that_is_reached_holds() -> None:
 def test_the_change_that_a_refusal_offers_does(monkeypatch: pytest.MonkeyPatch) -> None:
     """The sketch takes 0.11 m: what is offered instead of 0.04 m, followed to the letter, closes it within that."""
     # on elements as coarse as the final ones
-    monkeypatch.setattr("lamella.network.adjust.COARSE", 2e-2)
+    monkeypatch.setattr("lamella.network.adjust.adjust.COARSE", 2e-2)
     tables = sketch(1)
     rim = tables["surface"]["boundary"][0]
     rim["adjust"] = {"points": 0.04}

@@ -10,7 +10,7 @@ import pytest
 
 from conftest import run_of_example
 from lamella import compute, parse_project
-from lamella.network.element_network import element_network
+from lamella.network.elements.element_network import element_network
 from lamella.network.network import SEAM, SINGULAR, Network
 from lamella.surface.element.surface import ElementSurface
 from network.test_found_network import check_combinatorics, ruler

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from lamella import InputError
-from lamella.network.cell_count import CellCount, curves_ending
-from lamella.network.element_network import ElementNetwork, LaidNet, element_network, lay_net
-from lamella.network.holonomy import holonomies
+from lamella.network.elements.cell_count import CellCount, curves_ending
+from lamella.network.elements.element_network import ElementNetwork, LaidNet, element_network, lay_net
+from lamella.network.isothermic.holonomy import holonomies
 from lamella.network.network import BOUNDARY
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.boundary import Loop, make_loop
 from lamella.surface.boundary.arcs import circle
 from lamella.surface.boundary.splines import closed_spline
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.found.find import find_film
+from lamella.surface.form_finding.find import find_film
 
 TURN = 2 * np.pi * np.arange(16) / 16
 

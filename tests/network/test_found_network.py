@@ -18,14 +18,14 @@ from scipy.spatial import cKDTree
 
 from exact_elements import on_map
 from lamella import Catenoid, Enneper, Helicoid, InputError, Unduloid, compute, make_network, parse_project
-from lamella.files.network_json import network_bytes
-from lamella.network.element_network import ElementNetwork, element_network
+from lamella.files.write.network_json import network_bytes
+from lamella.network.elements.element_network import ElementNetwork, element_network
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
-from lamella.surface.closed_form import ClosedForm
+from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.surface import ElementSurface
 from measure_network import measure
-from surface.found.exact_patches import disc
+from surface.form_finding.exact_patches import disc
 
 # --- curved triangles on closed forms -------------------------------------------------------------------------------
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from lamella import Catenoid, Enneper, Helicoid, Unduloid, make_network
-from lamella.network.element_network import element_network
+from lamella.network.elements.element_network import element_network
 from lamella.network.network import Network
 from lamella.network.turning import turning
-from lamella.surface.closed_form import ClosedForm
+from lamella.surface.closed_forms.closed_form import ClosedForm
 from network.test_found_network import catenoid
 
 FORMS = {

@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from lamella import Catenoid, Cylinder, Enneper, InputError, Nodoid, Unduloid, compute, make_network, parse_project
-from lamella.network.density import choose_density
+from lamella.network.lattice.density import choose_density
 from lamella.network.network import REGULAR
 from lamella.network.pattern import Pattern
 from network.test_network import _check_combinatorics

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from lamella import compute, parse_project
-from lamella.files.network_json import network_bytes
+from lamella.files.write.network_json import network_bytes
 from lamella.network.network import SINGULAR
-from lamella.pipeline import Results
+from lamella.stages.pipeline import Results
 from measure_network import measure
 
 # of films, by default

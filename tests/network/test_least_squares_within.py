@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lamella.network.least_squares_within import least_squares_within
+from lamella.network.adjust.least_squares_within import least_squares_within
 
 
 def ball(count: int, radius: float = 1.0) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lamella import InputError
-from lamella.network.level_lines import SmallTriangles, level_chains
+from lamella.network.elements.level_lines import SmallTriangles, level_chains
 
 
 @pytest.mark.parametrize("far", [1e12, 1e18])

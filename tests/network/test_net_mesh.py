@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from exact_elements import catenoid_patch
-from lamella.network.net_mesh import make_net_mesh
-from lamella.network.rosette import RINGS, rosette
+from lamella.network.isothermic.integration_mesh import make_net_mesh
+from lamella.network.isothermic.umbilic_patch import RINGS, rosette
 from lamella.surface.element.bisect import bisect, whole
 from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.quadrature import triangle_rule

@@ -13,9 +13,9 @@ from scipy.integrate import romb
 
 from conftest import KINDS, draw_surface
 from lamella import Catenoid, Cylinder, Enneper, Helicoid, InputError, Nodoid, Scherk, Unduloid, make_network
-from lamella.network.density import choose_density
+from lamella.network.lattice.density import choose_density
 from lamella.network.network import BOUNDARY, REGULAR, SINGULAR
-from lamella.surface.outline import Ring
+from lamella.surface.closed_forms.outline import Ring
 
 
 def _edges(network):

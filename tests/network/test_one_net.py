@@ -16,14 +16,14 @@ import pytest
 from scipy.spatial import cKDTree
 
 from lamella import Catenoid, Cylinder, Enneper, Helicoid, Scherk, make_network
-from lamella.network.element_lattice import choose_lattice
-from lamella.network.element_network import element_network, lay_net
+from lamella.network.elements.element_network import element_network, lay_net
+from lamella.network.elements.lattice import choose_lattice
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
 from lamella.surface.boundary import make_loop
 from lamella.surface.boundary.pieces import lines
 from lamella.surface.boundary.splines import closed_spline
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.found.find import find_film
+from lamella.surface.form_finding.find import find_film
 
 TAU = 2 * np.pi
 # of the size: twice the error of surfaces on coarse elements; of ends of lamellas on a seam
@@ -102,8 +102,8 @@ def same(one: Network, other: Network, motion: Motion | None = None) -> float:
 def on_a_margin(one: Network, other: Network) -> bool:
     """Whether nets differ by one end of a lamella, about as near the next one as ends are one node.
 
-    `lamella.network.rim_ends` takes crossings within 0.005 cells of the rim for one node; coarse elements are off by a
-    fifth of that. A crossing there with an end on the rim is one node or two, with two ends one or three.
+    `lamella.network.elements.rim_ends` takes crossings within 0.005 cells of the rim for one node; coarse elements are
+    off by a fifth of that. A crossing there with an end on the rim is one node or two, with two ends one or three.
     """
     near = min(float(net.cell_edges.min() / np.median(net.cell_edges)) for net in (one, other))
     return (

@@ -28,17 +28,17 @@ from lamella import (
     make_network,
     parse_project,
 )
-from lamella.files.network_json import network_bytes, network_schema
+from lamella.files.write.network_json import network_bytes, network_schema
 from lamella.network.cell_sizes import MOST_RATIO, large_cells
-from lamella.network.element_network import ElementNetwork, element_network
+from lamella.network.elements.element_network import ElementNetwork, element_network
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
 from lamella.network.pattern import Pattern, fitting_cells
-from lamella.project import project_schema
+from lamella.project.tables import project_schema
+from lamella.stages.summary import network_summary, principal_summary
 from lamella.strip.lamellas import Section, make_lamellas
 from lamella.strip.material import MATERIALS
-from lamella.summary import network_summary, principal_summary
-from lamella.surface.found.find import find_film
-from lamella.surface.outline import Ring
+from lamella.surface.closed_forms.outline import Ring
+from lamella.surface.form_finding.find import find_film
 from network.random_boundaries import sketch
 from network.test_found_network import FORMS, euler, from_exact_nodes
 from network.test_network import _check_combinatorics

@@ -11,10 +11,10 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from lamella.errors import InputError
-from lamella.network.element_network import ElementNetwork, element_network
+from lamella.base.errors import InputError
+from lamella.network.elements.element_network import ElementNetwork, element_network
 from lamella.network.network import REGULAR, SEAM, SINGULAR
-from lamella.surface.found.find import find_film
+from lamella.surface.form_finding.find import find_film
 from network.random_boundaries import sketch
 from network.test_found_network import euler, ruler
 

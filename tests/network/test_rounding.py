@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from lamella.errors import InputError
-from lamella.network.element_network import element_network
-from lamella.surface.found.find import find_film
+from lamella.base.errors import InputError
+from lamella.network.elements.element_network import element_network
+from lamella.surface.form_finding.find import find_film
 from network.random_boundaries import sketch
 from network.test_found_network import ruler
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamella.network.sharp_turns import MOST, TURN, more_samples
+from lamella.network.elements.sharp_turns import MOST, TURN, more_samples
 
 
 def test_pieces_that_turn_evenly() -> None:

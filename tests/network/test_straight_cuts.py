@@ -11,16 +11,16 @@ from functools import cache
 import numpy as np
 import pytest
 
-from lamella.network.gluing import integrate, links
-from lamella.network.holonomy import holonomies
-from lamella.network.isothermic import Isothermic, sectors
-from lamella.network.net_mesh import make_net_mesh
-from lamella.network.poisson import Poisson
-from lamella.network.recut import cut_straight
+from lamella.network.isothermic.holonomy import holonomies
+from lamella.network.isothermic.integration_mesh import make_net_mesh
+from lamella.network.isothermic.isothermic import Isothermic, sectors
+from lamella.network.isothermic.poisson import Poisson
+from lamella.network.isothermic.recut import cut_straight
+from lamella.network.isothermic.seamless_transitions import integrate, links
 from lamella.surface.boundary import make_loop
 from lamella.surface.boundary.splines import closed_spline
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.found.find import find_film
+from lamella.surface.form_finding.find import find_film
 
 TAU = 2 * np.pi
 

@@ -15,16 +15,16 @@ from scipy.interpolate import CubicSpline
 from conftest import run_of_example
 from exact_elements import catenoid_map, on_map
 from lamella import Enneper, Helicoid, InputError, Scherk, make_network, parse_project
-from lamella.files.network_json import network_bytes
+from lamella.files.write.network_json import network_bytes
 from lamella.network.cell_sizes import large_cells
-from lamella.network.element_ground import ElementGround
-from lamella.network.flow import finished, trace
-from lamella.network.line_field import LEAST_ANGLE, LineField
 from lamella.network.network import BOUNDARY, REGULAR, Network
 from lamella.network.pattern import Pattern
-from lamella.network.plane_ground import PlaneGround
-from lamella.network.traced_network import TracedNetwork, traced_network
-from lamella.pipeline import compute
+from lamella.network.streamlines.direction_field import LEAST_ANGLE, LineField
+from lamella.network.streamlines.element_charts import ElementGround
+from lamella.network.streamlines.plane_charts import PlaneGround
+from lamella.network.streamlines.streamline_network import TracedNetwork, traced_network
+from lamella.network.streamlines.streamlines import finished, trace
+from lamella.stages.pipeline import compute
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
 from measure_network import measure

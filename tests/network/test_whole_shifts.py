@@ -11,27 +11,27 @@ import pytest
 
 from exact_elements import on_map
 from lamella import Enneper
-from lamella.network import gluing
-from lamella.network.between_umbilics import between_umbilics, keeps_apart
-from lamella.network.carried_shifts import Carrier
-from lamella.network.cell_map import CellMap
-from lamella.network.cut import cut_edges
-from lamella.network.element_network import element_network
-from lamella.network.gluing import integrate
-from lamella.network.holonomy import around_vertex, holonomies, tip_vertices, vertex_relations
-from lamella.network.isothermic import Isothermic
-from lamella.network.lattice_origin import lattice_origin
-from lamella.network.net_mesh import NetMesh, make_net_mesh
+from lamella.network.elements.element_network import element_network
+from lamella.network.elements.integer_grid_map import CellMap
+from lamella.network.elements.lattice_origin import lattice_origin
+from lamella.network.isothermic import seamless_transitions
+from lamella.network.isothermic.between_umbilics import between_umbilics, keeps_apart
+from lamella.network.isothermic.cut import cut_edges
+from lamella.network.isothermic.holonomy import around_vertex, holonomies, tip_vertices, vertex_relations
+from lamella.network.isothermic.integer_transitions import WholeShifts, _closest, _even, _kernel, _reduced
+from lamella.network.isothermic.integration_mesh import NetMesh, make_net_mesh
+from lamella.network.isothermic.isothermic import Isothermic
+from lamella.network.isothermic.match_transitions import Carrier
+from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.network import SEAM, SINGULAR
 from lamella.network.pattern import LAMELLAS
-from lamella.network.whole_shifts import WholeShifts, _closest, _even, _kernel, _reduced
 from lamella.surface.boundary import boundary_loops
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.found.find import find_film
+from lamella.surface.form_finding.find import find_film
 from network.random_boundaries import sketch as random_sketch
 from network.test_adjust import HERE, sketch, table_of
 from network.test_found_network import elements_on, euler, shaken_grid
-from surface.found.exact_patches import disc
+from surface.form_finding.exact_patches import disc
 
 STEP = 0.35
 
@@ -53,7 +53,7 @@ def cut_anew(surface: ElementSurface, monkeypatch: pytest.MonkeyPatch, seed: int
 
     with monkeypatch.context() as patch:
         if seed:
-            patch.setattr(gluing, "cut_edges", other_ways)
+            patch.setattr(seamless_transitions, "cut_edges", other_ways)
         return integrate(mesh, odd)
 
 

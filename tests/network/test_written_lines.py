@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lamella import Catenoid, Enneper, Unduloid, compute, make_network, parse_project
-from lamella.files.network_json import network_bytes
+from lamella.files.write.network_json import network_bytes
 from lamella.network.written_lines import WrittenLines
 from measure_network import measure
 

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from lamella import compute, parse_project
-from lamella.files.network_json import network_bytes
-from lamella.network.beyond_rim import zeros_beyond_rim
-from lamella.network.element_network import element_network
+from lamella.files.write.network_json import network_bytes
+from lamella.network.elements.element_network import element_network
+from lamella.network.isothermic.beyond_rim import zeros_beyond_rim
+from lamella.network.isothermic.umbilic_depth import UmbilicDepths, depth_errors
 from lamella.network.make import make_network
 from lamella.network.network import SINGULAR
-from lamella.network.umbilic_depth import UmbilicDepths, depth_errors
-from lamella.summary import network_summary
+from lamella.stages.summary import network_summary
 from measure_network import measure
 from surface.weierstrass import weierstrass
 

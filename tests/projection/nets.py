@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 from lamella import Enneper
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
-from lamella.surface.closed_form import ClosedForm
+from lamella.surface.closed_forms.closed_form import ClosedForm
 
 
 def grid_faces(rows: int, columns: int, closed: bool = False) -> np.ndarray:

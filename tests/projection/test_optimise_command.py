@@ -15,10 +15,10 @@ import pytest
 from nets import grid_faces, hexagonal_net, lamella_patch, noisy, rotational_net, spider, weingarten_patch
 
 from lamella import Catenoid, Enneper, Unduloid, quad_mesh
-from lamella.cli import main
-from lamella.files.optimise_json import optimise_schema
+from lamella.command.main import main
+from lamella.command.optimise_options import USED
 from lamella.files.quad_mesh_files import QuadFile, quad_mesh_bytes, read_quad_mesh
-from lamella.optimise_wishes import USED
+from lamella.files.write.optimise_json import optimise_schema
 from lamella.projection.mesh_figures import mesh_figures
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.star_measures import circle_angles, star_spheres

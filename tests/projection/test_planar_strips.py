@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from lamella import InputError, Unduloid, find_film, make_loop
-from lamella.network.element_network import element_network
+from lamella.network.elements.element_network import element_network
 from lamella.projection.foot_points import MeshFeet, foot_surface
 from lamella.projection.problems.planar_strips import PlanarStrips, planar_strips
 from lamella.strip.planarity import planarity_score

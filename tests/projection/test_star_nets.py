@@ -28,7 +28,7 @@ from lamella.projection.solve import solve
 from lamella.projection.star_measures import chord_angles, circle_angles, face_angles, star_spheres
 from lamella.projection.unknowns import Block
 from lamella.projection.vertex_normals import smoothed_normals
-from lamella.surface.closed_form import ClosedForm
+from lamella.surface.closed_forms.closed_form import ClosedForm
 
 NOISE = 0.02
 CATENOID = Catenoid(1.0, (-1.5, 1.5))

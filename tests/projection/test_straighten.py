@@ -14,7 +14,7 @@ from lamella.projection.foot_points import foot_surface
 from lamella.projection.problems.straighten import edge_middles, straighten
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.star_measures import circle_angles, star_spheres
-from surface.found.films import surface, tube
+from surface.form_finding.films import surface, tube
 
 UNDULOID = Unduloid(0.6, 1.4, (-8.0, 8.0))
 

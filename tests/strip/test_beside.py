@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from lamella import Catenoid, Enneper, Helicoid, Nodoid, Unduloid, make_network
-from lamella.network.density import choose_density
-from lamella.network.element_network import element_network
+from lamella.network.elements.element_network import element_network
+from lamella.network.lattice.density import choose_density
+from lamella.network.lattice.trace import trace_closed_form
 from lamella.network.network import SINGULAR, Network
 from lamella.network.pattern import Pattern
-from lamella.network.trace import trace_closed_form
-from lamella.surface.closed_form import ClosedForm
+from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.darboux import sideways_slope
 from network.test_found_network import catenoid
 

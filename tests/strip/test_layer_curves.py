@@ -25,7 +25,7 @@ from lamella import (
     parse_project,
     write,
 )
-from lamella.network.element_network import element_network
+from lamella.network.elements.element_network import element_network
 from lamella.network.network import Network
 from lamella.strip.lamellas import crossings
 from lamella.strip.unroll import development_deviation
@@ -200,9 +200,9 @@ def test_whole_runs_with_a_singular_node(tmp_path, way):
 
 
 def test_lines_of_another_normal_curvature_have_none():
-    from lamella.network.density import choose_density
+    from lamella.network.lattice.density import choose_density
+    from lamella.network.lattice.trace import trace_closed_form
     from lamella.network.pattern import Pattern
-    from lamella.network.trace import trace_closed_form
 
     surface = Catenoid(2.0, (-1.5, 2.0))
     pattern = Pattern("lamellas", (1, 1), 0.05)

@@ -7,7 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from lamella.surface.elliptic import epsilon, first_kind, jacobi, quarter_period
+from lamella.surface.closed_forms.elliptic import epsilon, first_kind, jacobi, quarter_period
 
 mpmath.mp.dps = 30
 

@@ -11,8 +11,8 @@ import pytest
 
 from conftest import KINDS, draw_surface
 from lamella import Catenoid, Cylinder, Enneper, InputError, Scherk, Unduloid
-from lamella.summary import surface_summary
-from lamella.surface.closed_forms import CLOSED_FORMS
+from lamella.stages.summary import surface_summary
+from lamella.surface.closed_forms.kinds import CLOSED_FORMS
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.points import Floats, SurfacePoints
 from lamella.surface.surface import Surface

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from lamella.surface.element.surface import ElementSurface
-from surface.found.films import disc_film, surface
+from surface.form_finding.films import disc_film, surface
 
 
 def weierstrass(zeros, rings: int = 8, noise: float = 0.0, seed: int = 0, scale: float = 0.5) -> ElementSurface:

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from lamella import Catenoid, Enneper, Helicoid, Scherk, Unduloid
-from lamella.network.element_network import element_network
+from lamella.network.elements.element_network import element_network
 from lamella.network.network import REGULAR, SEAM
-from lamella.surface.closed_form import ClosedForm
-from lamella.surface.found.find import find_film
-from lamella.surface.found.newton import find_equilibrium
+from lamella.surface.closed_forms.closed_form import ClosedForm
+from lamella.surface.form_finding.find import find_film
+from lamella.surface.form_finding.newton import find_equilibrium
 from network.test_found_network import check_combinatorics, from_exact_nodes, size_of
-from surface.found.exact_patches import ArcLength
-from surface.found.films import on_sizes, order_of, start, surface
+from surface.form_finding.exact_patches import ArcLength
+from surface.form_finding.films import on_sizes, order_of, start, surface
 
 TAU = 2 * np.pi
 # closed form; middle and half axes of a bulging oval of its parameters; number of cells

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from lamella.surface.element.places import Places
-from lamella.surface.found.newton import find_equilibrium
-from surface.found.exact_patches import (
+from lamella.surface.form_finding.newton import find_equilibrium
+from surface.form_finding.exact_patches import (
     CatenoidPatch,
     EnneperPatch,
     Exact,
@@ -19,7 +19,7 @@ from surface.found.exact_patches import (
     SphereCap,
     UnduloidPatch,
 )
-from surface.found.films import on_sizes, order_of, random_places, start, surface
+from surface.form_finding.films import on_sizes, order_of, random_places, start, surface
 
 PATCHES: dict[str, tuple[Exact, float]] = {
     "catenoid": (CatenoidPatch(), 0.6),

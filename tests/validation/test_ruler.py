@@ -14,8 +14,8 @@ import pytest
 
 from conftest import KINDS, draw_surface, load
 from lamella import Catenoid, Enneper, Helicoid, Nodoid, Scherk, Unduloid, make_network
-from lamella.files.network_json import network_bytes
-from lamella.network.density import choose_density
+from lamella.files.write.network_json import network_bytes
+from lamella.network.lattice.density import choose_density
 from measure_network import measure
 
 

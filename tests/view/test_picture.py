@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import lamella
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 
 pytest.importorskip("matplotlib")
 from PIL import Image

@@ -16,8 +16,8 @@ from exact_elements import sphere_cap
 from lamella.network.make import make_network
 from lamella.strip.lamellas import Section, make_lamellas
 from lamella.strip.material import find_material
-from lamella.surface.catenoid import Catenoid
-from lamella.surface.cylinder import Cylinder
+from lamella.surface.closed_forms.catenoid import Catenoid
+from lamella.surface.closed_forms.cylinder import Cylinder
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view import report
 from lamella.view.quantity import surface_quantities

@@ -10,7 +10,7 @@ import pytest
 
 import lamella
 from exact_elements import catenoid_patch, sphere_cap, whole_catenoid
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.surface.element.surface import ElementSurface
 
 pytest.importorskip("matplotlib")

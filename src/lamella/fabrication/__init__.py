@@ -1,9 +1,9 @@
 """From lamellas to the workshop: flat parts with slots, sheets, drawings and the part list."""
 
 from lamella.fabrication.drawing import write_drawings
-from lamella.fabrication.making import make_parts
 from lamella.fabrication.part import Part, Parts
-from lamella.fabrication.reading import SlotReading, read_slots
+from lamella.fabrication.parts import make_parts
+from lamella.fabrication.read_back import SlotReading, read_slots
 from lamella.fabrication.schedule import write_schedule
 from lamella.fabrication.sheet import Nesting, nest
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from lamella.fabrication.dxf_text import Block, BlockWriter, DxfFile, Placed
 from lamella.fabrication.engraving import engrave
 from lamella.fabrication.part import Part, Parts
 from lamella.fabrication.sheet import Nesting
 from lamella.fabrication.stroke_font import text_strokes
+from lamella.files.write.dxf_text import Block, BlockWriter, DxfFile, Placed
 
 MM = 1e3
 # between sheets in the drawing, as a share of their length

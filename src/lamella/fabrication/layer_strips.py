@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.fabrication.askew import Askew
 from lamella.fabrication.axis import Axis
+from lamella.fabrication.oblique import Askew
 from lamella.fabrication.rules import clear_hub
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas, crossings

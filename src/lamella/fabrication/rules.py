@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.base.wording import rounded
 from lamella.fabrication.flat import longest_fitting
-from lamella.wording import rounded
 
 Floats = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lamella.fabrication.part import Part, Parts
 from lamella.fabrication.sheet import Nesting
-from lamella.files.text import csv_comment
+from lamella.files.write.text import csv_comment
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 

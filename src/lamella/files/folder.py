@@ -20,11 +20,11 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.base.wording import cut
 from lamella.files.exchange import exchange
 from lamella.files.lock import let_go_to_move, lock_folder, on_windows, unlock_folder
 from lamella.files.own import MARK, foreign_entries, remove_run, run_files, was_written_by_a_run
-from lamella.wording import cut
 
 ATTEMPTS = 50
 TAKEN = (errno.ENOTEMPTY, errno.EEXIST)

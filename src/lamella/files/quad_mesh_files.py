@@ -9,21 +9,21 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.base.plausible_size import SMALLEST
+from lamella.base.wording import counted, one_line
 from lamella.files.compas_json import compas_bytes, read_compas
-from lamella.files.text import dumped, require_finite, rows
+from lamella.files.read.mesh import LARGEST_FILE, LARGEST_SIZE, check_polygons
+from lamella.files.read.mesh_3dm import METRES as RHINO_METRES
+from lamella.files.read.mesh_3dm import read_3dm
+from lamella.files.read.mesh_obj import read_obj
+from lamella.files.read.mesh_ply import read_ply
+from lamella.files.read.mesh_units import METRES, name_of
+from lamella.files.read.raw_mesh import Polygons
+from lamella.files.write.text import dumped, require_finite, rows
 from lamella.projection.mesh_figures import MeshFigures
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.unknowns import Floats
-from lamella.surface.imported.raw_mesh import Polygons
-from lamella.surface.imported.read_3dm import METRES as RHINO_METRES
-from lamella.surface.imported.read_3dm import read_3dm
-from lamella.surface.imported.read_mesh import LARGEST_FILE, LARGEST_SIZE, check_polygons
-from lamella.surface.imported.read_obj import read_obj
-from lamella.surface.imported.read_ply import read_ply
-from lamella.surface.imported.units import METRES, name_of
-from lamella.unit_doubt import SMALLEST
-from lamella.wording import counted, one_line
 
 READERS = {".obj": read_obj, ".ply": read_ply, ".3dm": read_3dm}
 FORMATS = (*READERS, ".json")
@@ -275,7 +275,7 @@ def _rhino(
 ) -> bytes:
     import rhino3dm
 
-    from lamella.files.rhino_file import TOLERANCE, RhinoFile
+    from lamella.files.write.rhino_file import TOLERANCE, RhinoFile
 
     model = RhinoFile("optimised.3dm", name, version)
     unit = next((key for key, value in RHINO_METRES.items() if abs(value / metres - 1) < 1e-9), "Meters")

@@ -7,7 +7,7 @@ import secrets
 from collections.abc import Mapping
 from pathlib import Path
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 
 
 def write_whole(path: Path, content: bytes) -> None:

@@ -7,9 +7,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError
-from lamella.network.domain import Domain
-from lamella.network.lattice import Lattice
+from lamella.base.errors import InputError
+from lamella.network.lattice.domain import Domain
+from lamella.network.lattice.lattice import Lattice
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]

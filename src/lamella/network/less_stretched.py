@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from lamella.errors import InputError
-from lamella.network.density import MOST_TRIED, Density, choose_density
-from lamella.surface.closed_form import ClosedForm
-from lamella.surface.scherk import Scherk
+from lamella.base.errors import InputError
+from lamella.network.lattice.density import MOST_TRIED, Density, choose_density
+from lamella.surface.closed_forms.closed_form import ClosedForm
+from lamella.surface.closed_forms.scherk import Scherk
 
 # by which the number of cells, and the distance from infinity, grow from one trial to the next
 CELLS_BY, DISTANCE_BY = 1.25, 4.0

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from lamella.errors import InputError
-from lamella.network.density import check_requested, choose_density
-from lamella.network.element_network import Closing, element_network
-from lamella.network.lines import check_traced, ground_of, is_traced, told_mean_curvature
+from lamella.base.errors import InputError
+from lamella.network.elements.element_network import Closing, element_network
+from lamella.network.lattice.density import check_requested, choose_density
+from lamella.network.lattice.trace import trace_closed_form
 from lamella.network.network import Network
 from lamella.network.pattern import NetKind, Pattern
-from lamella.network.trace import trace_closed_form
-from lamella.network.traced_network import traced_network
-from lamella.surface.closed_form import ClosedForm
+from lamella.network.streamlines.applicability import check_traced, ground_of, is_traced, told_mean_curvature
+from lamella.network.streamlines.streamline_network import traced_network
+from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import refuse_umbilic
@@ -58,7 +58,7 @@ def make_network(
     Raises
     ------
     InputError
-        See `lamella.network.density.choose_density`; a sphere or a plane; or no two lamellas cross.
+        See `lamella.network.lattice.density.choose_density`; a sphere or a plane; or no two lamellas cross.
 
     See Also
     --------

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lamella.network.isothermic import Integers, Isothermic
+from lamella.network.isothermic.isothermic import Integers, Isothermic
 from lamella.network.pattern import Pattern
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.points import Floats

@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.network.cell_map import CellMap
-from lamella.network.crossings import Crossings
-from lamella.network.level_lines import CLOSED, RIM, SINGULAR_END
-from lamella.network.tracks import A, B, Tracks, rim_tips
+from lamella.network.elements.integer_grid_map import CellMap
+from lamella.network.elements.level_curves import A, B, Tracks, rim_tips
+from lamella.network.elements.level_lines import CLOSED, RIM, SINGULAR_END
+from lamella.network.lattice.crossings import Crossings
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import ElementRim
 from lamella.surface.points import Floats

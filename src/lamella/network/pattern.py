@@ -19,7 +19,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 
 Complexes = NDArray[np.complex128]
 # share of a period beyond which the curves of a family count as crossed by its loop

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.base.vectors import dots
 from lamella.surface.points import Floats
-from lamella.surface.vectors import dots
 
 Integers = NDArray[np.int64]
 

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.blocks import blocks
+from lamella.base.blocks import blocks
+from lamella.base.vectors import dots, lengths
 from lamella.network.network import Network
 from lamella.surface.points import Floats
-from lamella.surface.vectors import dots, lengths
 
 Integers = NDArray[np.int64]
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from lamella.base.sparse import Backend, SingularError
 from lamella.projection.constraint import Constraint
 from lamella.projection.normal_equations import NormalEquations
 from lamella.projection.unknowns import Block, Layout
-from lamella.sparse import Backend, SingularError
 
 # the constraints hold this much more exactly than the points are known
 EXACTNESS = 1e3

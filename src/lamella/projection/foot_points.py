@@ -8,9 +8,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy.spatial import cKDTree
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.projection.unknowns import Floats, Integers
-from lamella.surface.closed_form import ClosedForm
+from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.surface import ElementSurface

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from lamella.base.sparse import Backend, SymmetricPattern
 from lamella.projection.constraint import Constraint
 from lamella.projection.unknowns import Floats, Integers, Layout
-from lamella.sparse import Backend, SymmetricPattern
 
 
 @dataclass(frozen=True)

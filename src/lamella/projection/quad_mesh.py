@@ -17,7 +17,7 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.csgraph import connected_components
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.projection.unknowns import Floats, Integers
 
 Booleans = NDArray[np.bool_]

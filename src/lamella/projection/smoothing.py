@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.sparse import Backend, SymmetricPattern
 from lamella.projection.constraints.fairness import fairness
 from lamella.projection.quad_mesh import QuadMesh
-from lamella.sparse import Backend, SymmetricPattern
 
 # third differences against staying: waves of L edges are damped where FAIR (2 pi / L)^3 > 1, about 9 edges; shorter
 # ones are noise, longer ones shape
@@ -26,7 +26,7 @@ def smoothed(mesh: QuadMesh, *, fair: float = FAIR, backend: Backend | None = No
     fair : float
         f; 0 leaves the net as it is.
     backend : optional
-        See `lamella.sparse.default_backend`.
+        See `lamella.base.sparse.default_backend`.
     """
     one, other, values = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)], [np.zeros(0)]
     for part in fairness(mesh, 3, weight=fair):

@@ -14,13 +14,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.base.sparse import Backend, Factor, SingularError
 from lamella.projection.constraint import Constraint
 from lamella.projection.line_search import best_length
 from lamella.projection.normal_equations import NormalEquations
 from lamella.projection.report import Iteration, Solution, Verdict
 from lamella.projection.unknowns import Block, Floats, Layout
-from lamella.sparse import Backend, Factor, SingularError
 
 DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-6, 1e-10, 1e6
 # line search lengths that tell a good linearisation from a bad one, and what follows for the damping
@@ -63,7 +63,7 @@ def solve(
     on_iteration : optional
         Called with each record as soon as it is known.
     backend : optional
-        See `lamella.sparse.default_backend`.
+        See `lamella.base.sparse.default_backend`.
 
     Returns
     -------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.unknowns import Floats, Integers
 

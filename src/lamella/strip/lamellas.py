@@ -8,7 +8,8 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError, require_positive
+from lamella.base.errors import InputError, require_positive
+from lamella.base.wording import rounded
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.layer_curves import lamella_layers
 from lamella.strip.layers import LayerCurves, Layers, at_stops, parallel_layers, running
@@ -16,7 +17,6 @@ from lamella.strip.material import Material
 from lamella.strip.planarity import planarity_score
 from lamella.strip.stress import shortening, stresses
 from lamella.surface.surface import Surface
-from lamella.wording import rounded
 
 Floats = NDArray[np.float64]
 Marks = Literal["arc-length", "relaxed"]

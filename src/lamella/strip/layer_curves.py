@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError
-from lamella.network.ground import Ground, Look
-from lamella.network.lines import ground_of, is_traced
+from lamella.base.errors import InputError
 from lamella.network.network import SINGULAR, Network
 from lamella.network.pattern import Pattern
+from lamella.network.streamlines.applicability import ground_of, is_traced
+from lamella.network.streamlines.charts import Ground, Look
 from lamella.strip.layers import Layers, at_stops, running
-from lamella.surface.closed_form import ClosedForm
+from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.places import Places
 from lamella.surface.surface import Surface
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal
 
+from lamella.base.wording import rounded
 from lamella.strip.lamellas import Section
-from lamella.wording import rounded
 
 # of the measure found, what is offered: utilisations are compared with 1
 MARGIN = 0.995

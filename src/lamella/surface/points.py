@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.surface.vectors import symmetric
+from lamella.base.vectors import symmetric
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.base.vectors import diagonal
 from lamella.surface.points import SurfacePoints
 from lamella.surface.surface import Surface
-from lamella.surface.vectors import diagonal
 
 # (k1 - k2) / 2 over the larger curvature below which a piece is a sphere, and over 1 / size below which it is flat
 LEAST_DEVIATION, LEAST_BEND = 1e-3, 1e-6

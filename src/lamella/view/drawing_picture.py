@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -129,7 +129,7 @@ def _read_drawing(drawing: Path) -> list[_Curve]:
     import ezdxf
     from ezdxf import path as paths
 
-    from lamella.fabrication.dxf_text import APPLICATION
+    from lamella.files.write.dxf_text import APPLICATION
 
     curves = []
     for entity in ezdxf.readfile(str(drawing)).modelspace():

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.files.whole import write_whole
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.projection.mesh_figures import MeshFigures
 from lamella.projection.problems.planar_strips import RED
 from lamella.projection.quad_mesh import QuadMesh

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.projection.mesh_figures import mesh_figures
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.view.figure import INK, new_figure, require_matplotlib, save

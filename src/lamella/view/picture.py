@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.network.network import SINGULAR, Network
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.figure import FAMILIES, INK, SINGULAR_COLOUR, frame, new_figure, require_matplotlib, save
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from lamella.pipeline import Results
+    from lamella.stages.pipeline import Results
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

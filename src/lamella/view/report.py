@@ -15,11 +15,11 @@ import numpy as np
 import orjson
 from numpy.typing import NDArray
 
+from lamella.base.wording import one_line
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.quantity import Quantity, surface_quantities
-from lamella.wording import one_line
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.surface.element.lagrange import EDGES
 from lamella.surface.element.surface import MOST_PARTS, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from lamella.pipeline import Results
+    from lamella.stages.pipeline import Results
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

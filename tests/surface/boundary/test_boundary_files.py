@@ -15,7 +15,8 @@ from ezdxf.path import make_path
 from scipy.spatial import cKDTree
 
 from lamella import InputError, parse_project
-from lamella.surface.boundary import CORNER_ANGLE, Loop, boundary_loops, read_json
+from lamella.files.read import curves_json
+from lamella.surface.boundary import CORNER_ANGLE, Loop, boundary_loops
 
 T = np.random.default_rng(4).uniform(0, 1, 300)
 
@@ -307,7 +308,7 @@ def test_the_json_of_the_documentation(tmp_path: Path) -> None:
     """docs/files.md and the docstring of the reader show the same file, and it is read."""
     page = (Path(__file__).parents[3] / "docs" / "files.md").read_text(encoding="utf-8")
     shown = page.partition("```json\n")[2].partition("```")[0]
-    told = (read_json.__doc__ or "").partition("::\n")[2].partition("`unit` is")[0]
+    told = (curves_json.__doc__ or "").partition("::\n")[2].partition("`unit` is")[0]
     assert orjson.loads(shown) == orjson.loads(told)
     (tmp_path / "c.json").write_text(shown)
     outer, oculus = (loop_of(tmp_path, file="c.json", id=name) for name in ("outer", "oculus"))

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from lamella import parse_project
-from lamella.files.curves_3dm import write_curves_3dm
-from lamella.files.rhino_file import Frame
-from lamella.project import FormFoundTable
+from lamella.files.write.curves_3dm import write_curves_3dm
+from lamella.files.write.rhino_file import Frame
+from lamella.project.tables import FormFoundTable
 from lamella.surface.boundary.arcs import circle
 from lamella.surface.boundary.curve import Loop, make_loop
 from lamella.surface.boundary.freedom import Freedom

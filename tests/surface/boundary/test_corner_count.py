@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from lamella import InputError, compute, make_surface, parse_project
-from lamella.check import check_project
-from lamella.project import FormFoundTable
+from lamella.project.tables import FormFoundTable
+from lamella.stages.check import check_project
 from lamella.surface.boundary import boundary_loops
 from lamella.surface.boundary.curve import Loop
 

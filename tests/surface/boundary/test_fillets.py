@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from lamella import InputError, parse_project
-from lamella.project import FormFoundTable
+from lamella.project.tables import FormFoundTable
 from lamella.surface.boundary import Loop, Sliding, boundary_loops, make_loop
 from lamella.surface.boundary.arcs import arc_through
 from lamella.surface.boundary.fillets import rounded_loop, tangent_length
 from lamella.surface.boundary.pieces import lines, stack
 from lamella.surface.boundary.splines import open_spline
-from lamella.surface.found.find import find_film
+from lamella.surface.form_finding.find import find_film
 
 SAIL = np.array([[0.0, 0, 0], [6, 0, 2], [6, 6, 0], [0, 6, 2]])
 LSHAPE = np.array([[0.0, 0, 0], [5, 0, 0.5], [5, 2, 0], [2, 2, 0.7], [2, 6, 0.2], [0, 6, 1]])

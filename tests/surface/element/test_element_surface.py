@@ -16,7 +16,7 @@ from lamella.surface.element.connectivity import connect
 from lamella.surface.element.places import Places
 from lamella.surface.element.placing import place_nodes
 from lamella.surface.element.surface import ElementSurface
-from surface.found.exact_patches import (
+from surface.form_finding.exact_patches import (
     ArcLength,
     CatenoidPatch,
     EnneperPatch,

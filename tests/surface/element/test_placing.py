@@ -13,7 +13,7 @@ import pytest
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.placing import place_nodes, rim_parameters
-from surface.found.exact_patches import ArcLength, circle, disc
+from surface.form_finding.exact_patches import ArcLength, circle, disc
 
 TAU = 2 * np.pi
 ORDERS = [2, 3, 4]

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from lamella.surface.element.remesh import TriangleMesh, remesh
+from lamella.surface.remesh.remesh import TriangleMesh, remesh
 
 TAU = 2 * np.pi
 

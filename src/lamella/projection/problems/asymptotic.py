@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from lamella.base.sparse import Backend
 from lamella.projection.problems.crossing import AngleForm
 from lamella.projection.problems.star_net import StarNet, star_net
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration
-from lamella.sparse import Backend
 
 
 def asymptotic(

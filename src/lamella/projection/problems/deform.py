@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.base.sparse import Backend
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.edge_length import EdgeLength
@@ -21,7 +22,6 @@ from lamella.projection.solve import solve
 from lamella.projection.star_measures import circle_angles, star_spheres
 from lamella.projection.unknowns import Block, Floats, Integers
 from lamella.projection.vertex_normals import smoothed_normals
-from lamella.sparse import Backend
 
 # change of the ring's size from one state to the next
 STEP = 0.02

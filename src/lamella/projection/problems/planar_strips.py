@@ -9,7 +9,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lamella.errors import InputError, require_positive
+from lamella.base.errors import InputError, require_positive
+from lamella.base.sparse import Backend
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.closeness import Closeness
 from lamella.projection.constraints.fairness import THIRD, Fairness
@@ -21,7 +22,6 @@ from lamella.projection.foot_points import FootSurface
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.solve import solve
 from lamella.projection.unknowns import Block, Floats
-from lamella.sparse import Backend
 from lamella.strip.developable import buildable_height
 from lamella.strip.planarity import planarity_score
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from lamella.base.sparse import Backend
 from lamella.projection.problems.crossing import AngleForm
 from lamella.projection.problems.star_net import StarNet, star_net
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration
-from lamella.sparse import Backend
 
 
 def sphere_stars(

@@ -8,7 +8,8 @@ from typing import get_args
 
 import numpy as np
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.base.sparse import Backend
 from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.unit_length import UnitLength
 from lamella.projection.problems.crossing import AngleForm, crossing
@@ -19,7 +20,6 @@ from lamella.projection.smoothing import smoothed
 from lamella.projection.solve import solve
 from lamella.projection.unknowns import Block, Floats
 from lamella.projection.vertex_normals import smoothed_normals
-from lamella.sparse import Backend
 
 # a radius known worse than this share of itself is ill-determined
 ACCURACY = 0.01

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.sparse import Backend
 from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.fixed import Fixed
 from lamella.projection.constraints.shared_length import SharedLength
@@ -17,7 +18,6 @@ from lamella.projection.report import Iteration
 from lamella.projection.solve import solve
 from lamella.projection.unknowns import Block, Floats, Integers, dot
 from lamella.projection.vertex_normals import smoothed_normals
-from lamella.sparse import Backend
 
 # weight of the given vertices and its fade: while it lasts the radius follows the whole net; a heavier one pulls the
 # net off its constraints, and the way back through its softest modes is long

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.base.sparse import Backend
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.closeness import Closeness
 from lamella.projection.constraints.conformal import Conformal
@@ -18,7 +19,6 @@ from lamella.projection.quad_mesh import QuadMesh, collapsed, quad_mesh
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.solve import solve
 from lamella.projection.unknowns import Block, Floats
-from lamella.sparse import Backend
 
 # of the mean edge: a vertex farther from its foot point is beyond the surface's border
 BEYOND = 0.1

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from lamella.errors import InputError
-from lamella.project import LEAST_LENGTH
+from lamella.base.errors import InputError
+from lamella.project.tables import LEAST_LENGTH
 from lamella.surface.boundary.crossings import Touch, closest_touch
 from lamella.surface.boundary.curve import Loop, Slide, place
 from lamella.surface.boundary.knots import is_knotted

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lamella.drawing_origin import coordinates
-from lamella.errors import InputError
-from lamella.surface.boundary.course import Course
+from lamella.base.drawing_origin import coordinates
+from lamella.base.errors import InputError
+from lamella.surface.boundary.arc_length import Course
 from lamella.surface.boundary.pieces import Floats, Integers, Pieces
 
 CORNER_ANGLE = 1e-6

@@ -20,10 +20,10 @@ from math import comb, cos, pi, sin, sqrt
 
 import numpy as np
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.base.wording import rounded
 from lamella.surface.boundary.curve import Loop, Sliding, make_loop, place
 from lamella.surface.boundary.pieces import Floats, Integers, Pieces, stack
-from lamella.wording import rounded
 
 DEGREE = 7
 FLAT_SPEED = 6 / 7

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lamella.errors import InputError
-from lamella.project_boundary import MOST_WAVES, AdjustTable, PlaceTable
+from lamella.base.errors import InputError
+from lamella.base.wording import rounded
+from lamella.project.boundary_tables import MOST_WAVES, AdjustTable, PlaceTable
 from lamella.surface.boundary.pieces import Floats
 from lamella.surface.boundary.waves import wave_rows
-from lamella.wording import rounded
 
 if TYPE_CHECKING:
-    from lamella.project import FormFoundTable
-    from lamella.project_boundary import BoundaryTable
+    from lamella.project.boundary_tables import BoundaryTable
+    from lamella.project.tables import FormFoundTable
 
 # points of a loop for each full wave along it
 POINTS_A_WAVE = 3

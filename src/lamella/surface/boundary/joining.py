@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.surface.boundary.curve import place
 from lamella.surface.boundary.pieces import Floats, Pieces, stack
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
 from lamella.surface.boundary.curve import place
 from lamella.surface.boundary.pieces import Floats
 

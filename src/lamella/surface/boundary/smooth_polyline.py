@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from lamella.errors import InputError
+from lamella.base.errors import InputError
+from lamella.base.wording import counted
 from lamella.surface.boundary.corners import CORNER_ANGLE, edge_lengths, find_corners, thinned, turning_angles
 from lamella.surface.boundary.pieces import Floats, Pieces, lines, stack
 from lamella.surface.boundary.scatter import smooth_scatter
 from lamella.surface.boundary.splines import closed_spline, open_spline
-from lamella.wording import counted
 
 LITTLE = 20.0
 """Degrees: a polygon of 18 corners turns by as much at each; polygons that are meant have fewer."""

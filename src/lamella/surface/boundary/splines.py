@@ -8,8 +8,8 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.linalg import LinAlgError, LinAlgWarning
 
-from lamella.drawing_origin import origin_of
-from lamella.errors import InputError
+from lamella.base.drawing_origin import origin_of
+from lamella.base.errors import InputError
 from lamella.surface.boundary.pieces import Floats, Pieces, lines
 
 QUINTIC_FROM = 7

@@ -8,28 +8,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lamella.drawing_origin import NOWHERE, Origin, origin_of
-from lamella.errors import InputError
-from lamella.project_values import METRES
+from lamella.base.drawing_origin import NOWHERE, Origin, origin_of
+from lamella.base.errors import InputError
+from lamella.base.plausible_size import SMALLEST, refuse_doubtful
+from lamella.files.read.choose_curve import choose_loop
+from lamella.files.read.curves_3dm import read_3dm
+from lamella.files.read.curves_dxf import read_dxf
+from lamella.files.read.curves_json import read_json
+from lamella.project.values import METRES
 from lamella.surface.boundary.arcs import arc_through, circle
 from lamella.surface.boundary.checks import check_corner_count, check_loops
-from lamella.surface.boundary.choosing import choose_loop
 from lamella.surface.boundary.curve import Loop, Sliding, make_loop
 from lamella.surface.boundary.fillets import rounded_loop
 from lamella.surface.boundary.joining import join_in_order
 from lamella.surface.boundary.pieces import Floats, Pieces, lines
 from lamella.surface.boundary.point_list import clean_points
-from lamella.surface.boundary.read_3dm import read_3dm
-from lamella.surface.boundary.read_dxf import read_dxf
-from lamella.surface.boundary.read_json import read_json
 from lamella.surface.boundary.smooth_polyline import smooth_curve, vertices
 from lamella.surface.boundary.splines import closed_spline, open_spline
 from lamella.surface.boundary.units import metres_per_unit, name_of
 from lamella.surface.boundary.waves import waved
-from lamella.unit_doubt import SMALLEST, refuse_doubtful
 
 if TYPE_CHECKING:
-    from lamella.project import BoundaryTable, FormFoundTable, PartTable, PlaceTable, SlideTable
+    from lamella.project.tables import BoundaryTable, FormFoundTable, PartTable, PlaceTable, SlideTable
 
 # points of a loop for its middle
 SAMPLES = 1000

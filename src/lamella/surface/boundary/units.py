@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from lamella.errors import InputError
-from lamella.project_values import METRES
+from lamella.base.errors import InputError
+from lamella.project.values import METRES
 
 
 def metres_per_unit(asked: str | None, in_header: float | None, header: str, where: str) -> float:

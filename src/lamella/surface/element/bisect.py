@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.base.ties import shortened
+from lamella.base.vectors import lengths
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.places import Places
-from lamella.surface.element.ties import shortened
 from lamella.surface.points import Floats
-from lamella.surface.vectors import lengths
 
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.sparse import SymmetricPattern
+from lamella.base.sparse import SymmetricPattern
 from lamella.surface.element.lagrange import EDGES, Lagrange, lagrange
 
 Integers = NDArray[np.int64]

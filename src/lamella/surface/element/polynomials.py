@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.blocks import blocks
+from lamella.base.blocks import blocks
 from lamella.surface.element.lagrange import Lagrange
 from lamella.surface.element.places import Places
 from lamella.surface.points import Floats

@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.drawing_origin import NOWHERE, Origin
+from lamella.base.drawing_origin import NOWHERE, Origin
+from lamella.base.vectors import dots, images, lengths, symmetric
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.curvature import ElementFrames, ElementPoints, element_points, frames
@@ -24,7 +25,6 @@ from lamella.surface.element.umbilics import Umbilics, find_umbilics
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.points import Complexes, Floats, SurfacePoints
 from lamella.surface.umbilic import umbilic_reason
-from lamella.surface.vectors import dots, images, lengths, symmetric
 
 Integers = NDArray[np.int64]
 

@@ -11,12 +11,12 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from lamella.base.vectors import diagonal, dots, lengths
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import rim_marks
 from lamella.surface.points import Complexes, Floats, SurfacePoints
-from lamella.surface.vectors import diagonal, dots, lengths
 
 if TYPE_CHECKING:
     from lamella.surface.element.surface import ElementSurface

@@ -1,0 +1,268 @@
+"""From the lamellas of a network to flat parts: ends, slots, splits and what the user should know of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.fabrication.axis import Axis, outline
+from lamella.fabrication.collisions import end_collisions
+from lamella.fabrication.flat import outline_area
+from lamella.fabrication.layer_strips import LayerStrip, LayerStrips
+from lamella.fabrication.part import Part, Parts
+from lamella.fabrication.rules import LEAST_END, LEAST_HUB, ROUNDING, Rules, edge_scale
+from lamella.fabrication.splitting import cut_stations
+from lamella.fabrication.warnings import Notes
+from lamella.network.network import SINGULAR, Network
+from lamella.strip.lamellas import Lamellas, crossings
+
+Floats = NDArray[np.float64]
+
+
+def make_parts(
+    network: Network,
+    lamellas: Lamellas,
+    *,
+    density: float,
+    end_distance: float | None = None,
+    rim_overhang: float = 0.01,
+    hub_radius: float | None = None,
+    slot_width: float | None = None,
+    sheet: tuple[float, float] = (12.0, 2.0),
+    gap: float = 0.01,
+    others: Callable[[Callable[[Network, Lamellas], bool]], str] | None = None,
+) -> Parts:
+    """Flat parts of every lamella.
+
+    Parameters
+    ----------
+    network : Network
+    lamellas : Lamellas
+        Of that network.
+    density : float
+        kg/m3.
+    end_distance : float, optional
+        Least distance from the outermost slot's axis to the strip's end, m; the larger of `LEAST_END` and two slot
+        widths if not given.
+    rim_overhang : float
+        Least distance from the rim's node to the strip's end, m.
+    hub_radius : float, optional
+        From a singular node to the strip's end, m; if not given the larger of `LEAST_HUB` and what keeps the strips
+        of neighbouring rays clear of each other.
+    slot_width : float, optional
+        m; twice the thickness if not given.
+    sheet : (float, float)
+        Length and width of the sheets parts are cut from, m.
+    gap : float
+        Between parts, and from parts to the sheet's edge, m.
+    others : callable, optional
+        Finds another number of cells whose net and lamellas have no such fault, in words.
+
+    Returns
+    -------
+    Parts
+
+    Raises
+    ------
+    InputError
+        Where the measures contradict each other.
+    """
+    section = lamellas.section
+    slot_width = 2 * section.thickness if slot_width is None else slot_width
+    if end_distance is None:
+        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(network.normal_curvature, section.height))
+    degree_a, degree_b = network.node_degrees()
+    singular = network.node_kinds == SINGULAR
+    crossing = crossings(network)
+    rays = int((degree_a + degree_b)[singular].max(initial=0))
+    strips = LayerStrips.of(network, lamellas, slot_width)
+    clear = strips.clear_hub(rays)
+    given_hub = hub_radius
+    wanted_hub = max(LEAST_HUB, clear) if hub_radius is None else hub_radius
+    # the first slot of a ray stays on it
+    hub_radius = min(wanted_hub, max(strips.first_slot(crossing) - 1.5 * slot_width, 0.0))
+    rules = Rules(
+        layers=section.layers,
+        offset=section.offset,
+        height=section.height,
+        thickness=section.thickness,
+        curvature=float(network.normal_curvature),
+        density=density,
+        end_distance=end_distance,
+        rim_overhang=rim_overhang,
+        hub_radius=hub_radius,
+        slot_width=slot_width,
+        sheet=sheet,
+        gap=gap,
+        bow=strips.bow,
+    )
+    rules.check()
+    longest = rules.longest_on_sheet
+    notes = Notes()
+    if hub_radius < wanted_hub:
+        notes.hub_cut = wanted_hub
+    if hub_radius < clear - ROUNDING:
+        notes.hub_needed = clear
+    parts: list[Part] = []
+    before, after = np.full((2, len(network.ids)), -np.inf)
+    for index in range(len(network.ids)):
+        stops = slice(int(network.stop_offsets[index]), int(network.stop_offsets[index + 1]))
+        nodes = network.stop_nodes[stops]
+        for strip in strips.of_lamella(index):
+            pieces = list(
+                _lamella_parts(
+                    strip,
+                    str(network.families[index]),
+                    bool(network.closed[index]),
+                    crossing[nodes],
+                    singular[nodes],
+                    rules,
+                    longest,
+                    notes,
+                )
+            )
+            if pieces:
+                before[index] = max(before[index], strip.stations[0] - pieces[0].start)
+                after[index] = max(after[index], pieces[-1].end - strip.stations[-1])
+            parts.extend(pieces)
+    notes.collisions, notes.too_far = end_collisions(network, before, after, strips.reach)
+    if others and notes.collisions and not notes.ends_help(rules):
+        notes.other_cells = others(
+            lambda net, there: (
+                make_parts(
+                    net,
+                    there,
+                    density=density,
+                    end_distance=end_distance,
+                    rim_overhang=rim_overhang,
+                    hub_radius=given_hub,
+                    slot_width=slot_width,
+                    sheet=sheet,
+                    gap=gap,
+                ).colliding
+            )
+        )
+    warnings = tuple(notes.sentences(rules, len(network.ids) * strips.kinds, len(parts)))
+    return Parts(tuple(parts), warnings, bool(notes.collisions))
+
+
+def _lamella_parts(
+    strip: LayerStrip,
+    family: str,
+    closed: bool,
+    crossing: NDArray[np.bool_],
+    hub: NDArray[np.bool_],
+    rules: Rules,
+    longest: float,
+    notes: Notes,
+) -> Iterator[Part]:
+    """Parts of one strip."""
+    stations, shifts, width = strip.stations, strip.shifts, strip.slot_width
+    if closed:
+        # the ring opens in the middle of its last cell, so that no slot lies at the cut
+        half = 0.5 * float(stations[-1] - stations[-2])
+        start, end = float(stations[0]) - half, float(stations[-1]) - half
+        stations, crossing, shifts, width = stations[:-1], crossing[:-1], shifts[:-1], width[:-1]
+    else:
+        # little beyond the rim, lest strips meet their neighbours out there, unless the last slot asks for more
+        at, room = stations[crossing], np.maximum(rules.end_distance, 1.5 * width[crossing] / rules.edge_scale)
+        first = np.min(np.append(at + shifts[crossing, 0] - room, stations[0] - rules.rim_overhang))
+        last = np.max(np.append(at + shifts[crossing, -1] + room, stations[-1] + rules.rim_overhang))
+        start = float(stations[0] + rules.hub_radius if hub[0] else first)
+        end = float(stations[-1] - rules.hub_radius if hub[-1] else last)
+    if end - start <= rules.slot_width:
+        notes.left_out.append(strip.name)
+        return
+    cuts = _cuts(strip.name, start, end, stations, rules, longest, notes)
+    if end - start > rules.longest_ring and not len(cuts):
+        notes.left_out.append(strip.name)
+        return
+    bounds = np.concatenate(([start], cuts, [end]))
+    for piece, (low, high) in enumerate(zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)):
+        # a hub's node lies beyond the strip's end but belongs to its first or last piece
+        inside = (stations > (low if piece else -np.inf)) & (stations < (high if piece < len(cuts) else np.inf))
+        yield _part(
+            f"{strip.name}.{piece + 1}" if len(cuts) else strip.name,
+            strip,
+            family,
+            strip.axis(low, high),
+            stations[inside],
+            (stations[:, None] + shifts)[inside & crossing],
+            float(width[inside & crossing].max(initial=rules.slot_width)),
+            rules,
+            notes,
+        )
+
+
+def _cuts(
+    name: str,
+    start: float,
+    end: float,
+    stations: Floats,
+    rules: Rules,
+    longest: float,
+    notes: Notes,
+) -> Floats:
+    """Where a lamella is split; notes why."""
+    cuts = cut_stations(start, end, stations, min(longest, rules.longest_ring))
+    if cuts is None:
+        notes.oversize.append((name, end - start))
+        cuts = cut_stations(start, end, stations, rules.longest_ring)
+    if cuts is None:
+        return np.empty(0)
+    if len(cuts):
+        notes.pieces += len(cuts) + 1
+        if end - start > rules.longest_ring:
+            notes.too_round += 1
+        else:
+            notes.too_long.append(end - start)
+    return cuts
+
+
+def _part(
+    name: str,
+    strip: LayerStrip,
+    family: str,
+    axis: Axis,
+    nodes: Floats,
+    wanted: Floats,
+    slot_width: float,
+    rules: Rules,
+    notes: Notes,
+) -> Part:
+    """One part with its slots, all as wide as its widest one, or without where they would come too close."""
+    slots = np.sort(wanted.ravel())
+    start, end = float(axis.knots[0]), float(axis.knots[-1])
+    left_out = 0
+    if len(slots):
+        scale = axis.least_scale(0.5 * rules.height if family == "A" else -0.5 * rules.height)
+        between = scale * np.diff(slots)
+        outside = scale * min(slots[0] - start, end - slots[-1])
+        needed = 2 * slot_width - ROUNDING
+        if outside < 0.75 * needed or (len(between) and between.min() < needed):
+            left_out, slots = len(slots), slots[:0]
+            notes.unslotted.append((name, float(np.diff(nodes).min()) if len(nodes) > 1 else np.inf))
+    vertices = outline(axis, rules.height, slots, slot_width, family == "A")
+    area = outline_area(vertices)
+    return Part(
+        id=name,
+        lamella=strip.lamella,
+        family=family,
+        quantity=1 if strip.layer else rules.layers,
+        height=rules.height,
+        thickness=rules.thickness,
+        curvature=rules.curvature,
+        axis=axis,
+        layer=strip.layer,
+        side=strip.side,
+        distance=strip.distance,
+        nodes=nodes,
+        slots=slots,
+        slot_width=slot_width,
+        slots_left_out=left_out,
+        outline=vertices,
+        area=area,
+        mass=rules.density * rules.thickness * area,
+    )

@@ -1,0 +1,139 @@
+"""Reading a drawing back: where its slots and node marks are along each centre line."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.fabrication.axis import Axis
+from lamella.files.write.dxf_text import APPLICATION
+
+Floats = NDArray[np.float64]
+
+# sine of the turn at a corner: edges that go over into each other do not turn at all
+SHARP = 0.5
+
+
+@dataclass(frozen=True)
+class SlotReading:
+    """What a drawing says of one part, measured on its outline alone.
+
+    Attributes
+    ----------
+    slots : (k,)
+        Ascending distances of the slots' feet from the strip's start along the centre line, mm.
+    marks : (n,)
+        Ascending distances of the node centre lines, mm.
+    length : float
+        Of the centre line, mm.
+    height : float
+        mm.
+    curvature : float
+        Of the centre line, 1/mm, > 0 where it bends towards the +n side; the mean where it varies.
+    outline : (v, 3)
+        x, y (mm) and bulge.
+    """
+
+    slots: Floats
+    marks: Floats
+    length: float
+    height: float
+    curvature: float
+    outline: Floats
+
+
+def read_slots(path: Path) -> dict[str, SlotReading]:
+    """Measure the parts of a drawing that `write_drawings` wrote.
+
+    Only the order of an outline's vertices is taken for granted: the first is the start's corner on the -n
+    side, and they run counter-clockwise.
+
+    Parameters
+    ----------
+    path : Path
+        ``A.dxf``, ``B.dxf`` or ``sheets.dxf``.
+
+    Returns
+    -------
+    dict of str to SlotReading
+        By part id; the second and further copies of a part on the sheets are told as "A1#2", "A1#3", ...
+    """
+    outlines: dict[str, Floats] = {}
+    lines: dict[str, list[tuple[float, float]]] = defaultdict(list)
+    for entity in ezdxf.readfile(str(path)).modelspace():
+        layer = entity.dxf.layer
+        if layer == "CUT":
+            outlines[_name(entity)] = np.array(entity.get_points("xyb"), float)
+        elif layer == "MARK" and entity.dxftype() == "LINE":
+            middle = 0.5 * (entity.dxf.start + entity.dxf.end)
+            lines[_name(entity)].append((middle.x, middle.y))
+    return {name: _measure(outline, lines[name]) for name, outline in outlines.items()}
+
+
+def _name(entity: ezdxf.entities.DXFGraphic) -> str:
+    """Part id and copy from an entity's extended data."""
+    tags = {tag.code: tag.value for tag in entity.get_xdata(APPLICATION)}
+    return str(tags[1000]) if tags[1071] == 1 else f"{tags[1000]}#{tags[1071]}"
+
+
+def _measure(outline: Floats, marks: list[tuple[float, float]]) -> SlotReading:
+    """Stations of an outline's notches and of marks."""
+    points, bulges = outline[:, :2], outline[:, 2]
+    ahead = np.roll(points, -1, axis=0) - points
+    behind = np.roll(ahead, 1, axis=0)
+    # the turn at each vertex, from the arc that comes to the one that leaves
+    leave = np.arctan2(ahead[:, 1], ahead[:, 0]) - 2 * np.arctan(bulges)
+    come = np.arctan2(behind[:, 1], behind[:, 0]) + 2 * np.arctan(np.roll(bulges, 1))
+    turn = np.sin(leave - come)
+    reflex = turn < -SHARP
+    foot = reflex & np.roll(reflex, -1)
+    feet = 0.5 * (points + np.roll(points, -1, axis=0))[foot]
+    start, height = 0.5 * (points[0] + points[-1]), float(np.hypot(*(points[-1] - points[0])))
+    # on the edge without notches the strip's end is the first corner; notches begin with one and a reflex one
+    corners = np.flatnonzero(np.abs(turn) > SHARP)
+    corners = corners[(corners > 0) & (corners < len(points) - 1)]
+    lower = not reflex[corners[0] + 1]
+    corner = int(corners[0]) if lower else int(corners[-1]) - 1
+    edge = np.arange(corner) if lower else np.arange(len(points) - 2, corner, -1)
+    angle = 4 * np.arctan(bulges[edge]) * (1 if lower else -1)
+    chord = np.hypot(*ahead[edge].T)
+    arc = chord / np.sinc(0.5 * angle / np.pi)
+    # an edge at the height z is shorter than the centre line by z times its turn
+    steps = arc + angle * (-0.5 * height if lower else 0.5 * height)
+    knots = np.append(0.0, np.cumsum(steps))
+    axis = Axis.of(knots, angle / steps)
+    # from the axis' own frame into the drawing
+    middle = axis.develop(knots[[0, -1]], 0.0)
+    end = 0.5 * (points[corner] + points[corner + 1])
+    turn = _angle(points[-1] - points[0]) - _angle(_upwards(axis, knots[0]))
+    places = np.concatenate((feet, np.array(marks).reshape(-1, 2), end[None]))
+    stations = axis.stations(_turned(places - start, -turn) + middle[0])
+    length = float(knots[-1])
+    return SlotReading(
+        np.sort(stations[: len(feet)]),
+        np.sort(stations[len(feet) : -1]),
+        length,
+        height,
+        float(angle.sum() / length),
+        outline,
+    )
+
+
+def _upwards(axis: Axis, station: float) -> Floats:
+    """The axis' perpendicular at a station."""
+    heading = float(axis.heading(np.array([station]))[0])
+    return np.array([-np.sin(heading), np.cos(heading)])
+
+
+def _angle(vector: Floats) -> float:
+    return float(np.arctan2(vector[1], vector[0]))
+
+
+def _turned(points: Floats, angle: float) -> Floats:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.asarray(points @ np.array([[c, s], [-s, c]]))

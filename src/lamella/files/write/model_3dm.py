@@ -1,0 +1,204 @@
+"""model.3dm: surface, centre lines, strips, nodes on named layers, for Rhino and Grasshopper."""
+
+from __future__ import annotations
+
+import numpy as np
+import rhino3dm
+from numpy.typing import NDArray
+
+from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile, nurbs_curve
+from lamella.files.write.splines import RELATIVE_TOLERANCE, fit_spline
+from lamella.files.write.text import require_finite
+from lamella.network.network import NODE_KINDS, Network
+from lamella.network.turning import derivative
+from lamella.strip.lamellas import Lamellas, Section, twisted_strip
+from lamella.strip.layers import SIDES
+from lamella.surface.mesh import SurfaceMesh
+
+Floats = NDArray[np.float64]
+
+COLOURS = {
+    "surface": (200, 200, 200),
+    "lamellas A": (200, 60, 40),
+    "lamellas B": (30, 90, 170),
+    "strips A": (230, 150, 130),
+    "strips B": (130, 170, 220),
+    "layers A": (240, 190, 170),
+    "layers B": (180, 205, 235),
+    "nodes regular": (60, 60, 60),
+    "nodes boundary": (20, 140, 70),
+    "nodes singular": (220, 0, 160),
+    "nodes seam": (240, 160, 0),
+}
+# samples of a layer that make a strip
+LEAST_SAMPLES = 4
+
+POINT_OBJECTS = 20_000
+"""Nodes up to this number are points named by their index; above, one point cloud a layer."""
+
+
+def model_bytes(
+    *,
+    name: str,
+    version: str,
+    surface: SurfaceMesh,
+    network: Network,
+    lamellas: Lamellas | None = None,
+    frame: Frame = IN_METRES,
+) -> bytes:
+    """Return the Rhino model.
+
+    Parameters
+    ----------
+    name, version : str
+        Of the project and of the program; kept as document text ``lamella\\project``, ``lamella\\version``.
+    surface : SurfaceMesh
+        Goes to layer "surface".
+    network : Network
+        Centre lines go to "lamellas A" and "lamellas B" as cubic curves with the arc length as parameter,
+        within `RELATIVE_TOLERANCE` of the length from every sample; nodes to "nodes regular",
+        "nodes boundary", "nodes singular" and "nodes seam".
+    lamellas : Lamellas, optional
+        Twisted strips go to "strips A" and "strips B" as surfaces of degree 3 x 1, ruled along the normals; where a
+        lamella has several layers, each of these to "layers A" and "layers B", named A1-1, A1-2, ... from the right one
+        (u = n x t is left) to the left one.
+    frame : Frame
+        The file's unit, and where in the drawing points are measured from. Lengths in user text are in metres, as
+        their keys say.
+
+    Returns
+    -------
+    bytes
+        The same for the same input: ids of layers and objects come from project name, layer and object name.
+    """
+    require_finite(network.sample_points, network.sample_normals, network.sample_tangents)
+    require_finite(network.sample_arclengths, network.node_points, surface.points, surface.normals)
+    return _Model(name, version, frame).filled(surface, network, lamellas).encoded()
+
+
+class _Model:
+    """A .3dm file being filled."""
+
+    def __init__(self, name: str, version: str, frame: Frame) -> None:
+        self.version = version
+        self.rhino = RhinoFile("model.3dm", name, version, frame)
+        self.file = self.rhino.file
+
+    def filled(self, surface: SurfaceMesh, network: Network, lamellas: Lamellas | None) -> _Model:
+        left_out: tuple[str, ...] = () if lamellas is not None else ("strips", "layers")
+        if lamellas is not None and lamellas.section.layers == 1:
+            left_out = ("layers",)
+        self.rhino.add_layers({k: colour for k, colour in COLOURS.items() if not k.startswith(left_out)})
+        self.rhino.add_mesh(surface, self.rhino.attributes("surface", "surface", version=self.version))
+        for k in range(len(network.ids)):
+            self._add_centre_line(network, k)
+        if lamellas is not None:
+            require_finite(network.sample_darboux.kn, network.sample_darboux.tg)
+            edges = np.hstack(twisted_strip(network, lamellas.section.height))
+            for k in range(len(network.ids)):
+                span = slice(network.sample_offsets[k], network.sample_offsets[k + 1])
+                slopes = _edge_slopes(network, lamellas.section.height, span)
+                self._add_strip(network, lamellas.section, k, span, edges[span], slopes)
+            if lamellas.section.layers > 1:
+                self._add_layers(network, lamellas)
+        self._add_nodes(network)
+        return self
+
+    def encoded(self) -> bytes:
+        return self.rhino.encoded()
+
+    def _add_centre_line(self, network: Network, k: int) -> None:
+        span = slice(network.sample_offsets[k], network.sample_offsets[k + 1])
+        arclengths = network.sample_arclengths[span]
+        length = float(arclengths[-1])
+        tangents = network.sample_tangents[span]
+        spline = fit_spline(
+            arclengths, network.sample_points[span], tangents[[0, -1]], RELATIVE_TOLERANCE * length / 3**0.5
+        )
+        family = str(network.families[k])
+        attributes = self.rhino.attributes(
+            f"lamellas {family}",
+            network.ids[k],
+            id=network.ids[k],
+            family=family,
+            length_m=repr(length),
+            version=self.version,
+        )
+        self.rhino.add_curve(3, spline.knots[1:-1], spline.controls, attributes)
+
+    def _add_layers(self, network: Network, lamellas: Lamellas) -> None:
+        layers, section = lamellas.layers, lamellas.section
+        require_finite(layers.points, layers.normals)
+        reach = section.height / 2 * layers.normals
+        both = np.concatenate((layers.points - reach, layers.points + reach), axis=2)
+        one = np.zeros(1, bool)
+        for k in range(len(network.ids)):
+            first, last = network.sample_offsets[k : k + 2]
+            known = np.flatnonzero(layers.followed[first:last]) + first
+            if len(known) < LEAST_SAMPLES:
+                continue
+            span = slice(known[0], known[-1] + 1)
+            s = network.sample_arclengths[span] - network.sample_arclengths[span.start]
+            for row in range(section.layers):
+                edges = both[row, span]
+                slopes = derivative(edges, s, np.array([0, len(edges)]), one)[[0, -1]]
+                self._add_strip(network, section, k, span, edges, slopes, row + 1)
+
+    def _add_strip(
+        self,
+        network: Network,
+        section: Section,
+        k: int,
+        span: slice,
+        edges: Floats,
+        slopes: Floats,
+        layer: int = 0,
+    ) -> None:
+        """The strip along a lamella between two edges (n, 6), or one of its layers."""
+        arclengths = network.sample_arclengths[span] - network.sample_arclengths[span.start]
+        length = float(arclengths[-1])
+        spline = fit_spline(arclengths, edges, slopes, RELATIVE_TOLERANCE * length / 3**0.5)
+        knots, place, metres = spline.knots[1:-1], self.rhino.placed, self.rhino.metres
+        lower, upper = (
+            nurbs_curve(3, knots / metres, place(spline.controls[:, side])) for side in (slice(0, 3), slice(3, 6))
+        )
+        strip = rhino3dm.NurbsSurface.CreateRuledSurface(lower, upper)
+        strip.SetDomain(1, rhino3dm.Interval(-section.height / 2 / metres, section.height / 2 / metres))
+        family = str(network.families[k])
+        name = f"{network.ids[k]}-{layer}" if layer else network.ids[k]
+        told = {"side": SIDES[section.layers][layer - 1]} if layer else {}
+        attributes = self.rhino.attributes(
+            f"{'layers' if layer else 'strips'} {family}",
+            name,
+            id=name,
+            family=family,
+            length_m=repr(length),
+            height_m=repr(float(section.height)),
+            thickness_m=repr(float(section.thickness)),
+            version=self.version,
+            **told,
+        )
+        self.file.Objects.AddSurface(strip, attributes)
+
+    def _add_nodes(self, network: Network) -> None:
+        points = self.rhino.placed(network.node_points).tolist()
+        for kind, kind_name in enumerate(NODE_KINDS):
+            members = np.flatnonzero(network.node_kinds == kind).tolist()
+            layer = f"nodes {kind_name}"
+            if len(points) > POINT_OBJECTS:
+                if members:
+                    cloud = rhino3dm.PointCloud([rhino3dm.Point3d(*points[i]) for i in members])
+                    self.file.Objects.AddPointCloud(cloud, self.rhino.attributes(layer, layer, version=self.version))
+                continue
+            for i in members:
+                point = rhino3dm.Point(rhino3dm.Point3d(*points[i]))
+                self.file.Objects.Add(point, self.rhino.attributes(layer, str(i)))
+
+
+def _edge_slopes(network: Network, height: float, span: slice) -> Floats:
+    """Derivatives of the edges c -+ h/2 n by the arc length of c, at first and last sample, (2, 6)."""
+    tangents, normals = network.sample_tangents[span][[0, -1]], network.sample_normals[span][[0, -1]]
+    kn = network.sample_darboux.kn[span][[0, -1], None]
+    tg = network.sample_darboux.tg[span][[0, -1], None]
+    turning = height / 2 * (-kn * tangents - tg * np.cross(normals, tangents))
+    return np.hstack((tangents - turning, tangents + turning))

@@ -1,0 +1,475 @@
+"""Closing a net by a small change of its boundary: what the paper's designers did by hand.
+
+The net of a film closes where every transition of its isothermic coordinates is whole in cells, umbilics on nodes
+included. Both follow the boundary smoothly, so Gauss-Newton's method finds the boundary: the smallest change, in units
+of what each parameter is allowed, that makes the misses nought. The spacing of the lattice is one of the unknowns.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from lamella.base.drawing_origin import NOWHERE, measured_from, told_from
+from lamella.base.errors import InputError
+from lamella.base.progress import Progress, patient
+from lamella.base.wording import counted
+from lamella.network.adjust.adjustable_films import Films, FollowError
+from lamella.network.adjust.aim import Aim, LostError, StuckError, worst
+from lamella.network.adjust.film_net import FilmNet
+from lamella.network.adjust.least_squares_within import least_squares_within
+from lamella.network.elements.closing_steps import CLOSES
+from lamella.network.elements.lattice import Lattice, choose_lattice
+from lamella.network.isothermic.between_umbilics import between_umbilics, keeps_apart
+from lamella.network.isothermic.holonomy import around_holes, holonomies
+from lamella.network.isothermic.match_transitions import Carrier
+from lamella.network.pattern import LAMELLAS, Pattern
+from lamella.surface.boundary.curve import Loop, farthest_move
+from lamella.surface.boundary.freedom import Freedom, refuse_held
+from lamella.surface.boundary.tables import boundary_loops, with_origin
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.points import Complexes, Floats
+
+if TYPE_CHECKING:
+    from lamella.project.tables import FormFoundTable
+
+
+# cells: misses below it end the search; a tenth of what counts as closed
+CLOSED = 1e-4
+# cells: with misses below it, half of what counts as closed, the search ends too where it leads no further
+NEARLY = CLOSES / 2
+# tolerance of the film on which the boundary is looked for, before a finer one that was asked for: the periods of a
+# coarser one are off by more than the misses that end the search
+COARSE = 5e-3
+MOST_STEPS, MOST_POLISHING, MOST_HALVINGS = 20, 6, 5
+# steps towards all the whole numbers that are tried
+MOST_IN_ALL = 50
+# of the misses left by a step: with more, the next step's rates are found anew and not carried on
+CARRIED = 0.5
+# of the film's size: what the boundary moves in a step, at most
+LONGEST = 0.04
+# range of the logarithm of the lattice's spacing
+SPACING = 0.1
+# whole numbers that ask for the smallest changes, were there no limits to them; of these are tried, with the limits
+MOST_LOOKED_AT, MOST_TRIED = 60, 4
+# a whole step has to take this part of the misses away at least
+LEAST_GAIN = 0.1
+# of an umbilic's distance from the rim: what a step leaves of it at least, to first order. Where umbilics come or go
+# there are other whole numbers to be reached
+KEPT = 0.3
+# limits this many times as large are looked for, at most, where the given ones do not do; in so many halvings, from so
+# many of the places reached, and tried with more than what suffices to first order: steps are few where room is left
+MOST_REACH, REACH_HALVINGS, MOST_WIDER, WIDER = 8.0, 6, 2, 1.5
+# cells: misses that small change what is offered by less than what is added to it
+OFFERED = 2e-3
+# of the misses: what first order leaves at most where it says that they vanish; and times the limits: what takes more
+# to first order is not tried. The film's own bending has come to 1.3 times the first order, either way
+UNDONE, HOPELESS = 0.02, 3.0
+# the same at a place with misses of up to so many cells and that part of the limits used: first order is nearer there
+NEAR, MOSTLY, STOPPED = 0.3, 0.9, 1.5
+# of a limit: what takes as much has reached it
+AT_LIMIT = 1.0 - 1e-3
+# how much more a miss of a cell (see `Isothermic.dirichlet`) weighs than a full range
+WEIGHT = 1e4
+SAMPLES = 2000
+
+
+@dataclass(frozen=True)
+class Adjusted:
+    """A boundary whose film has a net that closes.
+
+    Attributes
+    ----------
+    table : FormFoundTable
+        The changed boundary and H.
+    surface : ElementSurface
+    step : float
+        Spacing l0 of the lattice, sqrt(m).
+    figures : dict
+        What was done, for the summary.
+    """
+
+    table: FormFoundTable
+    surface: ElementSurface
+    step: float
+    figures: dict[str, Any]
+
+
+def adjust_boundary(
+    table: FormFoundTable,
+    folder: Path,
+    *,
+    cells: int | None,
+    spacing: float | None,
+    progress: Progress,
+    pattern: Pattern = LAMELLAS,
+) -> Adjusted:
+    """Change a boundary as little as can be until the net of its film closes, umbilics on nodes.
+
+    Parameters
+    ----------
+    table : FormFoundTable
+        With what may change, see `lamella.surface.boundary.freedom`.
+    folder : Path
+        Where relative paths of boundary files begin.
+    cells, spacing, pattern
+        See `element_network`.
+    progress : callable
+
+    Raises
+    ------
+    InputError
+        There is no such film, nothing may change, or the net does not close within what is allowed.
+    """
+    table = with_origin(table, folder)
+    with told_from(table.origin or NOWHERE):
+        return _adjusted(table, folder, cells, spacing, progress, pattern)
+
+
+def _adjusted(
+    table: FormFoundTable,
+    folder: Path,
+    cells: int | None,
+    spacing: float | None,
+    progress: Progress,
+    pattern: Pattern,
+) -> Adjusted:
+    if table.origin:
+        progress(f"  {measured_from(table.origin)}")
+    freedom = Freedom(table)
+    refuse_held(freedom)
+    progress = patient(progress)
+    films = Films(table, folder, freedom, pattern, progress)
+    progress(f"  adjusting {', '.join(freedom.names)}: {freedom.count} parameters")
+    first = films.first(COARSE)
+    names = tuple(loop.name for loop in table.boundary)
+    around = holonomies(first.iso)
+    lattice = choose_lattice(first.iso, around, cells, spacing, pattern=pattern, names=names, seams=False)
+    before = worst(first.whole.nearest(first.cells(lattice.step))[0] - first.cells(lattice.step))
+    search = _Search(films, progress)
+    state, step, after = search.closed(first, lattice)
+    final = freedom.changed(state.shares)
+    moved = {
+        loop.name: _moved(old, new)
+        for loop, old, new in zip(
+            final.boundary, boundary_loops(table, folder), boundary_loops(final, folder), strict=True
+        )
+    }
+    farthest = max(moved.values())
+    figures: dict[str, Any] = {
+        "missed_before": before,
+        "missed_after": after,
+        "moved_max": farthest,
+        "moved": moved,
+        "mean_curvature_change": float(state.surface.mean_curvature - first.surface.mean_curvature),
+        "steps": search.steps,
+    }
+    progress(f"  adjusted: the boundary moved by at most {1000 * farthest:.3g} mm, misses {after:.1e} cells")
+    return Adjusted(final, state.surface, step, figures)
+
+
+class _Search:
+    """Gauss-Newton's method on one project's boundary."""
+
+    def __init__(self, films: Films, progress: Progress) -> None:
+        self.films, self.progress = films, progress
+        self.steps = 0
+        # of the limits of what may change: 1, but where it is looked for how much would do
+        self.reach = 1.0
+
+    def closed(self, first: FilmNet, lattice: Lattice) -> tuple[FilmNet, float, float]:
+        """The net that closes, with the spacing of its lattice, sqrt(m), and what it still misses, cells.
+
+        The whole numbers that promise the smallest change are tried first; the next ones where these are not reached.
+        """
+        lost: list[LostError] = []
+        waiting: list[Aim] = []
+        ways, beyond = self._ways(first, lattice)
+        for way in ways:
+            if lost:
+                self.progress(f"  {lost[-1]}: other whole numbers of cells")
+            try:
+                return self.polish(self.descend(way, hasty=True))
+            except StuckError as error:
+                lost.append(error)
+                waiting.append(error.aim)
+            except LostError as error:
+                lost.append(error)
+        for aim in sorted(waiting, key=lambda one: one.size):
+            self.progress(f"  {lost[-1]}: back to those that were left with {worst(aim.misses):.2g} cells")
+            try:
+                return self.polish(self.descend(aim))
+            except LostError as error:
+                lost.append(error)
+        lost += beyond
+        nearest = min(lost, key=lambda one: one.missed)
+        message = (
+            f"the net could not be closed within what the boundary may change: {nearest} "
+            f"({counted(len(ways), 'way')} tried in {counted(self.steps, 'step')})"
+        )
+        enough = self._enough([one.aim for one in lost])
+        raise InputError(
+            message,
+            (f"write {enough}" if enough else "allow more change (adjust of the loops, adjust_mean_curvature)")
+            + ', choose other cells, or closing = "open"',
+            "network.closing",
+        )
+
+    def _ways(self, first: FilmNet, lattice: Lattice) -> tuple[list[Aim], list[LostError]]:
+        """Whole shifts to be tried, and those that take far more than what may change."""
+        aims = [Aim(first, whole, lattice.step) for whole in self._targets(first, lattice)]
+        reaches = [self._least_reach(aim, UNDONE) for aim in aims]
+        told = ", ".join(f"{reach:.2g}" if reach < np.inf else f"over {2 * MOST_REACH:g}" for reach in reaches)
+        self.progress(f"  whole numbers of cells take, to first order, {told} times what the boundary may change")
+        why = f"to first order over {HOPELESS:g} times what the boundary may change is needed"
+        far = [reach > HOPELESS for reach in reaches]
+        ways = [aim for aim, is_far in zip(aims, far, strict=True) if not is_far]
+        return ways, [LostError(aim, why) for aim, is_far in zip(aims, far, strict=True) if is_far]
+
+    def _enough(self, aims: list[Aim]) -> str:
+        """What a project writes to allow a change with which the net closes, found by going there; empty: not found."""
+        used = self.films.freedom.used
+        wanted = [
+            (reach, aim)
+            for aim in aims
+            # others were not stopped by their limits
+            if (reach := self._least_reach(aim, LEAST_GAIN)) <= MOST_REACH
+            and (reach > 1 or used(aim.net.shares) > AT_LIMIT)
+        ]
+        # to first order tells most where little is missed
+        for reach, aim in sorted(wanted, key=lambda one: one[0] * (1 + worst(one[1].misses)))[:MOST_WIDER]:
+            self.reach, self.steps = reach * WIDER, 0
+            self.progress(f"  how much change would do: with {self.reach:.2g} times as much")
+            try:
+                there = self.descend(aim, goal=OFFERED)
+            except LostError:
+                continue
+            return self.films.freedom.enough(there.net.shares)
+        return ""
+
+    def _least_reach(self, aim: Aim, left: float) -> float:
+        """By what the limits have to be multiplied for all but a share of the misses to vanish to first order."""
+        rates, reach = self._rates_of(aim), self.reach
+
+        def reaches(log: float) -> bool:
+            self.reach = float(np.exp(log))
+            change = self._solved(aim.net, rates, aim.misses)[0]
+            return aim.net.whole.size(aim.misses - rates @ change) < left * aim.size
+
+        low, high = 0.0, float(np.log(2 * MOST_REACH))
+        try:
+            if reaches(low):
+                return 1.0
+            if not reaches(high):
+                return np.inf
+            for _ in range(REACH_HALVINGS):
+                middle = (low + high) / 2
+                low, high = (low, middle) if reaches(middle) else (middle, high)
+        finally:
+            self.reach = reach
+        return float(np.exp(high))
+
+    def _rates_of(self, aim: Aim) -> Complexes:
+        """The rates that were carried on, else those of the net itself."""
+        return aim.rates if aim.rates is not None else self.films.cell_rates(aim.net, aim.step)
+
+    def _targets(self, net: FilmNet, lattice: Lattice) -> list[Complexes]:
+        """Whole shifts (t,) in the order of the change they ask for, to first order."""
+        step = lattice.step
+        shifts, rates = net.cells(step), self.films.cell_rates(net, step)
+        counted = self._counted(net, shifts, lattice)
+        easy = net.whole.easiest(shifts, rates * np.append(np.ones(len(net.shares)), SPACING), MOST_LOOKED_AT)
+        # where the boundary may hardly change, only another spacing is easy: other cells than were asked for
+        near = net.whole.nearest(shifts, MOST_TRIED)
+        near += [whole for whole in easy if not any(np.array_equal(whole, one) for one in near)]
+        near = [whole for whole in near if self._counted(net, whole, lattice) == counted] or near
+        # two umbilics cannot meet in one node
+        factors = between_umbilics(net.iso)
+        near = [whole for whole in near if keeps_apart(factors, shifts, whole)] or near
+        cost = [self._solved(net, rates, whole - shifts)[1] for whole in near]
+        return [near[k] for k in np.argsort(cost, kind="stable")[:MOST_TRIED].tolist()]
+
+    def _counted(self, net: FilmNet, shifts: Complexes, lattice: Lattice) -> int:
+        """Cells on a loop around the first hole; 0: no cells are counted there."""
+        for sign, factors in around_holes(net.iso)[:1]:
+            w = net.pattern.isothermic(np.array([factors @ shifts]), 1.0)[0] * net.pattern.factor
+            count = int(np.rint(max(abs(w.real), abs(w.imag))))
+            if sign == 1 and abs(count - lattice.cells) <= 1:
+                return count
+        return 0
+
+    def descend(self, aim: Aim, *, hasty: bool = False, goal: float = CLOSED) -> Aim:
+        """Steps on the coarse film, until misses are below a goal, cells; in haste, until one leaves most of them."""
+        self._tell(aim)
+        for _ in range(MOST_STEPS):
+            if worst(aim.misses) < goal:
+                return aim
+            if self.steps >= MOST_IN_ALL:
+                raise LostError(aim, f"not reached in {MOST_IN_ALL} steps")
+            self.steps += 1
+            before = aim.size
+            try:
+                aim, reason = self._step(aim)
+            except LostError:
+                # the film's own errors may be all that is left
+                if worst(aim.misses) < NEARLY:
+                    return aim
+                raise
+            self._tell(aim)
+            if reason and worst(aim.misses) < NEARLY:
+                return aim
+            if hasty and self._is_stopped(aim):
+                raise LostError(aim, "the boundary may not change by more")
+            if reason and hasty and aim.size > CARRIED * before:
+                raise StuckError(aim, reason)
+        raise LostError(aim, f"not reached in {MOST_STEPS} steps")
+
+    def _is_stopped(self, aim: Aim) -> bool:
+        """Whether first order says that the limits are far from enough, by rates that need not be found anew."""
+        if aim.rates is None or worst(aim.misses) > NEAR or self.films.freedom.used(aim.net.shares) < MOSTLY:
+            return False
+        return self._least_reach(aim, UNDONE) > STOPPED
+
+    def _step(self, aim: Aim) -> tuple[Aim, str]:
+        """A net nearer to its whole shifts, and why the whole step there was refused, if it was."""
+        if aim.rates is not None:
+            try:
+                return self._moved(aim, aim.rates, 1)
+            except LostError:
+                self.progress("    the rates carried on do not lead on")
+        return self._moved(aim, self.films.cell_rates(aim.net, aim.step), MOST_HALVINGS)
+
+    def _moved(self, aim: Aim, rates: Complexes, halvings: int) -> tuple[Aim, str]:
+        """See `_step`, with given rates and so many tries."""
+        net = aim.net
+        change = self._solved(net, rates, aim.misses)[0]
+        if net.whole.size(aim.misses - rates @ change) > (1 - LEAST_GAIN) * aim.size:
+            beyond = self._solved(net, rates, aim.misses, kept=-np.inf)[0]
+            held = net.whole.size(aim.misses - rates @ beyond) > (1 - LEAST_GAIN) * aim.size
+            raise LostError(aim, "the boundary may not change by more" if held else "umbilics would leave at the rim")
+        change = self._shortened(net, change)
+        # the least boundary that closes the net may be far from this one: then the nearest, and less and less of it
+        nearest = self._shortened(net, self._solved(net, rates, aim.misses, net.shares)[0])
+        parts = 0.5 ** np.arange(halvings - 1)
+        moves = [change, *np.outer(parts if net.shares.any() else parts / 2, nearest)]
+        reason = ""
+        for move in moves[:halvings]:
+            share = float(np.linalg.norm(move) / np.linalg.norm(change))
+            self.progress(f"    following the film over {share:.2g} of a step" + (f" ({reason})" if reason else ""))
+            try:
+                there = self._carried(aim, self.films.moved(net, net.shares + move[:-1]), rates, move)
+            except FollowError as error:
+                reason = str(error)
+                continue
+            expected = 1 - LEAST_GAIN * min(share, 1.0)
+            if there.size < expected * aim.size or worst(there.misses) < 10 * CLOSED:
+                return (there if there.size < CARRIED * aim.size else replace(there, rates=None)), reason
+            reason = "the misses grow"
+        raise LostError(aim, reason)
+
+    def _carried(self, aim: Aim, net: FilmNet, rates: Complexes, move: Floats) -> Aim:
+        """The same whole shifts on another net, with the rates carried on.
+
+        Broyden's update: of all rates that explain the misses found there, those least different from the old ones
+        (C. G. Broyden, Math. Comp. 19 (1965) 577).
+        """
+        left = aim.misses - rates @ move
+        step = float(aim.step * np.exp(move[-1]))
+        carrier = Carrier(aim.net.iso, net.iso, net.whole)
+        whole = carrier.whole_shifts(left, net.cells(step))
+        if whole is None:
+            raise FollowError("the net changes too much in a step")
+        there = Aim(net, whole, step)
+        expected = carrier.coordinates(np.column_stack([rates[:, :-1], left]))
+        spacing = net.whole.coordinates(net.whole.offset - net.cells(step))
+        found = np.column_stack([expected[:, :-1], spacing])
+        scaled = move / np.append(np.ones(len(move) - 1), SPACING**2)
+        if move.any():
+            more = net.whole.coordinates(there.misses) - expected[:, -1]
+            found = found - np.outer(more, scaled) / (scaled @ move)
+        return replace(there, rates=net.whole.basis.T @ found)
+
+    def polish(self, aim: Aim) -> tuple[FilmNet, float, float]:
+        """The film as fine as was asked for: its own misses are a little different ones."""
+        rates = self._rates_of(aim)
+        move = np.zeros(len(aim.net.shares) + 1)
+        best: Aim | None = None
+        for _ in range(MOST_POLISHING):
+            self.progress("    the film as fine as asked for")
+            try:
+                found = self.films.found(aim.net.shares + move[:-1], min(self.films.table.tolerance, COARSE))
+                there = self._carried(aim, found, rates, move)
+            except FollowError as error:
+                raise LostError(aim, str(error)) from None
+            self._tell(there)
+            if best is None or worst(there.misses) < worst(best.misses):
+                best = there
+            if worst(there.misses) < CLOSED:
+                break
+            slow = move.any() and there.size > CARRIED * aim.size
+            # what is left may be the film's own errors
+            if slow and worst(best.misses) < NEARLY:
+                break
+            aim = there
+            rates = self.films.cell_rates(aim.net, aim.step) if slow or aim.rates is None else aim.rates
+            move = self._shortened(aim.net, self._solved(aim.net, rates, aim.misses)[0])
+            self.steps += 1
+        assert best
+        if worst(best.misses) > 0.9 * CLOSES:
+            raise LostError(best, "the finer surface does not follow")
+        return best.net, best.step, worst(best.misses)
+
+    def _solved(
+        self,
+        net: FilmNet,
+        cell_rates: Complexes,
+        misses: Complexes,
+        near: Floats | None = None,
+        kept: float = KEPT,
+    ) -> tuple[Floats, float]:
+        """Change of the shares and of the logarithm of the spacing that undoes misses, to first order; what it costs.
+
+        The least squares of the shares themselves, or of what they differ by from those that they shall be near, with
+        what they cannot undo weighing more. Umbilics keep a share of their distance from the rim.
+        """
+        measured, missed = net.whole.measured(cell_rates), net.whole.measured(misses)
+        rates = np.vstack([measured.real, measured.imag])
+        rates[:, -1] *= SPACING
+        wanted = np.concatenate([missed.real, missed.imag])
+        now = np.append(net.shares, 0.0)
+        system = np.vstack([WEIGHT * rates, np.eye(len(now))])
+        middle = np.zeros(len(now)) if near is None else np.append(near, 0.0)
+        right = np.concatenate([WEIGHT * (wanted + rates @ now), middle])
+        limited = self.films.freedom.limits / self.reach
+        limits = np.zeros((len(limited) + 1, 3, len(now)))
+        limits[:-1, :, :-1] = limited
+        limits[-1, 0, -1] = 1
+        normals, bounds = self.films.umbilics_inside(net, kept)
+        # the spacing moves no umbilic
+        normals = np.column_stack([normals, np.zeros(len(normals))])[np.isfinite(bounds)]
+        found = least_squares_within(system, right, limits, (normals, bounds[np.isfinite(bounds)]))
+        change = found - now
+        change[-1] *= SPACING
+        return change, float(((system @ found - right) ** 2).sum() / 2)
+
+    def _shortened(self, net: FilmNet, change: Floats) -> Floats:
+        """A change no longer than the linear picture bears."""
+        far = farthest_move(self.films.loops(net.shares), self.films.loops(net.shares + change[:-1]))
+        return np.asarray(change * min(1.0, LONGEST * net.equilibrium.film.size / max(far, 1e-300)))
+
+    def _tell(self, aim: Aim) -> None:
+        self.progress(
+            f"  {self.steps} steps: misses up to {worst(aim.misses):.2e} cells, parameters up to "
+            f"{100 * self.films.freedom.used(aim.net.shares):.0f} % of what they may change"
+        )
+
+
+def _moved(old: Loop, new: Loop) -> float:
+    """Largest distance of a changed loop from the old one, m."""
+    t = np.arange(SAMPLES) / SAMPLES
+    distance, _ = cKDTree(old.at(t)).query(new.at(t))
+    return float(np.max(distance))

@@ -1,0 +1,169 @@
+"""Films of a boundary that may change, each with its net, and how the nets change with the boundary."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from lamella.base.drawing_origin import origin_figure
+from lamella.base.progress import Progress, silent
+from lamella.network.adjust.film_net import FilmNet
+from lamella.network.isothermic.transition_sensitivities import (
+    Rates,
+    curvature_rates_of_volume,
+    jacobi_fields,
+    shift_rates,
+)
+from lamella.network.pattern import Pattern
+from lamella.surface.boundary.curve import Loop, farthest_move
+from lamella.surface.boundary.freedom import Freedom
+from lamella.surface.boundary.tables import Drawn, boundary_loops, unchecked_loop
+from lamella.surface.element.placing import rim_parameters
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.form_finding.boundary_homotopy import BreakError, along_loops
+from lamella.surface.form_finding.film import Film
+from lamella.surface.form_finding.find import find_film, notes_on, remarks_on
+from lamella.surface.form_finding.newton import Equilibrium
+from lamella.surface.points import Complexes, Floats
+from lamella.surface.umbilic import refuse_umbilic
+
+if TYPE_CHECKING:
+    from lamella.project.tables import FormFoundTable
+
+# difference of shares for the loops' movement
+SHARE = 1e-5
+# of the film's size: how far the boundary moves before the film is found anew on its way
+STRIDE = 0.02
+
+
+class FollowError(ArithmeticError):
+    """A net that cannot be followed to other shares."""
+
+
+class Films:
+    """The films of one project's boundary at any shares of what may change.
+
+    Parameters
+    ----------
+    table : FormFoundTable
+    folder : Path
+        Where relative paths of boundary files begin.
+    freedom : Freedom
+        What may change of the table.
+    pattern : Pattern
+        Which curves the nets have.
+    progress : callable
+        Is told details while films are found and followed.
+    """
+
+    def __init__(
+        self, table: FormFoundTable, folder: Path, freedom: Freedom, pattern: Pattern, progress: Progress = silent
+    ) -> None:
+        self.table, self.folder, self.freedom, self.pattern = table, folder, freedom, pattern
+        self._detail: Progress = lambda message: progress(f"    {message.strip()}")
+        self._drawn: Drawn = {}
+        self._rates: WeakKeyDictionary[FilmNet, Rates] = WeakKeyDictionary()
+
+    def loops(self, shares: Floats) -> tuple[Loop, ...]:
+        """The boundary at some shares."""
+        return boundary_loops(self.freedom.changed(shares), self.folder, self._drawn)
+
+    def found(self, shares: Floats, tolerance: float) -> FilmNet:
+        """The film of some shares from nothing, to a tolerance."""
+        table = self.freedom.changed(shares)
+        loops = self.loops(shares)
+        found = find_film(
+            loops,
+            table.mean_curvature or 0.0,
+            volume=table.volume,
+            order=table.order,
+            tolerance=tolerance,
+            branch=table.branch,
+            most_nodes=table.most_nodes,
+            progress=self._detail,
+        )
+        notes = remarks_on(loops) + notes_on(found, given_curvature=table.volume is None)
+        surface = found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
+        return FilmNet.of(shares, found.equilibrium, surface, self.pattern)
+
+    def first(self, tolerance: float) -> FilmNet:
+        """The film of the sketch."""
+        net = self.found(np.zeros(self.freedom.count), tolerance)
+        refuse_umbilic(net.surface)
+        return net
+
+    def moved(self, net: FilmNet, shares: Floats) -> FilmNet:
+        """The film followed to other shares; its umbilics stay as many, of the same orders."""
+        start, table = net.shares, self.freedom.changed(shares)
+        curvature = net.surface.mean_curvature if table.mean_curvature is None else table.mean_curvature
+        loops = self.loops(shares)
+        far = farthest_move(self.loops(start), loops)
+        try:
+            reached = along_loops(
+                Equilibrium(net.equilibrium.film, curvature, 0, 0, ()),
+                lambda share: self.loops(start + share * (shares - start)),
+                0.0,
+                loops,
+                self._detail,
+                volume=table.volume,
+                stable=table.branch == "stable",
+                stride=min(1.0, STRIDE * net.equilibrium.film.size / max(far, 1e-300)),
+            )
+        except BreakError as error:
+            raise FollowError(str(error)) from None
+        film, curvature = reached.equilibrium.film, reached.equilibrium.mean_curvature
+        rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
+        surface = ElementSurface(
+            "form-found", curvature, film.connectivity, film.nodes, rim_loop, loop_starts=film.loop_starts()
+        )
+        there = FilmNet.of(shares, reached.equilibrium, surface, self.pattern)
+        if there.orders != net.orders:
+            raise FollowError("umbilics come or go at the boundary")
+        return there
+
+    def cell_rates(self, net: FilmNet, step: float) -> Complexes:
+        """Rates of the shifts in cells, (t, p + 1), the logarithm of the spacing last."""
+        return net.cell_rates(self._found(net).shifts, step)
+
+    def umbilics_inside(self, net: FilmNet, kept: float) -> tuple[Floats, Floats]:
+        """Normals (z, p) and bounds (z,): umbilics keep that share of their distance from the rim, to first order, at
+        shares x with normals x <= bounds; none where the rates of the net were not found."""
+        if net not in self._rates:
+            return np.zeros((0, self.freedom.count)), np.zeros(0)
+        rates = self._rates[net]
+        return -rates.depths, (1 - kept) * rates.depth - rates.depths @ net.shares
+
+    def _found(self, net: FilmNet) -> Rates:
+        if net not in self._rates:
+            film, h = net.equilibrium.film, net.surface.mean_curvature
+            rim = self.rim_shifts(film, net.shares)
+            curvature = self.freedom.curvature_rates()
+            if self.table.volume is not None:
+                curvature = curvature_rates_of_volume(film, h, rim)
+            fields = jacobi_fields(film, h, rim, curvature)
+            self._rates[net] = shift_rates(net.surface, film, net.iso, fields, rim, curvature, self._detail)
+        return self._rates[net]
+
+    def rim_shifts(self, film: Film, shares: Floats) -> Floats:
+        """How the boundary's nodes move with each parameter, (p, n, 3), m."""
+        nodes = film.connectivity.rim_nodes
+        t = rim_parameters(film.connectivity, film.mesh.parameter)
+        of_loop = film.mesh.loop[nodes[:, 0]]
+        result = np.zeros((self.freedom.count, len(film.nodes), 3))
+        begin, tables = self.loops(shares), self.freedom.changed(shares).boundary
+        here = [loop.at(t[of_loop == index]) for index, loop in enumerate(begin)]
+        for number in range(self.freedom.count):
+            ahead = shares.copy()
+            ahead[number] += SHARE
+            moved = self.freedom.changed(ahead)
+            for index, table in enumerate(moved.boundary):
+                if table == tables[index]:
+                    continue
+                mine = of_loop == index
+                # so small a change needs no check of its own
+                there = unchecked_loop(moved, index, self.folder, self._drawn)
+                result[number, nodes[mine]] = (there.at(t[mine]) - here[index]) / SHARE
+        return result

@@ -1,0 +1,342 @@
+"""From level lines to the network of a surface of elements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.base.blocks import blocks
+from lamella.base.errors import InputError
+from lamella.base.sparse import counted
+from lamella.base.vectors import crosses, dots, images, lengths
+from lamella.network.elements.arc_lengths import ElementArcs
+from lamella.network.elements.integer_grid_map import CellMap
+from lamella.network.elements.level_curves import A, B, Tracks, make_tracks, rim_tips, singular_ends
+from lamella.network.elements.level_lines import (
+    CLOSED,
+    RIM,
+    SEAM_END,
+    SINGULAR_END,
+    level_chains,
+    small_triangles,
+)
+from lamella.network.elements.rim_ends import Ends, along_rim, settled_ends, within_tips
+from lamella.network.elements.segments import ElementSegments
+from lamella.network.elements.sharp_turns import more_samples
+from lamella.network.faces import trace_faces
+from lamella.network.lattice.crossings import Crossings, find_crossings
+from lamella.network.lattice.lattice import ragged_ranges
+from lamella.network.lattice.trace import COARSE, FINE, FINE_LIMIT
+from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network, Period
+from lamella.network.numbering import numbered, rim_places
+from lamella.network.turning import derivative, turning
+from lamella.surface.darboux import Darboux
+from lamella.surface.element.places import Places
+from lamella.surface.element.polynomials import Polynomials
+from lamella.surface.element.rim import ElementRim, element_rims
+from lamella.surface.points import Floats
+
+Integers = NDArray[np.int64]
+Onto = Callable[[Integers, Floats], Floats]
+
+# samples a segment, however short: next to the rim curvatures are read from the last of them
+FEWEST = 3
+
+
+@dataclass(frozen=True)
+class _Stops:
+    """Stops in order along the chains."""
+
+    chain: Integers
+    tau: Floats
+    node: Integers
+    kinds: Integers  # of the nodes
+
+
+def _stops(tracks: Tracks, crossings: Crossings, singular: Integers, ends: Ends) -> _Stops:
+    """All stops of the chains; `singular` (c, 2) is the umbilic at each end."""
+    nodes, chains = len(ends.boundary), len(tracks.family)
+    closed = tracks.ends[:, 0] == CLOSED
+    kind_there = np.where(ends.boundary, BOUNDARY, REGULAR)
+    parts = [(crossings.chain.ravel(), crossings.tau.ravel(), np.tile(np.arange(nodes), 2), np.tile(kind_there, 2))]
+    shared = nodes + ends.shared
+    own = shared + int(singular.max(initial=-1)) + 1
+    for side in range(2):
+        # where a crossing is the end it is a stop already
+        mine = np.flatnonzero(~closed & ((ends.node[:, side] < 0) | (ends.node[:, side] >= nodes)))
+        kind, name = tracks.ends[mine, side], ends.node[mine, side]
+        name = np.where(name >= 0, name, own + mine + side * chains)
+        name = np.where(kind == SINGULAR_END, shared + singular[mine, side], name)
+        told = np.where(kind == SINGULAR_END, SINGULAR, np.where(kind == SEAM_END, SEAM, BOUNDARY))
+        parts.append((mine, ends.tips[mine, side], name, told))
+    chain, tau, node, kind = (np.concatenate(column) for column in zip(*parts, strict=True))
+    order = np.lexsort((tau, chain))
+    chain, tau, node, kind = chain[order], tau[order], node[order], kind[order]
+    # a closed lamella begins at its first node and comes back to it
+    looped = [k for k in np.flatnonzero(closed).tolist() if (chain == k).any()]
+    for k in looped:
+        at = np.flatnonzero(chain == k)
+        whole = tracks.tau[tracks.last[k]] + tracks.span[tracks.last[k]]
+        place = at[-1] + 1
+        chain, tau = np.insert(chain, place, k), np.insert(tau, place, tau[at[0]] + whole)
+        node, kind = np.insert(node, place, node[at[0]]), np.insert(kind, place, kind[at[0]])
+    used, first, number = np.unique(node, return_index=True, return_inverse=True)
+    rank = np.empty(len(used), np.int64)
+    rank[np.argsort(first, kind="stable")] = np.arange(len(used))
+    number = rank[number.ravel()]
+    kinds = np.zeros(len(used), np.int64)
+    kinds[number] = kind
+    return _Stops(chain, tau, number, kinds)
+
+
+def trace_elements(
+    cells: CellMap,
+    cut: NDArray[np.bool_],
+    orders: Integers,
+    *,
+    onto: Onto,
+    mean_curvature: float,
+    rim_loop: Integers,
+    count: int,
+    periods: tuple[Period, ...],
+    minimum_length: float = 0.5,
+) -> Network:
+    """The network of a surface of elements.
+
+    Parameters
+    ----------
+    cells : CellMap
+    cut : (m, 3) bool
+        Edges that are cut, see `Isothermic.cut`.
+    orders : (z,) int
+        Of the umbilics.
+    onto : callable
+        Points (n, 3) of elements (n,) exactly on the surface.
+    mean_curvature : float
+        H, 1/m.
+    rim_loop : (b,) int
+        Boundary loop of each boundary edge of the net mesh.
+    count : int
+        Cells around the first hole, or along the longest principal line.
+    periods : tuple of Period
+    minimum_length : float
+        Lamellas shorter than this many median cell edges are left out.
+
+    Raises
+    ------
+    InputError
+        No two lamellas cross, or the net is too coarse.
+    """
+    small = small_triangles(cells, cut, cells.mesh.umbilics[cells.mesh.umbilics >= 0])
+    found = make_tracks(small, (level_chains(small, cells, A), level_chains(small, cells, B)))
+    rims = element_rims(cells.mesh.connectivity, cells.mesh.nodes, rim_loop)
+    length, median = _lengths(cells, found)
+    short = length < minimum_length * median
+    tracks, on_rim = _kept(cells, rims, found, ~short)
+    short &= ~on_rim
+    chains = len(tracks.family)
+    singular = singular_ends(cells, tracks)
+    crossings, rim_ends = _settled(cells, tracks)
+    stops = _stops(tracks, crossings, singular, rim_ends)
+    if not (stops.kinds == REGULAR).any():
+        if short.any():
+            raise InputError(
+                f"no two lamellas cross: {short.sum()} of {len(short)} are shorter than minimum_length = "
+                f"{minimum_length:g} median cell edges of {median:.3g} m, the longest has {length.max() / median:.2g}",
+                "write minimum_length = 0, with which none is left out, or raise network.cells",
+                "network.minimum_length",
+            )
+        longest = float(np.bincount(found.owner, found.span, len(short)).max(initial=0.0))
+        raise InputError(
+            f"no two lamellas cross: with {count} cells the longest one runs over {longest:.2g} cells",
+            f"raise network.cells to about {np.ceil(2 * count / max(longest, 1e-3)):.0f}, or lower network.spacing",
+            "network.cells",
+        )
+    pair = np.flatnonzero(stops.chain[1:] == stops.chain[:-1])
+    chain, reach = stops.chain[pair], stops.tau[pair + 1] - stops.tau[pair]
+    begins = np.r_[True, stops.chain[1:] != stops.chain[:-1]][pair]
+    ends = np.r_[stops.chain[1:] != stops.chain[:-1], True][pair + 1]
+    zeros = np.where(np.stack([begins, ends], 1), singular[chain], -1)
+    segments = ElementSegments(cells, tracks, chain, stops.tau[pair], reach, zeros, orders)
+    arcs = ElementArcs(segments)
+
+    per_cell = FINE if len(stops.kinds) <= FINE_LIMIT else COARSE
+    whole = np.minimum(np.bincount(chain, reach, chains), 1.0)[chain]
+    number = np.maximum(np.ceil(reach / whole * per_cell - 1e-6), FEWEST).astype(np.int64)
+    last = np.r_[chain[1:] != chain[:-1], True]
+    first_number = number
+    while True:
+        given = number + last
+        segment = np.repeat(np.arange(len(number)), given)
+        fraction = ragged_ranges(given) / number[segment]
+        parameter, near = arcs.parameter(segment, fraction)
+        # element by element
+        order = counted(near.element + 1, len(cells.value) + 1).astype(np.int64)
+        back = np.empty(len(order), np.int64)
+        back[order] = np.arange(len(order))
+        spots = segments.spots(segment, parameter)[order]
+        places, points, velocity = segments.velocity(spots, near[order])
+        tangents = velocity / lengths(velocity)[:, None]
+        before, number = number, more_samples(first_number, number, given, tangents.take(back, 0))
+        if (number == before).all():
+            break
+    points = onto(places.element, points)
+    normals, tangents, bend, twist = _frames(cells, places, tangents)
+    places, bend, twist = places[back], bend[back], twist[back]
+    points, normals, tangents = (t.take(back, 0) for t in (points, normals, tangents))
+
+    used = np.flatnonzero(np.bincount(chain, minlength=chains) > 0)
+    lamella_of = np.full(chains, -1)
+    lamella_of[used] = np.arange(len(used))
+    owner = lamella_of[chain]
+    offsets = np.r_[0, np.cumsum(np.bincount(owner, given, minlength=len(used)).astype(np.int64))]
+    begun = np.cumsum(arcs.length) - arcs.length
+    begun -= begun[np.searchsorted(owner, owner)]
+    arclengths = begun[segment] + fraction * arcs.length[segment]
+    kept = lamella_of[stops.chain] >= 0
+    stop_chain, stop_node = lamella_of[stops.chain[kept]], stops.node[kept]
+    segment_start = np.cumsum(given) - given
+    first_stop = (np.cumsum(kept) - 1)[pair]
+    stop_sample = np.empty(len(stop_node), np.int64)
+    stop_sample[first_stop] = segment_start
+    stop_sample[first_stop[last] + 1] = (segment_start + number)[last]
+    family = tracks.family[used]
+    closed = tracks.ends[used, 0] == CLOSED
+    darboux = Darboux(bend, turning(tangents, crosses(normals, tangents), arclengths, offsets, closed), twist)
+
+    nodes, at = np.unique(stop_node, return_inverse=True)
+    at = at.ravel()
+    node_sample = np.empty(len(nodes), np.int64)
+    node_sample[at[::-1]] = stop_sample[::-1]
+    kinds = stops.kinds[nodes]
+    loops, rim_directions = _rims(cells, rims, tracks, stops, rim_ends, nodes)
+    starts, ends = stop_sample[first_stop], stop_sample[first_stop + 1]
+    tails, heads = at[first_stop], at[first_stop + 1]
+    faces = trace_faces(
+        normals[node_sample],
+        np.r_[tails, heads],
+        np.r_[heads, tails],
+        np.vstack([tangents[starts], -tangents[ends]]),
+        loops,
+        rim_directions,
+        seam=kinds == SEAM,
+    )
+    rank = np.where(family == A, np.cumsum(family == A), np.cumsum(family != A))
+    ids = tuple(f"{'AB'[f]}{r}" for f, r in zip(family.tolist(), rank.tolist(), strict=True))
+    return Network(
+        mean_curvature=mean_curvature,
+        step=cells.step,
+        cells=count,
+        periods=periods,
+        left_out=int(short.sum() + chains - len(used)),
+        node_points=points[node_sample],
+        node_normals=normals[node_sample],
+        node_kinds=kinds,
+        ids=ids,
+        families=np.where(family == A, "A", "B"),
+        closed=closed,
+        sample_offsets=offsets,
+        sample_points=points,
+        sample_normals=normals,
+        sample_tangents=tangents,
+        sample_darboux=darboux,
+        sample_mean_curvature=np.full(len(bend), mean_curvature),
+        # kn is H on a lamella but for errors; along principal lines tg is 0 but for them
+        sample_slopes=derivative(twist[:, None], arclengths, offsets, closed)[:, 0]
+        + 2 * darboux.kg * (bend - mean_curvature),
+        sample_where=np.column_stack([places.element, places.local]),
+        sample_arclengths=arclengths,
+        stop_offsets=np.r_[0, np.cumsum(np.bincount(stop_chain, minlength=len(used)))],
+        stop_nodes=at,
+        stop_samples=stop_sample - offsets[stop_chain],
+        stop_arclengths=arclengths[stop_sample],
+        face_offsets=faces.offsets,
+        face_nodes=faces.nodes,
+        faces_left_out=faces.large,
+        pattern=cells.pattern,
+    )
+
+
+def _frames(cells: CellMap, places: Places, directions: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Unit normals (n, 3), tangents nearest to directions (n, 3), and kn and tg from the surface's shape operator."""
+    mesh = cells.mesh
+    nodal = np.column_stack([mesh.normals, mesh.shape])[mesh.connectivity.elements]
+    fields = Polynomials.through(mesh.connectivity.basis, nodal)
+    normals, tangents = np.empty((2, len(places), 3))
+    bend, twist = np.empty((2, len(places)))
+    for block in blocks(len(places)):
+        both = fields.values(places[block]).T
+        normal, entries = both[:, :3], both[:, 3:]
+        normal /= lengths(normal)[:, None]
+        # components follow each other, as in the fields
+        tangent = np.array(directions[block], order="F")
+        tangent -= dots(tangent, normal)[:, None] * normal
+        tangent /= lengths(tangent)[:, None]
+        image = images(entries, tangent)
+        bend[block], twist[block] = dots(image, tangent), dots(image, crosses(normal, tangent))
+        normals[block], tangents[block] = normal, tangent
+    return normals, tangents, bend, twist
+
+
+def _rims(
+    cells: CellMap,
+    rims: tuple[ElementRim, ...],
+    tracks: Tracks,
+    stops: _Stops,
+    ends: Ends,
+    nodes: Integers,
+) -> tuple[list[Integers], Floats]:
+    """Boundary nodes of each loop in order, and the rim's direction at all nodes: from where lamellas meet it."""
+    chain, side = np.nonzero(tracks.ends == RIM)
+    first = np.searchsorted(stops.chain, np.arange(len(tracks.family)))
+    last = np.searchsorted(stops.chain, np.arange(len(tracks.family)), side="right") - 1
+    node = stops.node[np.where(side == 0, first[chain], last[chain])]
+    # each node once, where it is one of the net
+    there = np.isin(node, nodes)
+    node, at = np.unique(node[there], return_index=True)
+    loop, place, direction = rim_places(cells, rims, ends.places[(2 * chain + side)[there][at]])
+    number = np.searchsorted(nodes, node)
+    directions = np.zeros((len(nodes), 3))
+    directions[number] = direction
+    order = np.lexsort((place, loop))
+    return [number[order[loop[order] == k]] for k in range(len(rims))], directions
+
+
+def _lengths(cells: CellMap, tracks: Tracks) -> tuple[Floats, float]:
+    """Rough lengths of the chains, m, (c,), and the median length of a cell, alike on fine and coarse elements."""
+    begin = cells.positions(Places(tracks.element, tracks.local_start))
+    # every link ends where the next one begins, but for the last ones
+    end = np.roll(begin, -1, 0)
+    end[tracks.last] = cells.positions(Places(tracks.element[tracks.last], tracks.local_end[tracks.last]))
+    rough = lengths(end - begin)
+    if not len(rough):
+        return np.zeros(0), 0.0
+    edge = rough / np.maximum(tracks.span, 1e-12)
+    order = np.argsort(edge)
+    share = np.cumsum(tracks.span[order])
+    median = float(edge[order[np.searchsorted(share, share[-1] / 2)]])
+    return np.asarray(np.bincount(tracks.owner, rough, len(tracks.family)), np.float64), median
+
+
+def _kept(
+    cells: CellMap, rims: tuple[ElementRim, ...], tracks: Tracks, long: NDArray[np.bool_]
+) -> tuple[Tracks, NDArray[np.bool_]]:
+    """The chains that are lamellas, in order; and which of all are the rim, (c,)."""
+    crossings = find_crossings(tracks)
+    crossings = crossings.of(long)
+    tips, _ = rim_tips(cells, tracks)
+    beam = along_rim(cells, rims, tracks, tips, crossings.take(within_tips(tracks, tips, crossings)))
+    kept = long & ~beam
+    crossings = crossings.of(kept)
+    return numbered(cells, rims, tracks, crossings, np.flatnonzero(kept)), beam
+
+
+def _settled(cells: CellMap, tracks: Tracks) -> tuple[Crossings, Ends]:
+    """Crossings, and how the chains end on the rim."""
+    tips, places = rim_tips(cells, tracks)
+    crossings = find_crossings(tracks)
+    crossings = crossings.take(within_tips(tracks, tips, crossings))
+    return crossings, settled_ends(cells, tracks, tips, places, crossings)

@@ -1,0 +1,50 @@
+"""Zeros of the deviator beyond the rim, next to which elements to integrate on have to be small as well.
+
+The isothermic coordinates are the integral of sqrt(D), which has a branch point in a zero of D = c (z - z_0)^m. Where
+the surface would go on to one just beyond its rim, or runs into a corner in which D is 0, no polynomial on a larger
+element is like that. D is holomorphic, and so the gradient of ln |D| points away from the zero and is m over the
+distance.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from lamella.base.vectors import lengths
+from lamella.surface.element.places import Places
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.points import Floats
+
+# a zero nearer to a place of the rim than this many longest edges of the element there
+NEAR = 1.5
+# places along an edge of the rim
+SHARES = np.array([0.1, 0.5, 0.9])
+
+
+def zeros_beyond_rim(surface: ElementSurface, apart: float) -> Floats:
+    """Estimated positions (n, 3) of zeros just beyond the rim, m, no two nearer to each other than `apart` (m)."""
+    connectivity = surface.connectivity
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    element, edge = np.nonzero(connectivity.neighbours < 0)
+    first, second = corners[edge], corners[(edge + 1) % 3]
+    local = first[:, None] + SHARES[:, None] * (second - first)[:, None]
+    where = Places(np.repeat(element, len(SHARES)), local.reshape(-1, 2))
+    there = surface.at(where)
+    # grad ln |D| = 2 grad ln mu
+    rise = 2 * there.log_mu_gradient
+    vertices = surface.nodes[connectivity.faces[where.element]]
+    longest = lengths(vertices - np.roll(vertices, 1, 1)).max(1)
+    close = np.abs(rise) * NEAR * longest > 1
+    rise, where = rise[close], where[close]
+    step = -rise / np.abs(rise) ** 2
+    target = there.position[close] + step.real[:, None] * there.e_u[close] + step.imag[:, None] * there.e_v[close]
+    _, nearest = surface.closest_near(target, where)
+    # one within the surface is an umbilic, or the way from a corner in which D has no bound
+    across = lengths(target - nearest)
+    target = target[across > 0.1 * np.abs(step)]
+    kept: list[int] = []
+    for number, near in enumerate(cKDTree(target).query_ball_point(target, apart) if len(target) else []):
+        if not set(near) & set(kept):
+            kept.append(number)
+    return np.asarray(target[kept])

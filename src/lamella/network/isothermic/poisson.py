@@ -1,0 +1,213 @@
+"""The least squares problem of isothermic coordinates: dw as near as can be to sqrt(D) dz."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.base.sparse import SymmetricPattern, packed
+from lamella.network.isothermic.integration_mesh import NetMesh
+from lamella.surface.element.geometry import tangents, weighted_dirichlet_blocks
+from lamella.surface.element.quadrature import triangle_rule
+from lamella.surface.points import Complexes, Floats
+
+Integers = NDArray[np.int64]
+
+
+# of the mean |D|: where it is less the weight does not grow any more. Its square over the rounding of 1e-16 is what
+# remains of elements' stiffness against the sum of their rows, which has to be 0
+LEAST_SHARE = 1e-4
+
+
+@dataclass(frozen=True)
+class Poisson:
+    """The least squares problem of fitting dw to the forms, element by element.
+
+    Attributes
+    ----------
+    form_a, form_b : (m, q) complex
+        The forms along both local coordinates at integration points.
+    metric : tuple of (m, q)
+    area : (m, q)
+        Area element over the points' weights, and over the fit's weight.
+    x, y : (q, k)
+        Derivatives of the basis.
+    """
+
+    form_a: Complexes
+    form_b: Complexes
+    metric: tuple[Floats, Floats, Floats]
+    area: Floats
+    x: Floats
+    y: Floats
+
+    @classmethod
+    def of(cls, mesh: NetMesh, sign: Integers) -> Poisson:
+        """The problem on a mesh with signs (m,) of the roots, not weighted."""
+        basis = mesh.connectivity.basis
+        points, weights = triangle_rule(2 * basis.order)
+        form_a, form_b, (e, f, g) = _forms(mesh, points)
+        form_a, form_b = form_a * sign[:, None], form_b * sign[:, None]
+        x, y = basis.basis(points, 1, 0), basis.basis(points, 0, 1)
+        area = np.sqrt(np.maximum(e * g - f * f, 1e-12 * e * g)) / weights
+        return cls(form_a, form_b, (e, f, g), area, x, y)
+
+    def weighted(self) -> Poisson:
+        """The same fit with the weight 1 / |D|^2: what the forms are not closed by stays away from umbilics.
+
+        A plain least squares fit leaves a harmonic error, like r^(1/2) next to a zero of order 1, where w itself goes
+        like r^(3/2): however small, it would take half of its rays from a singular node. With the weight the error dies
+        out faster than w at zeros of any order.
+        """
+        e, f, g = self.metric
+        a, b = self.form_a, self.form_b
+        square = (g * _square(a) - 2 * f * (a * b.conj()).real + e * _square(b)) / (e * g - f * f)
+        # |sqrt(D) dz|^2 is 2 |D|
+        return replace(self, area=self.area * np.maximum(square / square.mean(), LEAST_SHARE) ** 2)
+
+    @cached_property
+    def blocks(self) -> Floats:
+        """Matrices of the elements, (m, k, k)."""
+        return weighted_dirichlet_blocks(self.x, self.y, self.metric, self.area)
+
+    @cached_property
+    def pull(self) -> Complexes:
+        """Right sides of the elements, (m, k)."""
+        return self.pull_of(self.form_a, self.form_b)
+
+    def pull_of(self, form_a: Complexes, form_b: Complexes) -> Complexes:
+        """Right sides (m, k) of other forms, (m, q) along both local coordinates."""
+        e, f, g = self.metric
+        a, b = form_a / self.area, form_b / self.area
+        return np.asarray((g * a - f * b) @ self.x + (e * b - f * a) @ self.y)
+
+    def solve(
+        self, sector: Integers, home: Integers, sign: Floats, offset: Floats, held: dict[int, Floats]
+    ) -> tuple[Complexes, Floats]:
+        """Least values, and how they change with t parameters c.
+
+        Parameters
+        ----------
+        sector : (m, k) int
+        home : (s,) int
+            Unknown of each sector.
+        sign : (s,)
+        offset : (s, t)
+            The value of a sector is sign U + offset c.
+        held : dict
+            Unknowns that are a row (t,) times c.
+
+        Returns
+        -------
+        base : (m, k) complex
+            For c = 0.
+        moves : (t, m, k)
+            Per c.
+        """
+        count = int(home.max()) + 1
+        free = np.ones(count, bool)
+        free[list(held)] = False
+        number = np.where(free, np.cumsum(free) - 1, -1)
+        at = np.zeros((count, offset.shape[1]))
+        for index, row in held.items():
+            at[index] = row
+        unknown, s = home[sector], sign[sector]
+        one, other = np.tril_indices(sector.shape[1])
+        blocks = packed(self.blocks) * (s.take(one, 1) * s.take(other, 1))
+        flat = number[unknown].ravel()
+        inside = flat >= 0
+        size = int(free.sum())
+
+        def gathered(part: Floats) -> Floats:
+            return np.bincount(flat[inside], (s * part).ravel()[inside], size).astype(np.float64)
+
+        # what the held unknowns and the offsets make of c = 1 without the free unknowns
+        fixed = [s * at[unknown, t] + offset[sector, t] for t in range(offset.shape[1])]
+        right = [gathered(self.pull.real), gathered(self.pull.imag)]
+        right += [-gathered(np.matmul(self.blocks, part[..., None])[..., 0]) for part in fixed]
+        pattern = SymmetricPattern.from_elements(number[unknown], size)
+        solved = pattern.factor(pattern.assemble(blocks)).solve(np.stack(right, 1))
+        padded = np.vstack([solved, np.zeros((1, solved.shape[1]))])[number]
+        base = s * (padded[unknown, 0] + 1j * padded[unknown, 1])
+        moves = np.array([s * padded[unknown, 2 + t] + part for t, part in enumerate(fixed)])
+        return np.asarray(base), moves.reshape(-1, *sector.shape)
+
+    def quadratic(self, base: Complexes, moves: Floats) -> tuple[Floats, Complexes]:
+        """Matrix (t, t) and right side (t,) of the parameters' least squares."""
+        # constants on an element cost nothing: without them its large weights next to an umbilic magnify no rounding
+        base, moves = base - base[:, :1], moves - moves[..., :1]
+        stiff = np.matmul(self.blocks, moves[..., None])[..., 0]
+        gram = np.einsum("tek,sek->ts", moves, stiff)
+        return np.asarray(gram), np.asarray(
+            np.einsum("tek,ek->t", moves, self.pull) - np.einsum("tek,ek->t", stiff, base)
+        )
+
+    def folds(self, value: Complexes) -> NDArray[np.bool_]:
+        """Elements (m,) on which coordinates turn over anywhere."""
+        w_x, w_y = value @ self.x.T, value @ self.y.T
+        return np.asarray((w_x.real * w_y.imag <= w_x.imag * w_y.real).any(1))
+
+    def residual(self, value: Complexes) -> float:
+        """Root mean square of dw - sqrt(D) dz over that of sqrt(D) dz."""
+        e, f, g = self.metric
+
+        def energy(one: Complexes, other: Complexes) -> float:
+            density = g * _square(one) - 2 * f * (one * other.conj()).real + e * _square(other)
+            return float((density / self.area).sum())
+
+        miss = energy(value @ self.x.T - self.form_a, value @ self.y.T - self.form_b)
+        return float(np.sqrt(miss / energy(self.form_a, self.form_b)))
+
+
+def _frames(mesh: NetMesh, local: Floats) -> tuple[Complexes, Complexes, tuple[Floats, Floats, Floats], Complexes]:
+    """Tangents as complex numbers in the frame along the first one, metric, and D, at local points (m, q)."""
+    connectivity = mesh.connectivity
+    basis = connectivity.basis
+    value, x, y = (basis.basis(local, *d) for d in ((0, 0), (1, 0), (0, 1)))
+    a, b = tangents(x, y, mesh.nodes[connectivity.elements])
+    # components first: (3, m, q)
+    a, b = (np.ascontiguousarray(np.moveaxis(t, 2, 0)) for t in (a, b))
+    e, f, g = ((s * t).sum(0) for s, t in ((a, a), (a, b), (b, b)))
+    area = np.sqrt(e * g - f * f)
+    xx, xy, xz, yy, yz, zz = np.moveaxis(np.matmul(value, mesh.shape[connectivity.elements]), 2, 0)
+
+    def image(t: Floats) -> Floats:
+        return np.stack(
+            [xx * t[0] + xy * t[1] + xz * t[2], xy * t[0] + yy * t[1] + yz * t[2], xz * t[0] + yz * t[1] + zz * t[2]]
+        )
+
+    # in the frame e_u along a, e_v: b = f / sqrt(e) e_u + area / sqrt(e) e_v
+    s_a, s_b = image(a), image(b)
+    aa, ab, bb = ((s * t).sum(0) for s, t in ((s_a, a), (s_a, b), (s_b, b)))
+    uu = aa / e
+    uv = (ab - f * uu) / area
+    vv = (e * bb - 2 * f * ab + f * f * uu) / area**2
+    along = np.sqrt(e) + 0j
+    other = (f + 1j * area) / np.sqrt(e)
+    return along, other, (e, f, g), (uu - vv) / 2 - 1j * uv
+
+
+def _square(value: Complexes) -> Floats:
+    """|value|^2."""
+    return np.asarray(value.real**2 + value.imag**2)
+
+
+def deviator_root(
+    mesh: NetMesh, local: Floats
+) -> tuple[Complexes, Complexes, Complexes, tuple[Floats, Floats, Floats]]:
+    """sqrt(D), one branch an element, with the tangents and the metric, at local points (m, q)."""
+    along, other, metric, deviator = _frames(mesh, np.vstack([local, [[1 / 3, 1 / 3]]]))
+    root = np.sqrt(deviator)
+    middle = root[:, -1:]
+    root = np.where((root * middle.conj()).real < 0, -root, root)
+    e, f, g = (part[:, :-1] for part in metric)
+    return root[:, :-1], along[:, :-1], other[:, :-1], (e, f, g)
+
+
+def _forms(mesh: NetMesh, local: Floats) -> tuple[Complexes, Complexes, tuple[Floats, Floats, Floats]]:
+    """dw along both local coordinates at local points (m, q), and the metric."""
+    root, along, other, metric = deviator_root(mesh, local)
+    return root * along, root * other, metric

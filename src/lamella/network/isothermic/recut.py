@@ -1,0 +1,161 @@
+"""Isothermic coordinates cut along straight lines of the plane of w instead of edges of elements.
+
+The coordinates stay what they are; which sheet they are on, and what happens across the cut, is counted anew.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from lamella.network.isothermic.holonomy import vertex_relations
+from lamella.network.isothermic.isothermic import Isothermic, cut_pieces, root_signs
+from lamella.network.isothermic.poisson import Poisson
+from lamella.network.isothermic.split_elements import Split, split_elements
+from lamella.network.isothermic.straight_cuts import CrossedError, straight_cuts
+from lamella.network.isothermic.straight_walk import FlatTriangles
+from lamella.surface.element.connectivity import Connectivity
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.points import Complexes, Floats
+
+Integers = NDArray[np.int64]
+
+# of the longest principal line: what coordinates jump by across an edge that is not cut
+JUMP = 1e-6
+
+
+def straightened(iso: Isothermic, surface: ElementSurface) -> Isothermic:
+    """The same coordinates, cut along straight lines where these are found, else as they are cut.
+
+    Between umbilics that all but fall together small triangles do not follow w well enough for lines to arrive.
+    """
+    try:
+        return cut_straight(iso, surface)
+    except CrossedError:
+        return iso
+
+
+def cut_straight(iso: Isothermic, surface: ElementSurface) -> Isothermic:
+    """The same coordinates, cut along the shortest straight lines of their plane (`straight_cuts`).
+
+    Raises
+    ------
+    CrossedError
+        The lines are not found, or cross each other, or leave coordinates with several values.
+    """
+    if all(piece.stub for piece in iso.transitions):
+        return iso
+    flat = FlatTriangles.of(iso)
+    courses = straight_cuts(flat)
+    if not courses:
+        # what turns w lies on the rim
+        return iso
+    split = split_elements(flat, courses, surface)
+    mesh = split.mesh
+    sign, cut, turns = root_signs(mesh, split.cut)
+    plain = Poisson.of(mesh, sign)
+    before = split.restricted(iso.value)
+    across = split.inherited(iso.across)
+    region, of_region = _regions(split, cut, across)
+    slope = before @ plain.x.T, before @ plain.y.T
+    agrees = (slope[0] * plain.form_a.conj() + slope[1] * plain.form_b.conj()).real.sum(1)
+    way = np.where(np.bincount(region, agrees) > 0, 1, -1)
+    offset = _offsets(iso, split, cut, across, region, of_region, way)
+    pieces, through = cut_pieces(mesh, cut, turns, iso.odd)
+    shifts = np.array([piece.shift for piece in iso.transitions], complex)
+    value = way[region, None] * before + (offset @ shifts)[region, None]
+    rows = np.zeros((len(pieces), len(shifts)))
+    for number, piece in enumerate(pieces):
+        left, right, edge = int(piece.left[0]), int(piece.right[0]), int(piece.left_edge[0])
+        turn, row = _through(iso, int(across[left, edge]))
+        one, other = region[left], region[right]
+        if way[other] * turn * way[one] != piece.sign:
+            raise CrossedError("coordinates turn across a cut in another way than their roots")
+        rows[number] = way[other] * row + offset[other] - piece.sign * offset[one]
+    pieces = tuple(replace(piece, shift=complex(row @ shifts)) for piece, row in zip(pieces, rows, strict=True))
+    back = _inverse(iso, rows)
+    moves = np.tensordot(back.T, np.asarray(split.restricted(iso.moves), np.float64), 1) * way[region, None]
+    moves += (offset @ back).T[:, region, None]
+    _check(mesh.connectivity, cut, value, iso.longest)
+    return replace(
+        iso,
+        mesh=mesh,
+        sign=sign,
+        cut=cut,
+        value=value,
+        transitions=pieces,
+        across=through,
+        moves=moves,
+        gram=back.T @ iso.gram @ back,
+        plain=plain,
+    )
+
+
+def _through(iso: Isothermic, across: int) -> tuple[int, Floats]:
+    """Through an edge w goes over into sign w + row (t,) . shifts."""
+    row = np.zeros(len(iso.transitions))
+    if not across:
+        return 1, row
+    sign = iso.transitions[abs(across) - 1].sign
+    row[abs(across) - 1] = 1 if across > 0 else -sign
+    return sign, row
+
+
+def _regions(split: Split, cut: NDArray[np.bool_], across: Integers) -> tuple[Integers, int]:
+    """Number of the region of each element, (m,), between what was cut and what is, and how many there are."""
+    connectivity = split.mesh.connectivity
+    element, edge = np.nonzero((connectivity.neighbours >= 0) & ~cut & (across == 0))
+    neighbour = connectivity.neighbours[element, edge]
+    m = len(cut)
+    graph = coo_matrix((np.ones(len(element)), (element, neighbour)), (m, m))
+    count, region = connected_components(graph, directed=False)
+    return np.asarray(region, np.int64), int(count)
+
+
+def _offsets(
+    iso: Isothermic, split: Split, cut: NDArray[np.bool_], across: Integers, region: Integers, count: int, way: Integers
+) -> Floats:
+    """What is added to w in each region, times the shifts, (r, t), so that it goes on where nothing is cut any more."""
+    connectivity = split.mesh.connectivity
+    element, edge = np.nonzero(~cut & (across != 0))
+    one, other = region[element], region[connectivity.neighbours[element, edge]]
+    _, first = np.unique(one * count + other, return_index=True)
+    steps: dict[int, list[tuple[int, int]]] = {}
+    for index in first.tolist():
+        steps.setdefault(int(one[index]), []).append((int(other[index]), int(across[element[index], edge[index]])))
+    offset = np.zeros((count, len(iso.transitions)))
+    stack, done = [0], {0}
+    while stack:
+        here = stack.pop()
+        for there, through in steps.get(here, []):
+            if there in done:
+                continue
+            done.add(there)
+            offset[there] = offset[here] - way[there] * _through(iso, through)[1]
+            stack.append(there)
+    if len(done) < count:
+        raise CrossedError("the cut separates parts of the surface")
+    return offset
+
+
+def _inverse(iso: Isothermic, rows: Floats) -> Floats:
+    """The old shifts (t,) that stand for new ones (s,): matrix (t, s), where rows (s, t) lead from old ones to new."""
+    relations = list(vertex_relations(iso.mesh, iso.transitions, iso.across, iso.odd).values())
+    conditions = np.array(relations, float).reshape(-1, rows.shape[1])
+    _, singular, directions = np.linalg.svd(conditions, full_matrices=True)
+    free = directions[int((singular > JUMP).sum()) :].T
+    return np.asarray(free @ np.linalg.pinv(rows @ free))
+
+
+def _check(connectivity: Connectivity, cut: NDArray[np.bool_], value: Complexes, longest: float) -> None:
+    """Refuse coordinates that jump where nothing is cut."""
+    element, edge = np.nonzero((connectivity.neighbours >= 0) & ~cut)
+    neighbour, back = connectivity.neighbours[element, edge], connectivity.neighbour_edges[element, edge]
+    nodes = connectivity.basis.edge_nodes
+    jump = value[element[:, None], nodes[edge]] - value[neighbour[:, None], nodes[back][:, ::-1]]
+    if np.abs(jump).max(initial=0.0) > JUMP * longest:
+        raise CrossedError("coordinates jump where nothing is cut")

@@ -1,0 +1,60 @@
+"""Where the lamellas of one family cross those of the other."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.network.elements.level_curves import A, Tracks
+from lamella.network.lattice.lattice import ragged_ranges
+from lamella.surface.points import Floats
+
+Integers = NDArray[np.int64]
+
+
+class Crossings(NamedTuple):
+    """Crossings of an A chain and a B chain each.
+
+    Attributes
+    ----------
+    chain : (2, n) int
+        The A and the B chain.
+    tau : (2, n)
+        Where along these, cells.
+    """
+
+    chain: Integers
+    tau: Floats
+
+    def take(self, some: NDArray[np.bool_]) -> Crossings:
+        """Some of them."""
+        return Crossings(self.chain[:, some], self.tau[:, some])
+
+    def of(self, chains: NDArray[np.bool_]) -> Crossings:
+        """Those of some of the chains (c,)."""
+        a, b = self.chain
+        return self.take(chains[a] & chains[b])
+
+
+def find_crossings(tracks: Tracks) -> Crossings:
+    """Every whole number of the other coordinate that a chain passes where a chain of the other family does so too."""
+    end = tracks.start + tracks.way * tracks.span
+    low, high = np.minimum(tracks.start, end), np.maximum(tracks.start, end)
+    first, last = np.floor(low).astype(np.int64) + 1, np.ceil(high).astype(np.int64) - 1
+    count = np.maximum(last - first + 1, 0)
+    link = np.repeat(np.arange(len(count)), count)
+    whole = first[link] + ragged_ranges(count)
+    is_a = tracks.family[tracks.owner[link]] == A
+    levels = [np.where(is_a, tracks.level[link], whole), np.where(is_a, whole, tracks.level[link])]
+    parts = [tracks.triangle[link], *(level - level.min(initial=0) for level in levels)]
+    name = np.ravel_multi_index(parts, [int(part.max(initial=0)) + 1 for part in parts])
+    _, number = np.unique(name, return_inverse=True)
+    number = number.ravel()
+    names = int(number.max(initial=-1)) + 1
+    both = (np.bincount(number[is_a], minlength=names) == 1) & (np.bincount(number[~is_a], minlength=names) == 1)
+    tau = tracks.tau[link] + np.abs(whole - tracks.start[link])
+    of_family = [np.flatnonzero(both[number] & mine) for mine in (is_a, ~is_a)]
+    pairs = np.stack([at[np.argsort(number[at], kind="stable")] for at in of_family])
+    return Crossings(tracks.owner[link][pairs], tau[pairs])

@@ -1,0 +1,33 @@
+"""A few lines of a field, traced to see where such lines lead before all are traced."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.network.streamlines.charts import Ground, Look
+from lamella.network.streamlines.direction_field import LineField
+from lamella.network.streamlines.streamlines import Flow, trace
+from lamella.surface.element.places import Places
+
+# lines of each family that are tried, spread over the surface
+PROBES = 12
+# of the spacing: a line that comes back as near to its seed winds around
+BESIDE = 0.25
+# steps a spacing, and longest half over the surface's size
+STEPS, LONGEST = 3, 12.0
+
+
+def wound(
+    ground: Ground, field: LineField, seeds: Places, is_a: NDArray[np.bool_], *, spacing: float, size: float
+) -> Flow:
+    """Streamlines from seeds; those that come back to their seed are given up there."""
+    return trace(ground, field, seeds, is_a, step=spacing / STEPS, longest=LONGEST * size, beside=BESIDE * spacing)
+
+
+def probes(ground: Ground, field: LineField, where: Places, look: Look, spacing: float, size: float) -> Flow:
+    """Some lines of both families, through places spread over those (n,) that have directions."""
+    usable = np.flatnonzero(field.margin(look.mean, look.deviator) > 0)
+    some = usable[np.linspace(0, len(usable) - 1, min(PROBES, len(usable))).astype(np.int64)]
+    is_a = np.repeat([True, False], len(some))
+    return wound(ground, field, where[np.tile(some, 2)], is_a, spacing=spacing, size=size)

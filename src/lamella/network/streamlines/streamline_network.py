@@ -1,0 +1,330 @@
+"""The network of lines of a given normal curvature, or of principal lines, on any surface.
+
+Where the lines are not the lamellas of a surface of constant mean curvature there are no coordinates to integrate: the
+lines are traced one beside the other (`lamella.network.streamlines.streamlines`) from even seeds
+(`lamella.network.streamlines.seeding`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.base.errors import InputError
+from lamella.base.progress import Progress, silent
+from lamella.base.wording import rounded
+from lamella.network.elements.sharp_turns import more_samples
+from lamella.network.lattice.lattice import ragged_ranges
+from lamella.network.lattice.trace import COARSE, FINE, FINE_LIMIT
+from lamella.network.network import Network
+from lamella.network.pattern import Pattern
+from lamella.network.streamlines.charts import Ground
+from lamella.network.streamlines.direction_field import LEAST_ANGLE
+from lamella.network.streamlines.intersections import Crossings, find_crossings
+from lamella.network.streamlines.seeding import Seeded, seeded_lines
+from lamella.network.streamlines.stops import (
+    SAME_NODE,
+    faces_of,
+    line_stops,
+    median_edge,
+    merged_stops,
+    stop_nodes,
+    whole_edge,
+    without_short,
+)
+from lamella.network.streamlines.streamline_plan import Reach, lay_lines
+from lamella.network.streamlines.streamlines import Flow
+from lamella.network.streamlines.winding import refuse_winding
+from lamella.network.turning import derivative, turning
+from lamella.network.written_lines import WrittenLines, angle_figures
+from lamella.surface.darboux import Darboux
+from lamella.surface.points import Floats
+
+Integers = NDArray[np.int64]
+Booleans = NDArray[np.bool_]
+
+# how far the median cell edge may be from the spacing asked for, and how often seeds are spaced anew for it
+OFF_SPACING, MOST_TRIES = 0.1, 3
+# samples of a piece of lamella, however short
+FEWEST = 3
+# share of the area worth telling
+LEAST_SHARE = 1e-3
+# of the curvature scale: the normal curvature of lamellas is promised to be off by no more (docs/getting-started.md)
+PROMISED = 2e-3
+
+
+@dataclass(frozen=True)
+class TracedNetwork:
+    """A network with what it rests on.
+
+    Attributes
+    ----------
+    network : Network
+    requested : str
+    reach : Reach
+    guides : int
+        Guides the seeds were counted along.
+    inner_ends : int
+        Lamellas' ends inside the surface, where directions stop being real.
+    missed : (float, float)
+        Bound of the difference of the normal curvature from the one of the project, at most and at 95 % of the samples,
+        1/m: what the surface's second derivatives miss, and how far these may be off those of the surface a mesh means;
+        or what the written points miss, where that is more.
+    angles : (2, n)
+        At regular nodes, deg, see `WrittenLines.node_angles`.
+    scale : float
+        Curvature scale of the surface, 1/m.
+    """
+
+    network: Network
+    requested: str
+    reach: Reach
+    guides: int
+    inner_ends: int
+    missed: tuple[float, float]
+    angles: Floats
+    scale: float
+
+    def describe(self) -> dict[str, Any]:
+        """Further figures of the network for summary.json."""
+        lines = self.network.pattern.kind == "lamellas"
+        return angle_figures(self.angles) | {
+            "node_angle_mean_deg": float(self.angles.mean()),
+            "normal_curvature_deviation_max": self.missed[0] if lines else None,
+            "normal_curvature_deviation_p95": self.missed[1] if lines else None,
+            "guides": self.guides,
+            "inner_ends": self.inner_ends,
+            "unreal_area_share": self.reach.unreal,
+            "flat_area_share": self.reach.flat,
+        }
+
+    def corner_stresses(self, _: Floats) -> dict[str, Any]:
+        """None: what nets of isothermic coordinates tell apart, see `ElementNetwork`."""
+        return {}
+
+    def at_corner(self, _: Floats, utilisation: Floats, searched: object) -> str:
+        """Nothing, see `corner_stresses`."""
+        return ""
+
+    def warnings(self, finer: float = 1.0) -> Iterator[str]:
+        """Where there are no lamellas, and lamellas of another normal curvature than was asked for.
+
+        Parameters
+        ----------
+        finer : float
+            By how much smaller the tolerance of the surface that is to be judged is than that of this one.
+        """
+        wanted = self.network.pattern.normal_curvature
+        unreal, flat = self.reach.unreal, self.reach.flat
+        if wanted is not None and max(unreal, flat) > LEAST_SHARE:
+            parts = []
+            if unreal > LEAST_SHARE:
+                parts.append(f"{unreal:.1%} of the surface has no direction of normal curvature {wanted:g} 1/m")
+            if flat > LEAST_SHARE:
+                parts.append(f"in {flat:.1%} of the surface the two families cross at less than {LEAST_ANGLE:g} deg")
+            yield (
+                f"{', '.join(parts)}: no lamellas there, {self.inner_ends} of their ends lie inside the surface "
+                "(another normal_curvature moves that edge)"
+            )
+        most, usual = (miss / finer for miss in self.missed)
+        if wanted is not None and most > PROMISED * self.scale:
+            yield (
+                f"the normal curvature of the lamellas is off by up to {most:.2g} 1/m, "
+                f"{most / self.scale:.1e} of the curvature scale (at 95 % of the samples by {usual / self.scale:.1e}; "
+                f"limit {PROMISED:g}): a finer and smoother mesh, or a smaller surface.tolerance where there "
+                "are vertices enough for it, tells directions better"
+            )
+
+
+def traced_network(
+    ground: Ground,
+    pattern: Pattern,
+    *,
+    mean_curvature: float,
+    cells: int | None = None,
+    spacing: float | None = None,
+    minimum_length: float = 0.5,
+    progress: Progress = silent,
+) -> TracedNetwork:
+    """The network of lines of a given normal curvature, or of principal lines.
+
+    Parameters
+    ----------
+    ground : Ground
+    pattern : Pattern
+        With a normal curvature, or of kind "principal".
+    mean_curvature : float
+        What the net tells as its surface's H, 1/m, see `lamella.network.streamlines.applicability.told_mean_curvature`.
+    cells : int, optional
+        Lamellas of a family around the first hole; without a hole cells along the longer lamella through the middle.
+        24 when spacing is not given either.
+    spacing : float, optional
+        Wanted median cell edge, m.
+    minimum_length : float
+        Lamellas shorter than this many median cell edges are left out.
+    progress : callable
+
+    Raises
+    ------
+    InputError
+    """
+    laid = lay_lines(ground, pattern, cells=cells, spacing=spacing)
+    field, guide, distance, size, key = laid.field, laid.guide, laid.distance, laid.size, laid.key
+    best, known, chosen = np.inf, [], None
+    for _ in range(MOST_TRIES):
+        tried = seeded_lines(ground, field, guide, distance, size)
+        refuse_winding(ground, field, tried.flow, pattern, distance * guide.share, size)
+        met = find_crossings(tried.flow, distance * guide.share)
+        flow, met = without_short(tried.flow, met, minimum_length)
+        median = median_edge(flow, met)
+        progress(f"  {flow.count} lines from even seeds, {len(met.a):,} crossings, median cell edge {median:.3g} m")
+        off = 0.0 if spacing is None else abs(np.log(median / spacing)) if np.isfinite(median) else np.inf
+        if chosen is None or off < best:
+            best, chosen = off, (tried, flow, met, distance)
+        if spacing is None or off <= OFF_SPACING or not np.isfinite(median):
+            break
+        known.append((np.log(distance), np.log(median / spacing)))
+        distance = _next_distance(known)
+    assert chosen is not None
+    seeded, flow, crossings, step = chosen
+    network, inner, missed = _network(
+        ground, seeded, flow, crossings, pattern, mean_curvature, step, minimum_length, key
+    )
+    written = WrittenLines.of(network)
+    if pattern.normal_curvature is not None:
+        missed = np.maximum(missed, written.bend_off(network, pattern.normal_curvature))
+    worst = float(missed.max()), float(np.percentile(missed, 95))
+    angles = written.node_angles(network)
+    return TracedNetwork(network, laid.requested, laid.reach, seeded.guides, inner, worst, angles, laid.field.scale)
+
+
+def _next_distance(known: list[tuple[float, float]]) -> float:
+    """Distance of seeds, m, from logarithms of distances tried and of median over wanted cell edge."""
+    over, under = [k for k in known if k[1] > 0], [k for k in known if k[1] <= 0]
+    if not over or not under:
+        log, off = known[-1]
+        return float(np.exp(log - off))
+    # lines come and go with the distance: between the nearest ones on either side
+    (a, high), (b, low) = min(over, key=lambda k: k[1]), max(under, key=lambda k: k[1])
+    return float(np.exp(b + (a - b) * np.clip(-low / (high - low), 0.1, 0.9)))
+
+
+def _none_cross(seeded: Seeded, kept: Flow, distance: float, minimum_length: float, key: str) -> InputError:
+    """Why no two of the seeded lines that are kept cross; seeds are a distance (m) apart."""
+    count, longest = seeded.flow.count, float(seeded.flow.lengths.max())
+    short = count - kept.count
+    if short:
+        return InputError(
+            f"no two lamellas cross: {short} of {count} are shorter than minimum_length = {minimum_length:g} median "
+            f"cell edges, the longest of them {longest:.3g} m",
+            "write minimum_length = 0, with which none is left out",
+            "network.minimum_length",
+        )
+    return InputError(
+        f"no two lamellas cross: the longest of {count} is {longest:.3g} m, and they are {distance:.3g} m apart",
+        f"write spacing = {rounded(longest / 3, up=False):g} m or less"
+        if key == "network.spacing"
+        else f"write cells = {int(np.ceil(3 * seeded.count * distance / longest))} or more",
+        key,
+    )
+
+
+def _network(
+    ground: Ground,
+    seeded: Seeded,
+    flow: Flow,
+    crossings: Crossings,
+    pattern: Pattern,
+    mean_curvature: float,
+    distance: float,
+    minimum_length: float,
+    key: str,
+) -> tuple[Network, int, Floats]:
+    """The network of the seeded lines that are kept, how many ends lie inside, and what the surface misses, 1/m, (k,).
+
+    That is a bound of what its positions alone make of the lines' normal curvature: they follow the continuous shape
+    operator.
+    """
+    if not len(crossings.a):
+        raise _none_cross(seeded, flow, distance, minimum_length, key)
+    whole = whole_edge(flow, crossings)
+    spacing = whole if np.isfinite(whole) else distance
+    stops = merged_stops(flow, line_stops(flow, crossings), SAME_NODE * spacing)
+    node, kinds, inner = stop_nodes(ground, flow, stops, SAME_NODE * spacing)
+
+    owner = stops.line
+    first = np.flatnonzero(owner[1:] == owner[:-1])
+    length = stops.s[first + 1] - stops.s[first]
+    per_cell = FINE if len(kinds) <= FINE_LIMIT else COARSE
+    # a lamella shorter than a cell is sampled as finely as a whole cell
+    total = np.bincount(owner[first], length, flow.count)[owner[first]]
+    count = np.maximum(np.ceil(length / np.minimum(total, spacing) * per_cell - 1e-6), FEWEST).astype(np.int64)
+    last = np.r_[owner[first][1:] != owner[first][:-1], True]
+    first_count = count
+    while True:
+        given = count + last
+        segment = np.repeat(np.arange(len(count)), given)
+        s = stops.s[first[segment]] + ragged_ranges(given) / count[segment] * length[segment]
+        where, look, tangents = flow.at(owner[first[segment]], s)
+        before, count = count, more_samples(first_count, count, given, tangents)
+        if (count == before).all():
+            break
+    begin = np.cumsum(given) - given
+    stop_sample = np.empty(len(owner), np.int64)
+    stop_sample[first] = begin
+    stop_sample[first[last] + 1] = (begin + count)[last]
+    offsets = np.r_[0, np.cumsum(np.bincount(owner[first], given, minlength=flow.count).astype(np.int64))]
+
+    heading = (tangents * look.e_u).sum(1) + 1j * (tangents * look.e_v).sum(1)
+    turned = look.deviator * heading**2
+    sideways = np.cross(look.normal, tangents)
+    closed = np.zeros(flow.count, bool)
+    darboux = Darboux(look.mean + turned.real, turning(tangents, sideways, s, offsets, closed), -turned.imag)
+    mean, deviator = ground.measured(where)
+    missed = np.abs(mean - look.mean + ((deviator - look.deviator) * heading**2).real) + ground.uncertain(where)
+    node_sample = np.empty(len(kinds), np.int64)
+    node_sample[node[::-1]] = stop_sample[::-1]
+    faces = faces_of(
+        ground, where[node_sample], look.normal[node_sample], tangents, node, stop_sample, first, kinds, inner
+    )
+    families = np.where(flow.is_a, "A", "B")
+    rank = np.where(flow.is_a, np.cumsum(flow.is_a), np.cumsum(~flow.is_a))
+    return (
+        Network(
+            mean_curvature=mean_curvature,
+            step=distance,
+            cells=seeded.count,
+            periods=(),
+            left_out=seeded.flow.count - flow.count,
+            node_points=look.position[node_sample],
+            node_normals=look.normal[node_sample],
+            node_kinds=kinds,
+            ids=tuple(f"{f}{r}" for f, r in zip(families.tolist(), rank.tolist(), strict=True)),
+            families=families,
+            closed=closed,
+            sample_offsets=offsets,
+            sample_points=look.position,
+            sample_normals=look.normal,
+            sample_tangents=tangents,
+            sample_darboux=darboux,
+            sample_mean_curvature=look.mean,
+            sample_slopes=derivative(darboux.tg[:, None], s, offsets, closed)[:, 0]
+            + 2 * darboux.kg * (darboux.kn - look.mean),
+            sample_where=np.column_stack([where.element, where.local]),
+            sample_arclengths=s,
+            stop_offsets=np.r_[0, np.cumsum(np.bincount(owner, minlength=flow.count))],
+            stop_nodes=node,
+            stop_samples=stop_sample - offsets[owner],
+            stop_arclengths=stops.s,
+            face_offsets=faces.offsets,
+            face_nodes=faces.nodes,
+            faces_left_out=faces.large,
+            pattern=pattern,
+        ),
+        int(inner.sum()),
+        np.asarray(missed, np.float64),
+    )

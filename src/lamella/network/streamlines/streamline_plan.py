@@ -1,0 +1,199 @@
+"""What is settled before the lines of a net are traced: where a surface has such lines, and how far apart they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.base.errors import InputError
+from lamella.base.vectors import dots, lengths
+from lamella.base.wording import rounded
+from lamella.network.lattice.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
+from lamella.network.pattern import Pattern
+from lamella.network.streamlines.charts import Ground
+from lamella.network.streamlines.direction_field import LEAST_ANGLE, LineField
+from lamella.network.streamlines.probing import probes
+from lamella.network.streamlines.seeding import RIM_POINTS, Guide, choose_guide
+from lamella.network.streamlines.winding import refuse_winding
+from lamella.surface.points import Floats
+
+Booleans = NDArray[np.bool_]
+
+# share of the surface that has lines, at least, of the normal curvatures that are offered
+OFFERED = 0.1
+
+
+class Reach(NamedTuple):
+    """Where a surface has lines: shares of its area, and the principal curvatures on it, 1/m.
+
+    Attributes
+    ----------
+    unreal : float
+        Share without any direction of the wanted normal curvature.
+    flat : float
+        Share where there are some, but the families cross at less than `LEAST_ANGLE`.
+    k1_max, k2_min : float
+    """
+
+    unreal: float
+    flat: float
+    k1_max: float
+    k2_min: float
+
+
+@dataclass(frozen=True)
+class LaidLines:
+    """How a net of lines from seeds is laid on a surface.
+
+    Attributes
+    ----------
+    reach : Reach
+    field : LineField
+    guide : Guide
+    distance : float
+        Of seeds along the guide, m.
+    requested : str
+        What was asked for.
+    key : str
+        The project's key it stands under.
+    size : float
+        Of the surface, m.
+    estimated_nodes : int
+    """
+
+    reach: Reach
+    field: LineField
+    guide: Guide
+    distance: float
+    requested: str
+    key: str
+    size: float
+    estimated_nodes: int
+
+    @property
+    def cells(self) -> int:
+        """Cells along the guide."""
+        return round(self.guide.length / self.distance)
+
+
+def lay_lines(ground: Ground, pattern: Pattern, *, cells: int | None = None, spacing: float | None = None) -> LaidLines:
+    """Where lines of a pattern run on a surface, and how far apart.
+
+    Parameters
+    ----------
+    ground, pattern, cells, spacing
+        See `lamella.network.streamlines.streamline_network.traced_network`.
+
+    Raises
+    ------
+    InputError
+        There are no such lines, or they do not end; too few cells, or too many nodes.
+    """
+    where, area = ground.samples()
+    look = ground.look(where)
+    size = float(np.linalg.norm(np.ptp(look.position, axis=0)))
+    scale = float(np.sqrt(np.average(look.mean**2 + np.abs(look.deviator) ** 2, weights=area)))
+    field = LineField(pattern.normal_curvature, max(scale, 1e-9 / size))
+    real, usable = field.is_real(look.mean, look.deviator), field.margin(look.mean, look.deviator) > 0
+    half = np.abs(look.deviator)
+    total = area.sum()
+    reach = Reach(
+        float(area[~real].sum() / total),
+        float(area[real & ~usable].sum() / total),
+        float((look.mean + half).max()),
+        float((look.mean - half).min()),
+    )
+    _refuse_nowhere(reach, usable, look.mean, half, pattern)
+    guide = choose_guide(ground, field, size)
+    distance, requested, key = _wanted(guide, cells, spacing)
+    sines = field.crossing_sine(look.mean, look.deviator)[usable]
+    spacing_there = distance * guide.share
+    # a cell has the area spacing^2 sin(angle)
+    crossings = area[usable].sum() / (spacing_there**2 * float(np.median(sines)))
+    nodes = crossings + _ends(ground, field, spacing_there)
+    _refuse_many(nodes, guide, spacing_there, key)
+    few = probes(ground, field, where, look, spacing_there, size)
+    refuse_winding(ground, field, few, pattern, spacing_there, size)
+    return LaidLines(reach, field, guide, distance, requested, key, size, round(nodes))
+
+
+def _refuse_nowhere(reach: Reach, usable: Booleans, mean: Floats, half: Floats, pattern: Pattern) -> None:
+    if usable.any():
+        return
+    if pattern.normal_curvature is None:
+        raise InputError(
+            "the surface is umbilic everywhere: all directions bend alike", "bend it more one way", "surface"
+        )
+    # the range within which part of the surface has lines that cross well enough
+    turn = np.cos(np.radians(LEAST_ANGLE))
+    low = float(np.quantile(mean - turn * half, OFFERED))
+    high = float(np.quantile(mean + turn * half, 1 - OFFERED))
+    none = reach.unreal >= 1 - 1e-12
+    raise InputError(
+        f"normal_curvature = {pattern.normal_curvature:g} 1/m: "
+        + ("no direction of the surface has it" if none else f"lines of it cross at less than {LEAST_ANGLE:g} deg")
+        + f", its normal curvatures run from k2 = {reach.k2_min:.4g} to k1 = {reach.k1_max:.4g} 1/m",
+        f"choose a value from {rounded(low, up=True):g} to {rounded(high, up=False):g} 1/m (the sign is that of the "
+        "surface's normal)",
+        "network.normal_curvature",
+    )
+
+
+def _wanted(guide: Guide, cells: int | None, spacing: float | None) -> tuple[float, str, str]:
+    """Distance of seeds along the guide, m, what was asked for, and the key it stands under."""
+    if spacing is None:
+        requested = f"cells = {cells}" if cells is not None else "cells = 24 (default)"
+        cells = 24 if cells is None else cells
+        if cells < LEAST_CELLS:
+            raise InputError(
+                f"{cells} cells, at least {LEAST_CELLS} are needed",
+                f"write cells = {LEAST_CELLS} or more",
+                "network.cells",
+            )
+        return guide.length / cells, requested, "network.cells"
+    fit = guide.length * guide.share / spacing
+    if fit < LEAST_CELLS:
+        raise InputError(
+            f"spacing = {spacing:g} m leaves {fit:.2g} cells across the surface, at least {LEAST_CELLS} are needed",
+            f"choose a spacing of at most {rounded(guide.length * guide.share / LEAST_CELLS, up=False):g} m",
+            "network.spacing",
+        )
+    return spacing / guide.share, f"spacing = {spacing:g} m", "network.spacing"
+
+
+def _ends(ground: Ground, field: LineField, spacing: float) -> float:
+    """Lamellas' ends on the rim: lines of a family are the spacing times the sine of the crossing angle apart."""
+    where = ground.rim_points(RIM_POINTS)
+    look, rim = ground.look(where), ground.rim_places(where)
+    usable = field.margin(look.mean, look.deviator) > 0
+    arc = np.zeros(len(where))
+    for loop in np.unique(rim.loop):
+        mine = np.flatnonzero(rim.loop == loop)
+        mine = mine[np.argsort(rim.along[mine], kind="stable")]
+        arc[mine] = lengths(np.roll(look.position[mine], -1, 0) - look.position[mine])
+    look, arc, tangent = look.take(usable), arc[usable], rim.tangent[usable]
+    apart = spacing * field.crossing_sine(look.mean, look.deviator)
+    ends = 0.0
+    for family in (True, False):
+        heading = field.heading(look.mean, look.deviator, np.full(len(arc), family))
+        line = heading.real[:, None] * look.e_u + heading.imag[:, None] * look.e_v
+        across = np.sqrt(np.maximum(1 - dots(line, tangent) ** 2, 0))
+        ends += float((arc * across / apart).sum())
+    return ends
+
+
+def _refuse_many(estimate: float, guide: Guide, spacing: float, key: str) -> None:
+    """Refuse more nodes than memory holds."""
+    if estimate > MOST_NODES:
+        memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
+        least = spacing * np.sqrt(estimate / MOST_NODES)
+        raise InputError(
+            f"about {estimate:,.0f} nodes would take about {memory:,.0f} GB of memory (limit {MOST_NODES:,} nodes)",
+            f"choose a spacing of at least {rounded(1.01 * least, up=True):g} m"
+            if key == "network.spacing"
+            else f"at most {int(guide.length * guide.share / least)} cells fit this surface",
+            key,
+        )

@@ -1,0 +1,124 @@
+"""A commented project file to start from, generated from the schema."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from typing import Any
+
+import tomli_w
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from lamella.project.tables import FURTHER_TABLES, SURFACE_TABLES
+
+# the film between a saddle-shaped rim of 12 x 9 m and a ring
+_BOUNDARY = """\
+# Closed boundary curves: the outer loop, then the holes. Each has points, a circle, a file or parts.
+[[surface.boundary]]
+name = "outer"
+points = [ # [m] splined; the first is not repeated
+{points}
+]
+#   interpolation = "spline" # or "polyline"
+#   corner_radius = 0.4 # [m] of the fillets at a polyline's corners
+
+[[surface.boundary]]
+name = "oculus"
+circle = {{center = [0.0, 0.0, 2.0], radius = 1.3}} # [m]
+#   file = "curves.3dm" # or .dxf, .json, instead of points or circle, with
+#   layer = "boundary"
+#   id = "oculus"
+#   unit = "mm" # when the file does not say
+#   place = {{shift = [0.0, 0.0, 1.0], scale = 1.0, turn = [0.0, 0.0, 0.0]}} # [m], [degrees]: the file's curve, moved
+#   adjust = {{move = 0.3, scale = 0.1, tilt = 5}} # at most [m], share, [degrees], for network.closing = "adjust"
+#   slide = {{point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0]}} # free to slide on a plane, or with {{direction = ..}}
+# A loop of several parts has a table [[surface.boundary.part]] for each, with points or arc, and slide."""
+
+
+def _boundary() -> str:
+    turns = [2 * math.pi * k / 24 for k in range(24)]
+    points = [(6 * math.cos(t), 4.5 * math.sin(t), 2.5 - 2.5 * math.cos(2 * t)) for t in turns]
+    # + 0.0 makes a zero of a negative one
+    rows = [f"  [{', '.join(f'{round(x, 4) + 0.0}' for x in point)}]," for point in points]
+    return _BOUNDARY.format(points="\n".join(rows))
+
+
+# keys that come with a value of their own in a new project: one layer, as a pair asks for choices of its own, and a
+# strip that is not overstressed in it
+_ACTIVE: dict[str, Any] = {
+    "network.cells": 24,
+    "lamella.height": 0.08,
+    "lamella.thickness": 0.001,
+    "lamella.layers": 1,
+}
+# with 24 cells nodes of these come within millimetres of the rim, or strips meet beyond it
+_OWN: dict[str, dict[str, Any]] = {"unduloid": {"network.cells": 25}, "mesh": {"network.cells": 16}}
+
+
+def _key(table: str, name: str, field: FieldInfo, active: dict[str, Any]) -> str:
+    extra = field.json_schema_extra
+    unit = extra.get("unit", "") if isinstance(extra, dict) else ""
+    about = (field.description or "") + (f" [{unit}]" if unit else "")
+    lines = textwrap.wrap(about, 98, initial_indent="# ", subsequent_indent="# ")
+    required = field.is_required()
+    # a commented key stands at its default; what has none shows an example
+    shown = required or field.default is None or name == "scale"
+    value: Any = field.examples[0] if field.examples and shown else field.default
+    value = active.get(f"{table}.{name}", value)
+    if value is None:
+        return "\n".join([*lines, f"# {name} ="])
+    line = f"{name} = " + tomli_w.dumps({"x": value}, indent=0).partition(" = ")[2].strip().replace("\n", " ")
+    line = line.replace("[ ", "[").replace(", ]", "]")
+    written = required or f"{table}.{name}" in active or (bool(field.examples) and name == "scale")
+    return "\n".join([*lines, line if written else f"# {line}"])
+
+
+def _table(name: str, model: type[BaseModel], active: dict[str, Any], skip: frozenset[str] = frozenset()) -> str:
+    keys = [_key(name, key, field, active) for key, field in model.model_fields.items() if key not in skip]
+    about = textwrap.wrap((model.__doc__ or "").strip(), 98, initial_indent="# ", subsequent_indent="# ")
+    return "\n".join([*about, f"[{name}]", *keys])
+
+
+def starter(kind: str, name: str, mesh: str = "surface.obj") -> str:
+    """A project file for a kind of surface; keys with a default are there as comments.
+
+    Parameters
+    ----------
+    kind : str
+        One of `lamella.project.tables.SURFACE_TABLES`.
+    name : str
+        Name of the project.
+    mesh : str
+        File of the mesh, where the surface is one.
+    """
+    model = SURFACE_TABLES[kind]
+    active = _ACTIVE | _OWN.get(kind, {}) | ({"surface.file": mesh} if kind == "mesh" else {})
+    surface = _table("surface", model, active, frozenset({"kind", "boundary"}))
+    surface = surface.replace("[surface]", f'[surface]\nkind = "{kind}"', 1)
+    if kind == "form-found":
+        surface += f"\n\n{_boundary()}"
+    parts = [
+        "# A lamella project. Lengths in metres, angles in degrees, stresses in Pa.\n"
+        f"# Run it with:  lamella run FILE\n{tomli_w.dumps({'name': name}).strip()}",
+        surface,
+        *(_table(name, model, active) for name, model in FURTHER_TABLES.items()),
+        "# A material of your own (SI units), named in lamella.material:\n"
+        '# [materials."my steel"]\n# density = 7850\n# youngs_modulus = 210e9\n# shear_modulus = 81e9\n'
+        "# strength = 420e6",
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def starter_mesh() -> str:
+    """A mesh to start from, as .obj in metres: 12 x 8 quads of half a catenoid with a neck of 2 m."""
+    around, along = 13, 9
+    rows = []
+    for k in range(along):
+        z = -1.8 + 3.6 * k / (along - 1)
+        radius = 2.0 * math.cosh(z / 2.0)
+        turns = (math.pi * j / (around - 1) for j in range(around))
+        rows += [f"v {radius * math.cos(t):.6f} {radius * math.sin(t):.6f} {z:.6f}" for t in turns]
+    corners = (1 + k * around + j for k in range(along - 1) for j in range(around - 1))
+    faces = [f"f {one} {one + 1} {one + around + 1} {one + around}" for one in corners]
+    return "\n".join(["# half a catenoid, metres", *rows, *faces]) + "\n"

@@ -1,0 +1,345 @@
+"""The project file's schema: every key with its unit, default and range."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import tomli_w
+from pydantic import Field, field_validator, model_validator
+
+from lamella.base.wording import is_byte, shown
+from lamella.network.pattern import Pattern
+from lamella.project.boundary_tables import (
+    AdjustTable,
+    ArcTable,
+    BoundaryTable,
+    CircleTable,
+    PartTable,
+    PlaceTable,
+    SlideTable,
+)
+from lamella.project.surface_tables import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
+from lamella.project.values import (
+    LEAST_LENGTH,
+    Name,
+    Range,
+    Refusal,
+    Table,
+    Unit,
+    length,
+    number,
+    read_points,
+    two_numbers,
+)
+from lamella.strip.material import MATERIALS, Material, find_material
+
+__all__ = [
+    "FURTHER_TABLES",
+    "LEAST_LENGTH",
+    "MATERIALS",
+    "SURFACE_TABLES",
+    "AdjustTable",
+    "ArcTable",
+    "BoundaryTable",
+    "CircleTable",
+    "FabricationTable",
+    "FilesTable",
+    "FormFoundTable",
+    "LamellaTable",
+    "MaterialTable",
+    "MeshTable",
+    "NetworkTable",
+    "PartTable",
+    "PlaceTable",
+    "Project",
+    "Refusal",
+    "SlideTable",
+    "Table",
+    "project_schema",
+    "read_points",
+]
+
+
+# of curves left out; fewer are kept than anybody would build
+MOST_LEFT_OUT = 100
+_Every = Annotated[int, Field(ge=1, le=MOST_LEFT_OUT)]
+
+
+class NetworkTable(Table):
+    """Which curves the net has, and how dense it is."""
+
+    kind: Literal["lamellas", "principal"] = Field(
+        default="lamellas",
+        description='"lamellas": the curves strips stand on, straight or with one radius; "principal": principal '
+        "lines, for panels that are nearly planar quads. A principal net has no strips: the run ends with the network.",
+    )
+    cells: int | None = number(
+        "Number of A lamellas that cross a loop once around the axis, or that end on the rim of the first hole (B "
+        "where these are more); on a simply connected surface, number of cells along its longest principal line (with "
+        "several umbilics of odd order: across a disc with as many cells). 24 when spacing is not given either.",
+        "",
+        ge=3,
+        le=10**12,
+        default=None,
+        examples=[24],
+    )
+    spacing: float | None = length(
+        "Wanted median cell edge, instead of cells; the nearest whole number of cells is taken, or a spacing up to a "
+        "tenth away with which the net closes and its umbilics are nodes.",
+        default=None,
+        examples=[0.5],
+    )
+    every: _Every | Annotated[tuple[_Every, _Every], Field(strict=False)] = Field(
+        default=1,
+        description="2 keeps every second curve of the net that cells or spacing ask for, 3 every third; [2, 1] every "
+        "second one of family A and all of family B. Singular nodes stay nodes. Around a hole cells has to be a "
+        "multiple of it.",
+        examples=[2, [2, 1]],
+    )
+    normal_curvature: float | None = number(
+        "Normal curvature of all lamellas where it is not to be H: 0 for asymptotic lines. They cross at other angles "
+        "than 90 deg then, and where the surface has no such direction there are none. On closed forms of revolution "
+        "the net closes around the axis; elsewhere its lines start from even seeds.",
+        "1/m",
+        ge=-1e6,
+        le=1e6,
+        default=None,
+        examples=[0.0],
+    )
+    angle: float = number(
+        "Angle between the families at the nodes; other than 90 is not offered yet.", "deg", default=90.0
+    )
+    closing: Literal["open", "round", "adjust"] = Field(
+        default="open",
+        description="What to do where a net does not close by itself; every net of a closed-form surface closes.",
+    )
+    minimum_length: float = number(
+        "Lamellas shorter than this many median cell edges are left out.", "cells", ge=0, le=100, default=0.5
+    )
+
+    @field_validator("every", mode="before")
+    @classmethod
+    def _counts(cls, value: Any) -> Any:
+        counts = value if isinstance(value, list | tuple) else [value]
+        remedy = "write a whole number such as 2, or one for each family: [2, 1]"
+        if len(counts) not in (1, 2) or any(isinstance(n, bool) or not isinstance(n, int) for n in counts):
+            raise Refusal(f"{shown(value)} is not a whole number, or two", remedy)
+        if not all(1 <= n <= MOST_LEFT_OUT for n in counts):
+            raise Refusal(f"{shown(value)} is out of range: has to be from 1 to {MOST_LEFT_OUT}", remedy)
+        return counts[0] if len(set(counts)) == 1 else tuple(counts)
+
+    @property
+    def pattern(self) -> Pattern:
+        """Which curves of the isothermic lattice the net has."""
+        p, q = (self.every, self.every) if isinstance(self.every, int) else self.every
+        return Pattern(self.kind, (p, q), self.normal_curvature)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _default(cls, values: Any) -> Any:
+        if isinstance(values, dict) and "cells" not in values and "spacing" not in values:
+            return values | {"cells": 24}
+        return values
+
+    @model_validator(mode="after")
+    def _possible(self) -> NetworkTable:
+        if self.cells is not None and self.spacing is not None:
+            raise Refusal(
+                f"cells = {self.cells} and spacing = {self.spacing:g} m are both given", "keep one of them", "spacing"
+            )
+        if self.angle != 90:
+            raise Refusal(
+                f"angle = {self.angle:g} deg: only 90 deg is offered", "write angle = 90 or leave it out", "angle"
+            )
+        if self.kind == "principal" and self.normal_curvature is not None:
+            raise Refusal(
+                f'normal_curvature = {self.normal_curvature:g} 1/m and kind = "principal" are both given: along '
+                "principal lines the normal curvature is the principal one",
+                "keep one of them",
+                "normal_curvature",
+            )
+        if self.closing == "adjust" and self.normal_curvature is not None:
+            raise Refusal(
+                f'closing = "adjust" makes the lattice of a net whole, and lines of normal_curvature = '
+                f"{self.normal_curvature:g} 1/m have none on a surface that is found",
+                'write closing = "open", or leave normal_curvature out',
+                "closing",
+            )
+        return self
+
+
+class LamellaTable(Table):
+    """Section, material and node marks of the strips."""
+
+    height: float = number("Height of the strip, along the surface normal.", "m", ge=1e-4, le=5, default=0.1)
+    thickness: float = number("Thickness of one strip.", "m", ge=1e-6, le=0.5, default=0.0015)
+    layers: int = number("Parallel strips of each lamella.", "", ge=1, le=4, default=2)
+    offset: float = number("Distance between the middles of neighbouring layers.", "m", gt=0, le=1, default=0.025)
+    material: Name = Field(
+        default="1.4301",
+        max_length=100,
+        description=f"One of {', '.join(MATERIALS)}, or a table [materials.NAME] of the project.",
+    )
+    marks: Literal["arc-length", "relaxed"] = Field(
+        default="arc-length",
+        description='"arc-length": nodes marked at the 3D arc length, the nodes then hold the strip stretched; '
+        '"relaxed": marks lengthened by the integral of h^2 tg^2 / 24, so that the twisted strip carries no tension.',
+    )
+
+    layer_lengths: Literal["alike", "own"] = Field(
+        default="alike",
+        description='"alike": every layer is marked at the node distances of the centre line; "own": each at those of '
+        "its own curve to the side, as a part of its own.",
+    )
+    layer_curves: Literal["offset", "cut", "lamella"] = Field(
+        default="offset",
+        description='Where layers run, and how they are cut. "offset": at equal distances, all straight or of one '
+        "radius; beside the centre line they are bent about their strong axis, which is counted as a stress. "
+        '"cut": at equal distances, each with an outline of its own, some millimetres off, free of that stress. '
+        '"lamella": on lamella curves of their own, straight or of one radius and free of that stress; offset is then '
+        "their mean distance, which goes with the cell edge. The last two make every layer a part of its own length. "
+        "With one layer nothing changes.",
+    )
+
+    @model_validator(mode="after")
+    def _possible(self) -> LamellaTable:
+        if self.thickness >= self.height:
+            raise Refusal(
+                f"thickness = {self.thickness:g} m is not below height = {self.height:g} m: the strip stands on "
+                "edge, its height is the larger measure",
+                f"choose a thickness below {self.height:g} m",
+                "thickness",
+            )
+        if self.layers > 1 and self.offset <= self.thickness:
+            raise Refusal(
+                f"offset = {self.offset:g} m leaves no gap between layers of thickness {self.thickness:g} m",
+                f"choose an offset above {self.thickness:g} m, or layers = 1",
+                "offset",
+            )
+        return self
+
+
+class FabricationTable(Table):
+    """Cutting the strips."""
+
+    sheet: Range = number("Length and width of a sheet.", "m", default=(12.0, 2.0))
+    gap: float = number("Distance between parts on a sheet, and to its edge.", "m", gt=0, le=1, default=0.01)
+    end_distance: float | None = number(
+        "Least distance from the last slot to the strip's end; the larger of 0.05 m and two slot widths when not "
+        "given.",
+        "m",
+        gt=0,
+        le=5,
+        default=None,
+        examples=[0.05],
+    )
+    rim_overhang: float = number(
+        "Least distance from the rim's node to the strip's end.", "m", ge=0, le=5, default=0.01
+    )
+    hub_radius: float | None = number(
+        "A strip stops this far from a singular node; when not given 0.02 m, or more where the strips of "
+        "neighbouring rays would run into each other.",
+        "m",
+        ge=0,
+        le=5,
+        default=None,
+        examples=[0.05],
+    )
+    slot_width: float | None = number(
+        "Width of the slots; 2 x thickness when not given.", "m", gt=0, le=1, default=None, examples=[0.003]
+    )
+
+    @field_validator("sheet", mode="before")
+    @classmethod
+    def _positive(cls, value: Any) -> Any:
+        sides = two_numbers(value, "[length, width]", "a sheet")
+        for x in sides:
+            if not 0 < x <= 1000:
+                remedy = "lengths are in metres, not millimetres" if x > 0 else "write both sides in metres"
+                raise Refusal(f"a side of {x:g} m is out of range: has to be above 0 and at most 1000 m", remedy)
+        return sides
+
+    @model_validator(mode="after")
+    def _possible(self) -> FabricationTable:
+        if min(self.sheet) <= 2 * self.gap:
+            raise Refusal(
+                f"the sheet is {min(self.sheet):g} m wide, nothing of it is left between gaps of {self.gap:g} m at "
+                "either edge",
+                "choose a larger sheet or a smaller gap",
+                "sheet",
+            )
+        return self
+
+
+class FilesTable(Table):
+    """What is written."""
+
+    unit: Unit = Field(
+        default="m",
+        description="Unit of model.3dm and surface.3dm, in their headers and coordinates. Other files are in metres.",
+    )
+
+    mesh_tolerance: float = number(
+        "Largest distance between the faces of surface.obj and surface.ply and the surface, over the diagonal of its "
+        "bounding box. The files say in metres what they keep; it is more where some hundred thousand faces do not do.",
+        "",
+        ge=1e-6,
+        le=0.1,
+        default=1e-3,
+    )
+
+
+class MaterialTable(Table):
+    """A material of the project's own, SI units."""
+
+    density: float = number("Density.", "kg/m3", gt=0, le=30000)
+    youngs_modulus: float = number("Young's modulus along the strip.", "Pa", ge=1e6, le=1e13)
+    shear_modulus: float = number("Shear modulus.", "Pa", ge=1e5, le=1e13)
+    strength: float = number("Limit of the normal (von Mises) stress.", "Pa", ge=1e3, le=1e11)
+    shear_strength: float | None = number(
+        "Limit of the shear stress where it is not that of von Mises (timber).", "Pa", ge=1e3, le=1e11, default=None
+    )
+
+
+# tables that may be left out, in the order of the documentation
+FURTHER_TABLES: dict[str, type[Table]] = {
+    "network": NetworkTable,
+    "lamella": LamellaTable,
+    "fabrication": FabricationTable,
+    "files": FilesTable,
+}
+
+
+class Project(Table):
+    """A whole project file."""
+
+    name: Name = Field(default="", description="Name of the project; the file's name when not given.", max_length=200)
+    surface: Annotated[SurfaceTable, Field(discriminator="kind")]
+    network: NetworkTable = NetworkTable()
+    lamella: LamellaTable = LamellaTable()
+    fabrication: FabricationTable = FabricationTable()
+    files: FilesTable = FilesTable()
+    materials: dict[Name, MaterialTable] = Field(default={}, description="Materials by name.")
+
+    def material(self) -> Material:
+        """The material of the lamellas."""
+        return find_material(self.lamella.material, self.known_materials())
+
+    def known_materials(self) -> dict[str, Material]:
+        """All materials by name, the project's own among them."""
+        return MATERIALS | {name: Material(**table.model_dump()) for name, table in self.materials.items()}
+
+    def to_toml(self) -> str:
+        """The project with its defaults filled in, as TOML (`Results.project` has those of the pipeline as well)."""
+        text = tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))
+        # names of files and layers are kept as they are, but what cannot be seen is written as an escape
+        return "".join(c if c.isprintable() or c == "\n" or is_byte(c) else f"\\U{ord(c):08X}" for c in text)
+
+
+def project_schema() -> dict[str, Any]:
+    """JSON schema (draft 2020-12) of the project file."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$id": "lamella/project/1",
+        "title": "lamella project file",
+    } | Project.model_json_schema()

@@ -1,0 +1,157 @@
+"""What can be said of a project before it is run, in a few seconds.
+
+A closed form costs nothing. A surface that has to be found is found on coarse elements: whether there is one, and how
+many cells and nodes its net has, does not depend on the last digits. A net of ordinary size goes through all stages of
+a run on it, in memory, so that a project that is called good is one that a run computes, with the warnings of a run,
+but for what `Checked.left` names.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from lamella.base.drawing_origin import drawing_origin, told_from
+from lamella.base.errors import InputError
+from lamella.base.plausible_size import unit_first
+from lamella.base.progress import Clock, Progress, silent
+from lamella.base.wording import counted
+from lamella.network.streamlines.applicability import is_traced
+from lamella.project.tables import FormFoundTable, MeshTable, Project
+from lamella.stages.pipeline import Planned, Results, complete, plan
+from lamella.stages.warnings import order_caution
+from lamella.surface.surface import Surface
+from lamella.surface.umbilic import umbilic_reason
+
+# tolerance of the elements on which a surface is looked for
+COARSE = 2e-2
+# of the mesh for pictures, on which the size is measured
+COARSE_MESH = 5e-3
+# nets of more nodes are not traced for a check: it would take longer than finding the surface
+MOST_TRACED = 5_000
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What is known of a project that is not refused.
+
+    Attributes
+    ----------
+    surface : Surface
+        A closed form, or the surface on coarse elements.
+    cells, nodes : int or None
+        Of the net, about; None: it has none.
+    warnings : tuple of str
+        What a run warns of, as far as it was computed.
+    coarse : bool
+        Whether they come from coarse elements: their figures are those of a run to a few hundredths.
+    left : tuple of str
+        What only a run can tell.
+    """
+
+    surface: Surface[Any]
+    cells: int | None
+    nodes: int | None
+    warnings: tuple[str, ...]
+    coarse: bool
+    left: tuple[str, ...]
+
+    def __str__(self) -> str:
+        """In words."""
+        told = "a good project" if not self.warnings else f"it runs, with {counted(len(self.warnings), 'warning')}"
+        told += f". {self.surface.kind}, H = {self.surface.mean_curvature:.6g} 1/m"
+        told += ", no net" if self.nodes is None else f", {self.cells} cells, about {self.nodes:,} nodes"
+        if self.left:
+            told += f"\n  only a run can tell {'; '.join(self.left)}"
+        return told
+
+
+def check_project(project: Project, *, folder: Path = Path(), progress: Progress = silent) -> Checked:
+    """Look for everything that a run would refuse or warn of, as far as that takes seconds.
+
+    Parameters
+    ----------
+    project : Project
+    folder : Path
+        Where the files a project names are looked for.
+    progress : callable
+
+    Raises
+    ------
+    InputError
+        What a run would refuse.
+    """
+    left: list[str] = []
+    coarse = _coarse(project, left)
+    try:
+        surface, density = plan(coarse, folder=folder, progress=progress)
+    except InputError as error:
+        if coarse is project or error.where != "surface.tolerance":
+            raise
+        # in the project's own numbers
+        coarse = project
+        left.clear()
+        surface, density = plan(project, folder=folder, progress=progress)
+    if coarse is not project and umbilic_reason(surface.check_points(), COARSE):
+        # the elements' own errors would decide
+        progress("  nearly a sphere or a plane: found anew as finely as the run does")
+        coarse = project
+        left.clear()
+        surface, density = plan(project, folder=folder, progress=progress)
+    sizes = None
+    if density:
+        sizes = density.cells, density.estimated_nodes
+    elif not umbilic_reason(surface.check_points()):
+        progress("  laying the net")
+        sizes = _laid(coarse, surface, progress)
+    cells, nodes = sizes or (None, None)
+    until = None
+    if nodes is not None and nodes > MOST_TRACED:
+        until = "surface"
+        left.append(f"whether all lamellas can be traced, and their strips (checked up to {MOST_TRACED:,} nodes)")
+    elif nodes is not None and project.network.closing == "adjust" and not density:
+        until = "surface"
+        left.append("whether the boundary can be adjusted so that the net closes, and what its strips are")
+    results = _computed(coarse, (surface, density, None), until, folder, _finer(project, coarse))
+    if results.network:
+        nodes = len(results.network.node_points)
+    return Checked(surface, cells, nodes, tuple(results.summary["warnings"]), coarse is not project, tuple(left))
+
+
+def _laid(project: Project, surface: Surface[Any], progress: Progress) -> tuple[int, int]:
+    """Cells and nodes of a net, about, without tracing it."""
+    from lamella.stages.weaving import lay, lay_traced
+
+    with unit_first(surface), told_from(drawing_origin(surface)):
+        if is_traced(surface, project.network.pattern):
+            lines = lay_traced(surface, project)
+            return lines.cells, lines.estimated_nodes
+        lattice = lay(surface, project, None, progress).lattice
+    return lattice.cells, lattice.estimated_nodes
+
+
+def _finer(project: Project, coarse: Project) -> float:
+    """By how much smaller the tolerance of a run is than that of its check."""
+    one, other = project.surface, coarse.surface
+    if not isinstance(one, FormFoundTable | MeshTable) or not isinstance(other, FormFoundTable | MeshTable):
+        return 1.0
+    return other.tolerance / one.tolerance
+
+
+def _computed(project: Project, planned: Planned, until: str | None, folder: Path, finer: float) -> Results:
+    """What the stages of a run make of a surface."""
+    files = project.files.model_copy(update={"mesh_tolerance": max(COARSE_MESH, project.files.mesh_tolerance)})
+    light = project.model_copy(update={"files": files})
+    return complete(light, planned, Clock(silent), until=until, folder=folder, finer=finer)
+
+
+def _coarse(project: Project, left: list[str]) -> Project:
+    """The project on coarse elements, where its surface has elements; what that leaves open is added to `left`."""
+    table = project.surface
+    if not isinstance(table, FormFoundTable | MeshTable) or table.tolerance >= COARSE:
+        return project
+    open_ = f"whether {table.most_nodes:,} nodes keep tolerance = {table.tolerance:g} (checked: {COARSE:g})"
+    too_low = order_caution(table.order, table.tolerance, table.most_nodes)
+    left.append(f"{open_}: {too_low}" if too_low else open_)
+    return project.model_copy(update={"surface": table.model_copy(update={"tolerance": COARSE})})

@@ -1,0 +1,96 @@
+"""With how many cells, near the present number, a net is without a fault: where curves end decides, so it is tried."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from lamella.base.errors import InputError
+from lamella.base.progress import silent
+from lamella.network.lattice.density import LEAST_CELLS, choose_density
+from lamella.network.lattice.trace import trace_closed_form
+from lamella.network.network import Network
+from lamella.network.streamlines.applicability import is_traced
+from lamella.project.tables import Project
+from lamella.surface.closed_forms.closed_form import ClosedForm
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.surface import Surface
+
+# cells more or fewer that are tried
+FARTHEST = 4
+# larger nets, and surfaces of more nodes, are not made anew: all trials take as long as a few seconds' run
+MOST_NODES, MOST_ELEMENT_NODES = 3_000, 15_000
+
+
+@dataclass(frozen=True)
+class OtherCells:
+    """The nets of nearly as many cells on the surface of a project.
+
+    Attributes
+    ----------
+    project : Project
+    surface : Surface
+    network : Network
+        The present net.
+    warned : int
+        Warnings of the present net itself: one of other cells with more of them is no remedy.
+    """
+
+    project: Project
+    surface: Surface[Any]
+    network: Network
+    warned: int = 0
+    _made: dict[int, Network | None] = field(default_factory=dict)
+
+    def without(self, fault: Callable[[Network], bool]) -> str:
+        """In words, with how many cells there is no such fault; empty where none are tried.
+
+        Parameters
+        ----------
+        fault : callable
+            Whether a net has it; may raise an `InputError` where a run would.
+        """
+        if not self._cheap():
+            return ""
+        present = self.network.cells
+        near = [present + sign * k for k in range(1, FARTHEST + 1) for sign in (1, -1)]
+        for cells in near:
+            network = self._net(cells)
+            try:
+                if network and not fault(network):
+                    return f"with {cells} cells there are none"
+            except InputError:
+                continue
+        return f"with {max(present - FARTHEST, LEAST_CELLS)} to {present + FARTHEST} cells there are such too"
+
+    def _cheap(self) -> bool:
+        """Whether a few more nets can be made at once; nets that change their boundary, or are traced, cannot."""
+        table, surface = self.project.network, self.surface
+        if len(self.network.node_points) > MOST_NODES or is_traced(surface, table.pattern):
+            return False
+        if isinstance(surface, ClosedForm):
+            return True
+        few = isinstance(surface, ElementSurface) and len(surface.nodes) <= MOST_ELEMENT_NODES
+        return few and table.closing != "adjust"
+
+    def _net(self, cells: int) -> Network | None:
+        """The net of a number of cells, None where a run refuses it or warns of more."""
+        if cells not in self._made:
+            try:
+                self._made[cells] = self._make(cells) if cells >= LEAST_CELLS else None
+            except InputError:
+                self._made[cells] = None
+        return self._made[cells]
+
+    def _make(self, cells: int) -> Network | None:
+        table = self.project.network.model_copy(update={"cells": cells, "spacing": None})
+        if isinstance(self.surface, ClosedForm):
+            density = choose_density(self.surface, cells=cells, pattern=table.pattern)
+            return trace_closed_form(self.surface, density, minimum_length=table.minimum_length)
+        # heavy, and closed forms do without
+        from lamella.stages.weaving import lay, weave
+
+        project = self.project.model_copy(update={"network": table})
+        woven = weave(lay(self.surface, project, None, silent), project)
+        return woven.network if len(list(woven.warnings())) <= self.warned else None

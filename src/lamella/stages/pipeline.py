@@ -1,0 +1,501 @@
+"""The stages in order: compute, then write a folder that appears whole or not at all."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from lamella import __version__
+from lamella.base.drawing_origin import Origin, drawing_origin, told_from, with_drawn_points
+from lamella.base.errors import InputError
+from lamella.base.plausible_size import unit_first
+from lamella.base.progress import Clock, Progress, silent
+from lamella.fabrication import Nesting, Parts, make_parts, nest
+from lamella.fabrication.rules import LEAST_END, LEAST_HUB, Rules, clear_hub, edge_scale
+from lamella.files.own import SCHEMA
+from lamella.network.lattice.density import Density, choose_density
+from lamella.network.lattice.trace import trace_closed_form
+from lamella.network.network import Network
+from lamella.network.streamlines.applicability import check_traced, is_traced
+from lamella.project.read import located, read_project
+from lamella.project.tables import FormFoundTable, Project
+from lamella.stages import summary
+from lamella.stages import warnings as cautions
+from lamella.stages.other_cells import OtherCells
+from lamella.strip.lamellas import Lamellas, Section, make_lamellas
+from lamella.strip.layer_curves import check_layer_curves
+from lamella.surface.closed_forms.closed_form import ClosedForm
+from lamella.surface.closed_forms.kinds import CLOSED_FORMS
+from lamella.surface.mesh import SurfaceMesh
+from lamella.surface.surface import Surface
+from lamella.surface.umbilic import umbilic_reason
+
+if TYPE_CHECKING:
+    from lamella.network.adjust.adjust import Adjusted
+    from lamella.network.elements.element_network import ElementNetwork
+    from lamella.network.streamlines.streamline_network import TracedNetwork
+
+STAGES = ("surface", "network", "lamellas", "fabrication", "structure")
+LAST_STAGE = "fabrication"
+
+# Is told what is being done, a line at a time and before it is done: stages without indent, what they do below two
+# spaces, details below four (Newton steps, say; the command line shows those with --verbose only).
+
+
+@dataclass(frozen=True)
+class Results:
+    """Everything a run has computed; what was not asked for is None.
+
+    Points are measured from `origin`, those of files and of the summary from the drawing's own.
+
+    Attributes
+    ----------
+    project : Project
+        With all defaults filled in.
+    surface : Surface
+    mesh : SurfaceMesh
+        The surface sampled for files and pictures.
+    network : Network or None
+    lamellas : Lamellas or None
+    parts : Parts or None
+    nesting : Nesting or None
+    summary : dict
+        The content of summary.json, without the time spent on files.
+    folder : Path
+        Where the files the project names were looked for.
+    adjusted : Adjusted or None
+        The boundary as it was changed for a net that closes.
+    """
+
+    project: Project
+    surface: Surface[Any]
+    mesh: SurfaceMesh
+    network: Network | None
+    lamellas: Lamellas | None
+    parts: Parts | None
+    nesting: Nesting | None
+    summary: dict[str, Any] = field(repr=False)
+    folder: Path = Path()
+    adjusted: Adjusted | None = None
+
+    @property
+    def origin(self) -> Origin:
+        """Point of the drawing that points are measured from, m; not 0 where it is in survey coordinates."""
+        return drawing_origin(self.surface)
+
+
+Planned = tuple[Surface[Any], "Density | None", "Adjusted | None"]
+"""The surface, the density of the net where that is arithmetic, and the boundary where it was adjusted."""
+
+
+def make_surface(project: Project, folder: str | Path = Path(), progress: Progress = silent) -> Surface[Any]:
+    """The surface a project describes.
+
+    Parameters
+    ----------
+    project : Project
+    folder : str or Path
+        Where the files a project names are looked for: the folder of the project file.
+    progress : callable
+        Is told of the steps where a surface has to be found.
+
+    Raises
+    ------
+    InputError
+        No such surface.
+    """
+    table, folder = project.surface, Path(folder)
+    if table.kind not in ("form-found", "mesh"):
+        return CLOSED_FORMS[table.kind](**table.model_dump(exclude={"kind"}))
+    too_low = cautions.order_caution(table.order, table.tolerance, table.most_nodes)
+    if too_low:
+        progress(f"  {too_low}")
+    try:
+        if table.kind == "form-found":
+            from lamella.surface.form_finding.find import surface_of_table as find
+
+            progress("  finding the surface between its curves")
+            return find(table, folder, progress)
+        from lamella.surface.from_mesh.fit_cmc import surface_of_table as adopt
+
+        progress("  reading the mesh")
+        return adopt(table, folder, progress)
+    except InputError as error:
+        if too_low and error.where == "surface.tolerance":
+            raise InputError(error.message, f"write order = 3 or 4, or {error.remedy}", error.where) from None
+        raise
+
+
+def plan(
+    project: Project, *, until: str | None = None, folder: Path = Path(), progress: Progress = silent
+) -> tuple[Surface[Any], Density | None]:
+    """The surface of a project and, where that is arithmetic, the density of its net.
+
+    Whatever can be refused without a net is refused here. A closed form takes no time; other surfaces have to be found,
+    and how far apart their lamellas are is known once their isothermic coordinates are (`lamella.stages.check`).
+
+    Parameters
+    ----------
+    project, until, folder, progress
+        See `compute`.
+
+    Raises
+    ------
+    InputError
+    """
+    depth = _last_of(project, until)
+    if depth:
+        _refuse_adjusting(project)
+    surface = make_surface(project, folder, progress)
+    _check_layers(project, surface, depth)
+    if depth >= STAGES.index("fabrication"):
+        _check_fabrication(fill_in(project, surface), _normal_curvature(project, surface))
+    table = project.network
+    if depth and is_traced(surface, table.pattern):
+        check_traced(surface, table.pattern, table.closing)
+        return surface, None
+    if not isinstance(surface, ClosedForm):
+        return surface, None
+    return surface, choose_density(surface, cells=table.cells, spacing=table.spacing, pattern=table.pattern)
+
+
+def _refuse_adjusting(project: Project) -> None:
+    """Say where `closing = "adjust"` cannot work, before anything is looked for."""
+    if project.network.closing != "adjust":
+        return
+    if project.surface.kind == "mesh":
+        raise InputError(
+            'closing = "adjust" changes boundary curves, and a mesh has none',
+            'write closing = "open" or "round", or find the surface from curves (kind = "form-found")',
+            "network.closing",
+        )
+    if isinstance(project.surface, FormFoundTable):
+        from lamella.surface.boundary.freedom import Freedom, refuse_held
+
+        refuse_held(Freedom(project.surface))
+
+
+def _planned(project: Project, until: str | None, folder: Path, progress: Progress) -> Planned:
+    """`plan`, with the boundary adjusted where the project asks for it."""
+    table = project.surface
+    depth = _last_of(project, until)
+    if not depth or project.network.closing != "adjust" or table.kind != "form-found":
+        return *plan(project, until=until, folder=folder, progress=progress), None
+    from lamella.network.adjust.adjust import adjust_boundary
+
+    _refuse_adjusting(project)
+    adjusted = adjust_boundary(
+        table,
+        folder,
+        cells=project.network.cells,
+        spacing=project.network.spacing,
+        pattern=project.network.pattern,
+        progress=progress,
+    )
+    surface = adjusted.surface
+    _check_layers(project, surface, depth)
+    if depth >= STAGES.index("fabrication"):
+        _check_fabrication(fill_in(project, surface), _normal_curvature(project, surface))
+    return surface, None, adjusted
+
+
+def fill_in(project: Project, surface: Surface[Any]) -> Project:
+    """The project with those defaults filled in that follow from its other values."""
+    cut, strip = project.fabrication, project.lamella
+    slot_width = 2 * strip.thickness if cut.slot_width is None else cut.slot_width
+    end_distance = cut.end_distance
+    if end_distance is None:
+        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(_normal_curvature(project, surface), strip.height))
+    hub_radius = cut.hub_radius
+    # how far apart layers on lamella curves are next to a singular node, the net decides
+    if hub_radius is None and (strip.layers == 1 or strip.layer_curves != "lamella"):
+        rays = max((2 * (order + 2) for order in surface.singular_orders()), default=0)
+        hub_radius = max(LEAST_HUB, clear_hub(rays, strip.layers, strip.offset, strip.thickness))
+    measures = {"slot_width": slot_width, "end_distance": float(end_distance), "hub_radius": hub_radius}
+    filled = cut.model_copy(update=measures)
+    update: dict[str, Any] = {"fabrication": filled}
+    if any(drawing_origin(surface)):
+        update["surface"] = project.surface.model_copy(update={"origin": drawing_origin(surface)})
+    return project.model_copy(update=update)
+
+
+def _check_layers(project: Project, surface: Surface[Any], depth: int) -> None:
+    """Refuse layers that the net's lamellas cannot have."""
+    strip = project.lamella
+    if depth >= STAGES.index("lamellas") and strip.layers > 1 and strip.layer_curves == "lamella":
+        check_layer_curves(surface, project.network.pattern)
+
+
+def _normal_curvature(project: Project, surface: Surface[Any]) -> float:
+    """Of the lamellas, 1/m."""
+    wanted = project.network.normal_curvature
+    return surface.mean_curvature if wanted is None else wanted
+
+
+def _check_fabrication(project: Project, curvature: float) -> None:
+    """Refuse measures that no part can be made with, by the key in the project."""
+    strip, cut = project.lamella, project.fabrication
+    rules = Rules(
+        layers=strip.layers,
+        offset=strip.offset,
+        height=strip.height,
+        thickness=strip.thickness,
+        curvature=float(curvature),
+        density=project.material().density,
+        **cut.model_copy(update={"hub_radius": cut.hub_radius or 0.0}).model_dump(),
+    )
+    rules.check()
+
+
+def compute(
+    project: Project, *, until: str | None = None, folder: str | Path = Path(), progress: Progress = silent
+) -> Results:
+    """Run the stages of a project up to `until`, in memory.
+
+    Parameters
+    ----------
+    project : Project
+    until : str, optional
+        Last stage, one of `STAGES`; as far as this kind of surface goes when not given.
+    folder : str or Path
+        Where the files a project names are looked for: the folder of the project file.
+    progress : callable
+        Is told what is being done, a line at a time; details are indented by four spaces.
+
+    Raises
+    ------
+    InputError
+    """
+    clock = Clock(progress)
+    _last_of(project, until)
+    clock.start(f"surface: {project.surface.kind}")
+    return complete(project, _planned(project, until, Path(folder), progress), clock, until=until, folder=Path(folder))
+
+
+def complete(
+    project: Project, planned: Planned, clock: Clock, *, until: str | None, folder: Path, finer: float = 1.0
+) -> Results:
+    """The stages of a project whose surface is there, see `compute`; the clock runs for the surface already.
+
+    Errors of the surface's elements are warned of as on a surface of a tolerance `finer` times smaller.
+    """
+    with told_from(drawing_origin(planned[0])):
+        return _complete(project, planned, clock, until=until, folder=folder, finer=finer)
+
+
+def _complete(
+    project: Project, planned: Planned, clock: Clock, *, until: str | None, folder: Path, finer: float
+) -> Results:
+    depth, progress = _last_of(project, until), clock.progress
+    warnings: list[str] = []
+    if depth < STAGES.index("lamellas") and until is None:
+        warnings.append(f"the run ends with the network: {project.network.pattern.no_strips}")
+    surface, density, adjusted = planned
+    project = fill_in(project, surface)
+    progress("    sampling the surface for files and pictures")
+    mesh = surface.mesh(project.files.mesh_tolerance)
+    loops = summary.loop_summary(surface, getattr(project.surface, "boundary", ()))
+    figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh) | loops}
+    clock.stop("surface", f"area {figures['surface']['area']:.4g} m2, H = {surface.mean_curvature:.6g} 1/m")
+    warnings += [*surface.warnings(), *cautions.size_cautions(mesh, project.lamella.height)]
+    warnings += cautions.surface_file_cautions(surface)
+
+    if depth and until is None and not density:
+        reason = umbilic_reason(surface.check_points())
+        if reason:
+            depth = 0
+            warnings.append(f"the run ends with the surface: it is {reason}, and has no net of lamellas")
+    network = lamellas = parts = nesting = others = None
+    told: list[str] = []
+    woven: ElementNetwork | TracedNetwork | None = None
+    if depth >= STAGES.index("network"):
+        table = project.network
+        if density:
+            assert isinstance(surface, ClosedForm)
+            clock.start(f"network: {density.requested}, about {density.estimated_nodes:,} nodes")
+            network = trace_closed_form(surface, density, minimum_length=table.minimum_length)
+            figures["network"] = f = summary.network_summary(network, density.requested)
+        else:
+            # heavy, and closed forms do without
+            from lamella.stages.weaving import MANNERS, lay, trace, weave
+
+            traced = is_traced(surface, table.pattern)
+            clock.start(f"network: {MANNERS[traced]}")
+            with unit_first(surface):
+                if traced:
+                    woven = trace(surface, project, progress)
+                else:
+                    woven = weave(lay(surface, project, adjusted.step if adjusted else None, progress), project)
+            network = woven.network
+            figures["network"] = f = summary.network_summary(network, woven.requested) | woven.describe()
+            if adjusted:
+                figures["network"]["adjustment"] = adjusted.figures
+            told = list(woven.warnings(finer))
+            warnings += told
+        others = OtherCells(project, surface, network, len(told))
+        clock.stop(
+            "network",
+            f"{network.cells} cells: {f['lamellas']} lamellas, {f['nodes']:,} nodes, cell edge "
+            f"{f['cell_edge_min']:.3g} to {f['cell_edge_max']:.3g} m (median {f['cell_edge_median']:.3g} m)",
+        )
+        warnings += cautions.network_cautions(
+            network,
+            project.lamella.height,
+            table.closing if density else "open",
+            traced=is_traced(surface, table.pattern),
+            without=others.without,
+        )
+    if network and depth >= STAGES.index("lamellas"):
+        strip = project.lamella
+        clock.start(f"lamellas: {strip.height * 1000:g} x {strip.thickness * 1000:g} mm, {strip.material}")
+        section = Section(**strip.model_dump(exclude={"material"}))
+        strips = partial(make_lamellas, section=section, material=project.material(), surface=surface)
+        lamellas = strips(network)
+        figures["lamellas"] = f = summary.lamella_summary(network, lamellas, strip.material, project.material())
+        f |= woven.corner_stresses(lamellas.utilisation) if woven else {}
+        clock.stop("lamellas", f"{f['total_length']:.4g} m of lamella, utilisation up to {f['utilisation_max']:.2f}")
+        advice = None
+        if woven:
+            from lamella.stages.corner_search import corner_help
+
+            advice = corner_help(woven, lamellas.utilisation, project, partial(make_surface, folder=folder), progress)
+        warnings += cautions.lamella_cautions(
+            mesh,
+            network,
+            lamellas,
+            project.fabrication.slot_width or 0.0,
+            project.material(),
+            project.known_materials(),
+            lambda other, of: float(strips(network, section=other, material=of).utilisation.max()),
+            advice,
+        )
+        warnings += cautions.layer_cautions(network, lamellas, project.material())
+    if network and lamellas and others and depth >= STAGES.index("fabrication"):
+        cut = project.fabrication
+        clock.start("fabrication: parts and sheets")
+        parts = make_parts(
+            network,
+            lamellas,
+            density=project.material().density,
+            others=lambda fault: others.without(lambda net: fault(net, strips(net))),
+            **cut.model_dump(),
+        )
+        nesting = nest(parts, sheet=cut.sheet, gap=cut.gap)
+        figures["fabrication"] = f = summary.fabrication_summary(parts, nesting, figures["surface"]["area"])
+        clock.stop("fabrication", f"{f['parts']:,} parts, {f['mass']:.4g} kg, {f['sheets']} sheets")
+        warnings += parts.warnings
+
+    content: dict[str, Any] = {"schema": SCHEMA, "version": __version__, "name": project.name}
+    content |= {stage: figures.get(stage) for stage in STAGES} | {"warnings": warnings, "seconds": clock.seconds}
+    content = summary.cleaned(with_drawn_points(content, drawing_origin(surface)))
+    return Results(project, surface, mesh, network, lamellas, parts, nesting, content, folder, adjusted)
+
+
+def _last_of(project: Project, until: str | None) -> int:
+    """Number of the last stage; of principal lines that is the network."""
+    depth, last = _depth(LAST_STAGE if until is None else until), STAGES.index("network")
+    if not project.network.pattern.no_strips or depth <= last:
+        return depth
+    if until is not None:
+        raise InputError(
+            f"stage {until!r} needs a net of lamellas: {project.network.pattern.no_strips}",
+            'write --until network, or kind = "lamellas"',
+            "network.kind",
+        )
+    return last
+
+
+def _depth(until: str) -> int:
+    if until not in STAGES:
+        near = get_close_matches(until, STAGES, 1, 0.5)
+        meant = f", did you mean {near[0]!r}?" if near else ""
+        raise InputError(
+            f"unknown stage {until[:40]!r}{meant}",
+            f"choose one of {', '.join(STAGES[: STAGES.index(LAST_STAGE) + 1])}",
+            "--until",
+        )
+    if STAGES.index(until) > STAGES.index(LAST_STAGE):
+        raise InputError(
+            f"stage {until!r} is not part of version {__version__} yet",
+            f"leave --until out, or choose one of {', '.join(STAGES[: STAGES.index(LAST_STAGE) + 1])}",
+            "--until",
+        )
+    return STAGES.index(until)
+
+
+def run(
+    project_file: str | Path,
+    *,
+    out: str | Path | None = None,
+    until: str | None = None,
+    progress: Progress = silent,
+    warn: Progress = silent,
+) -> Path:
+    """Run a project file and write its folder.
+
+    Parameters
+    ----------
+    project_file : str or Path
+    out : str or Path, optional
+        Default ``out/<project file's stem>``.
+    until : str, optional
+        Last stage; as far as this kind of surface goes when not given.
+    progress, warn : callable
+        Are told what is being done, and every warning.
+
+    Returns
+    -------
+    Path
+        The folder written.
+
+    Raises
+    ------
+    InputError
+        What the user can mend; nothing has been written then.
+    OSError
+        The disk is full, for instance; an earlier folder is whole still.
+    """
+    from lamella.files.folder import check_target
+
+    _depth(LAST_STAGE if until is None else until)
+    project_file = Path(project_file)
+    project = read_project(project_file)
+    target = Path("out") / project_file.stem if out is None else Path(out)
+    check_target(target)
+    try:
+        results = compute(project, until=until, folder=project_file.parent, progress=progress)
+    except InputError as error:
+        raise located(error, project_file) from None
+    write(results, target, progress=progress)
+    for message in results.summary["warnings"]:
+        warn(message)
+    return target
+
+
+def write(results: Results, target: str | Path, *, progress: Progress = silent) -> None:
+    """Write the folder of a run; it appears whole or not at all.
+
+    Parameters
+    ----------
+    results : Results
+    target : str or Path
+        Made if it is not there; an earlier run's folder is replaced.
+    progress : callable
+    """
+    from lamella.files.folder import staged_folder
+    from lamella.files.own import write_summary
+    from lamella.stages.output import write_files
+
+    start, target = time.process_time(), Path(target)
+    progress(f"writing {target}")
+    with staged_folder(target) as folder:
+        write_files(results, folder, progress=progress)
+        seconds = results.summary["seconds"] | {"files": round(time.process_time() - start, 4)}
+        write_summary(folder, results.summary | {"seconds": seconds})
+
+
+__all__ = ["STAGES", "Results", "compute", "make_surface", "plan", "run", "write"]

@@ -1,0 +1,65 @@
+"""The net a project asks for, on a surface of elements or of lines from seeds."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lamella.base.progress import Progress
+from lamella.network.elements.element_network import Closing, ElementNetwork, LaidNet, lay_net
+from lamella.network.streamlines.applicability import ground_of, told_mean_curvature
+from lamella.network.streamlines.streamline_network import TracedNetwork, traced_network
+from lamella.network.streamlines.streamline_plan import LaidLines, lay_lines
+from lamella.project.tables import Project
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.surface import Surface
+from lamella.surface.umbilic import refuse_umbilic
+
+# how nets are made: on a lattice, or traced
+MANNERS = ("umbilics, isothermic coordinates, lamellas", "lines from even seeds")
+
+
+def lay(surface: Surface[Any], project: Project, step: float | None, progress: Progress) -> LaidNet:
+    """The lattice of a surface of elements; of a given spacing l0 (sqrt(m)) where it was adjusted."""
+    assert isinstance(surface, ElementSurface)
+    table = project.network
+    return lay_net(
+        surface,
+        cells=table.cells,
+        spacing=table.spacing,
+        step=step,
+        pattern=table.pattern,
+        loop_names=tuple(loop.name for loop in getattr(project.surface, "boundary", ())),
+        seams=table.closing == "open",
+        minimum_length=table.minimum_length,
+        progress=progress,
+    )
+
+
+def weave(laid: LaidNet, project: Project) -> ElementNetwork:
+    """The network of that lattice."""
+    table = project.network
+    # what is left of an adjusted net's misses is below what counts as closed
+    closing: Closing = "round" if table.closing == "round" else "open"
+    return laid.traced(closing=closing, minimum_length=table.minimum_length)
+
+
+def lay_traced(surface: Surface[Any], project: Project) -> LaidLines:
+    """How lines that follow from no lattice are laid."""
+    refuse_umbilic(surface)
+    table = project.network
+    return lay_lines(ground_of(surface), table.pattern, cells=table.cells, spacing=table.spacing)
+
+
+def trace(surface: Surface[Any], project: Project, progress: Progress) -> TracedNetwork:
+    """The network of such lines."""
+    refuse_umbilic(surface)
+    table = project.network
+    return traced_network(
+        ground_of(surface),
+        table.pattern,
+        mean_curvature=told_mean_curvature(surface, table.pattern),
+        cells=table.cells,
+        spacing=table.spacing,
+        minimum_length=table.minimum_length,
+        progress=progress,
+    )

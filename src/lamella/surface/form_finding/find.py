@@ -1,0 +1,259 @@
+"""Form finding: from boundary loops to the surface of constant mean curvature between them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from lamella.base.drawing_origin import NOWHERE, coordinates, measured_from, origin_figure, told_from
+from lamella.base.errors import InputError
+from lamella.base.progress import Progress, patient, silent
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.form_finding.enclosed_volume import enclosed_volume
+from lamella.surface.form_finding.film import Film, Loop
+from lamella.surface.form_finding.first_film import FirstFilm
+from lamella.surface.form_finding.found_film import Found
+from lamella.surface.form_finding.nearest_existing import Tries
+from lamella.surface.form_finding.necessary_conditions import (
+    ImpossibleError,
+    refuse_afloat,
+    refuse_impossible,
+    refuse_single,
+)
+from lamella.surface.form_finding.newton import Equilibrium, find_equilibrium
+from lamella.surface.form_finding.no_film import SearchError
+from lamella.surface.form_finding.not_found import impossible, not_found
+from lamella.surface.form_finding.refinement import adapted
+from lamella.surface.form_finding.self_crossing import self_crossing
+
+if TYPE_CHECKING:
+    from lamella.project.tables import FormFoundTable
+    from lamella.surface.boundary import Loop as BoundaryLoop
+
+# of the film's size: a film of the same mean curvature this near is told
+BESIDE = 0.02
+# tolerance of the elements on which other films than the one asked for are tried
+COARSE = 2e-2
+# Newton steps spent on other films before no further one is tried: some seconds, whatever the boundary
+MOST_TRIED = 120
+# of the film's size: it hangs where it is this much lower than its whole boundary, and nowhere higher by as much
+HANGS = 0.01
+
+__all__ = ["Found", "adapted", "find_film", "notes_on", "remarks_on", "surface_of_table"]
+
+
+def surface_of_table(table: FormFoundTable, folder: Path, progress: Progress = silent) -> ElementSurface:
+    """The surface of a project's table.
+
+    Parameters
+    ----------
+    table : FormFoundTable
+    folder : Path
+        Where relative paths of boundary files begin.
+    progress : callable
+
+    Raises
+    ------
+    InputError
+    """
+    from lamella.surface.boundary import with_origin
+
+    table = with_origin(table, folder)
+    with told_from(table.origin or NOWHERE):
+        return _of_table(table, folder, progress)
+
+
+def _of_table(table: FormFoundTable, folder: Path, progress: Progress) -> ElementSurface:
+    from lamella.surface.boundary import boundary_loops
+    from lamella.surface.boundary.corner_cost import corner_cost
+
+    if table.origin:
+        progress(f"  {measured_from(table.origin)}")
+    loops = boundary_loops(table, folder)
+    remarks = remarks_on(loops)
+    for remark in (*remarks, corner_cost(loops, table.most_nodes, table.tolerance)):
+        if remark:
+            progress(f"  {remark}")
+    found = find_film(
+        loops,
+        table.mean_curvature or 0.0,
+        volume=table.volume,
+        order=table.order,
+        tolerance=table.tolerance,
+        branch=table.branch,
+        most_nodes=table.most_nodes,
+        progress=progress,
+    )
+    notes = remarks + notes_on(found, given_curvature=table.volume is None)
+    return found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
+
+
+def remarks_on(loops: tuple[BoundaryLoop, ...]) -> tuple[str, ...]:
+    """What was done to boundary curves when they were read."""
+    return tuple(f"the loop {loop.name!r}: {remark}" for loop in loops for remark in loop.remarks)
+
+
+def notes_on(found: Found, *, given_curvature: bool = True) -> tuple[str, ...]:
+    """What a user should know about a film before building it."""
+    notes = []
+    verdict = found.stability
+    if verdict.verdict == "unstable":
+        notes.append(
+            f"the surface is unstable as a film at this mean curvature (lowest Jacobi eigenvalue {verdict.lowest:.4g} "
+            f"1/m2, {verdict.negative} negative): a soap film would leave it "
+            # one condition holds back one mode
+            + ("unless" if verdict.negative == 1 else "even if")
+            + " its volume is held; a stiff net need not"
+        )
+    elif verdict.verdict == "fold":
+        notes.append(
+            f"the surface is at the fold of its family (lowest Jacobi eigenvalue {verdict.lowest:.2g} 1/m2): a "
+            "slightly different boundary may have no surface at all"
+        )
+    if given_curvature and verdict.verdict != "fold" and verdict.beside < BESIDE * found.equilibrium.film.size:
+        stable = verdict.verdict == "stable"
+        notes.append(
+            f"another surface of the same mean curvature is beside this one, up to about {verdict.beside:.2g} m away: "
+            f'this is the {verdict.verdict} one, branch = "{"unstable" if stable else "stable"}" finds the other. '
+            "Which of the two is the one meant may depend on small changes of the boundary"
+        )
+    hanging = _hanging(found.equilibrium.film, found.equilibrium.mean_curvature, given_curvature=given_curvature)
+    if hanging:
+        notes.append(hanging)
+    crossing = self_crossing(found.equilibrium.film)
+    if crossing is not None:
+        place = crossing[np.linalg.norm(crossing - crossing.mean(0), axis=1).argmin()]
+        notes.append(
+            f"the surface passes through itself, as near ({coordinates(place)}) m: it is a surface of this "
+            "boundary, but cannot be built"
+        )
+    return tuple(notes)
+
+
+def _hanging(film: Film, mean_curvature: float, *, given_curvature: bool) -> str:
+    """That a film is pressed down below its boundary, z being up, and what makes a dome of it; empty: it is not.
+
+    A film without pressure stays in the convex hull of its boundary.
+    """
+    height = film.nodes[:, 2]
+    rim = height[np.unique(film.connectivity.rim_nodes)]
+    below, above, least = rim.min() - height.min(), height.max() - rim.max(), HANGS * film.size
+    if below <= least or above > least:
+        return ""
+    value = f"mean_curvature = {-mean_curvature:.6g}"
+    return (
+        f"the surface hangs up to {below:.3g} m below its boundary (z is up): where a dome is meant, "
+        + (f"write {value}" if given_curvature else "write the volume with the other sign")
+        + ", or reverse the first loop"
+    )
+
+
+def find_film(
+    loops: tuple[Loop, ...],
+    mean_curvature: float = 0.0,
+    *,
+    volume: float | None = None,
+    order: int = 4,
+    tolerance: float = 2e-3,
+    branch: Literal["stable", "unstable"] = "stable",
+    most_nodes: int = 100_000,
+    progress: Progress = silent,
+) -> Found:
+    """The film of a mean curvature, or of a volume, in boundary loops.
+
+    Parameters
+    ----------
+    loops : tuple of Loop
+        The outer one first; the film's normal follows it by the right-hand rule.
+    mean_curvature : float
+        H, 1/m.
+    volume : float, optional
+        Enclosed volume with lids over the loops, m^3, instead of H.
+    order : int
+        Of the elements, 2 to 4.
+    tolerance : float
+        Largest |H - H0| at the check points, over the curvature scale.
+    branch : "stable" or "unstable"
+        Which film, where there are two.
+    most_nodes : int
+        Limit of the elements' nodes.
+    progress : callable
+        Is told what is done; details begin with four spaces.
+
+    Raises
+    ------
+    InputError
+        There is no such film, or none could be found.
+    """
+    progress = patient(progress)
+    unstable = branch == "unstable"
+    coarse = max(tolerance, COARSE)
+
+    tried = 0
+
+    def finds(others: tuple[Loop, ...], value: float, unstable: bool = False) -> bool:
+        nonlocal tried
+        if tried > MOST_TRIED:
+            return False
+        progress(f"  trying mean_curvature = {value:g} 1/m")
+        search = FirstFilm(others, order, silent, short=len(others) == 1)
+        try:
+            _found(others, value, None, order, coarse, unstable, most_nodes, silent, search)
+        except (InputError, SearchError):
+            return False
+        finally:
+            tried += search.steps
+        return True
+
+    refuse_afloat(loops)
+    tries = Tries(loops, order, finds)
+    if volume is None and not any(loop.slides for loop in loops):
+        try:
+            refuse_impossible(loops, mean_curvature)
+            if unstable:
+                refuse_single(loops, mean_curvature)
+        except ImpossibleError as error:
+            raise impossible(error, tries, mean_curvature, unstable) from None
+    search = FirstFilm(loops, order, progress)
+    try:
+        return _found(loops, mean_curvature, volume, order, tolerance, unstable, most_nodes, progress, search)
+    except SearchError as error:
+        raise not_found(search, error, mean_curvature, volume, unstable, tries) from None
+
+
+def _found(
+    loops: tuple[Loop, ...],
+    mean_curvature: float,
+    volume: float | None,
+    order: int,
+    tolerance: float,
+    unstable: bool,
+    most_nodes: int,
+    progress: Progress,
+    search: FirstFilm | None = None,
+) -> Found:
+    """See `find_film`; a search that ends without a film is a SearchError, and no bound is asked."""
+    search = search or FirstFilm(loops, order, progress)
+    first = search.of_curvature(mean_curvature, unstable=unstable) if volume is None else search.of_volume(volume)
+    told = f"  {'path' if first.followed else 'Newton'}: {first.steps} steps"
+    progress(told + (" on the whole path" if first.followed else " from the harmonic start"))
+
+    def settled(film: Film) -> Equilibrium:
+        if volume is not None:
+            missing = volume - enclosed_volume(film)
+            guess = first.equilibrium.mean_curvature
+            return find_equilibrium(film, guess, volume=missing, stable=False, detail=progress)
+        return find_equilibrium(film, mean_curvature, stable=not unstable, detail=progress)
+
+    found = adapted(first.equilibrium, settled, tolerance, most_nodes, first.steps, first.followed, progress)
+    verdict = found.stability
+    branch = "unstable" if unstable else "stable"
+    if volume is None and verdict.verdict != "fold" and (verdict.negative > 0) != unstable:
+        raise InputError(
+            f"the surface found is {verdict.verdict} ({verdict.negative} negative eigenvalues), not {branch} as asked",
+            f'write branch = "{verdict.verdict}" to take it',
+            "surface.branch",
+        )
+    return found
