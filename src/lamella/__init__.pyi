@@ -1,0 +1,48 @@
+"""The public names of lamella and where each is made.
+
+Type checkers read this file; the package itself imports each name from where it says, on first use.
+"""
+
+from lamella.base.errors import InputError as InputError
+from lamella.fabrication import make_parts as make_parts
+from lamella.fabrication import nest as nest
+from lamella.files.compas_json import compas_at as compas_at
+from lamella.files.compas_json import quad_mesh_of_compas as quad_mesh_of_compas
+from lamella.files.quad_mesh_files import read_quad_mesh as read_quad_mesh
+from lamella.network.make import make_network as make_network
+from lamella.network.network import Network as Network
+from lamella.project.read import parse_project as parse_project
+from lamella.project.read import read_project as read_project
+from lamella.project.tables import Project as Project
+from lamella.projection.foot_points import foot_surface as foot_surface
+from lamella.projection.problems.asymptotic import asymptotic as asymptotic
+from lamella.projection.problems.deform import deform as deform
+from lamella.projection.problems.planar_strips import planar_strips as planar_strips
+from lamella.projection.problems.sphere_stars import sphere_stars as sphere_stars
+from lamella.projection.problems.straighten import straighten as straighten
+from lamella.projection.quad_mesh import QuadMesh as QuadMesh
+from lamella.projection.quad_mesh import quad_mesh as quad_mesh
+from lamella.stages.pipeline import Results as Results
+from lamella.stages.pipeline import compute as compute
+from lamella.stages.pipeline import make_surface as make_surface
+from lamella.stages.pipeline import run as run
+from lamella.stages.pipeline import write as write
+from lamella.strip.lamellas import Lamellas as Lamellas
+from lamella.strip.lamellas import Section as Section
+from lamella.strip.lamellas import make_lamellas as make_lamellas
+from lamella.strip.material import Material as Material
+from lamella.strip.material import find_material as find_material
+from lamella.surface.boundary import Loop as Loop
+from lamella.surface.boundary import make_loop as make_loop
+from lamella.surface.closed_forms.catenoid import Catenoid as Catenoid
+from lamella.surface.closed_forms.cylinder import Cylinder as Cylinder
+from lamella.surface.closed_forms.delaunay import Nodoid as Nodoid
+from lamella.surface.closed_forms.delaunay import Unduloid as Unduloid
+from lamella.surface.closed_forms.enneper import Enneper as Enneper
+from lamella.surface.closed_forms.helicoid import Helicoid as Helicoid
+from lamella.surface.closed_forms.scherk import Scherk as Scherk
+from lamella.surface.element.places import Places as Places
+from lamella.surface.element.surface import ElementSurface as ElementSurface
+from lamella.surface.form_finding.find import find_film as find_film
+
+__version__: str
