@@ -182,11 +182,14 @@ def test_order_two_is_told_before_it_is_tried() -> None:
     surface = {"kind": "form-found", "order": 2, "tolerance": 0.01, "most_nodes": 500, "boundary": rings}
     project = parse_project({"surface": surface})
     with pytest.raises(InputError, match=r"surface\.tolerance: H is off") as refusal:
-        make_surface(project, progress=told.append)
+        make_surface(project, progress=lambda report: told.append(str(report)))
     assert refusal.value.remedy.startswith("write order = 3 or 4, or ")
     assert told[0].startswith("  order = 2 takes about 20,000 nodes for tolerance = 0.01 (most_nodes = 500)")
     told.clear()
-    found = make_surface(parse_project({"surface": surface | {"order": 3, "most_nodes": 15_000}}), progress=told.append)
+    found = make_surface(
+        parse_project({"surface": surface | {"order": 3, "most_nodes": 15_000}}),
+        progress=lambda report: told.append(str(report)),
+    )
     assert not any("order = " in line for line in told)
     assert found.describe()["surface_nodes"] < 15_000
 

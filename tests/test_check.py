@@ -43,7 +43,7 @@ def annulus(**network: Any) -> dict[str, Any]:
 )
 def test_cells_and_nodes_are_those_of_the_run(tables: dict[str, Any]) -> None:
     project, steps = parse_project(tables), []
-    checked = check_project(project, progress=steps.append)
+    checked = check_project(project, progress=lambda report: steps.append(str(report)))
     network = compute(project, until="network").network
     assert network is not None
     assert checked.cells == network.cells

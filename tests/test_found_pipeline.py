@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -14,6 +13,7 @@ import pytest
 
 import lamella
 from lamella import InputError, compute, parse_project
+from lamella.base.progress import Progress, Report
 from lamella.command.main import main
 from lamella.project.read import moved
 from lamella.project.tables import FormFoundTable, MeshTable, Project, Table
@@ -53,10 +53,10 @@ def found(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> tu
         def describe(self) -> dict[str, Any]:
             return {"stability": "stable"}
 
-    def surface_of_table(table: FoundTable, folder: Path, progress: Callable[[str], None]) -> Found:
+    def surface_of_table(table: FoundTable, folder: Path, progress: Progress) -> Found:
         assert table.kind == request.param
         asked.append(folder)
-        progress("    Newton step 1")
+        progress(Report.detail("Newton step 1"))
         return Found()
 
     where = {"form-found": "lamella.surface.form_finding.find", "mesh": "lamella.surface.from_mesh.fit_cmc"}[
@@ -82,7 +82,7 @@ def test_without_until_closed_forms_go_all_the_way() -> None:
 def test_the_surface_stage_of_found_surfaces(found: tuple[Project, list[Path]]) -> None:
     project, _ = found
     told: list[str] = []
-    results = compute(project, until="surface", progress=told.append)
+    results = compute(project, until="surface", progress=lambda report: told.append(str(report)))
     assert results.network is None
     assert results.summary["network"] is None
     assert results.summary["surface"]["stability"] == "stable"
@@ -105,7 +105,7 @@ def ring(height: float) -> dict[str, Any]:
 
 def test_without_until_found_surfaces_go_all_the_way() -> None:
     told: list[str] = []
-    results = compute(film(ring(0.0), ring(1.6)), progress=told.append)
+    results = compute(film(ring(0.0), ring(1.6)), progress=lambda report: told.append(str(report)))
     assert [line.split(":")[0] for line in told if not line.startswith(" ")] == list(KEYS)
     assert results.network
     assert results.parts

@@ -173,7 +173,7 @@ def test_library_stages_stop_where_told() -> None:
 
 def test_progress_is_told_line_by_line() -> None:
     told: list[str] = []
-    compute(parse_project(PROJECT), progress=told.append)
+    compute(parse_project(PROJECT), progress=lambda report: told.append(str(report)))
     assert [line.split(":")[0] for line in told if not line.startswith(" ")] == list(KEYS)
     assert all("\n" not in line for line in told)
 

@@ -249,7 +249,7 @@ def test_a_run_writes_it_where_the_surface_is_of_curved_triangles(
         surface = make(3)
         results = dataclasses.replace(results, surface=surface, mesh=surface.mesh())
     said: list[str] = []
-    write_files(results, tmp_path, progress=said.append)
+    write_files(results, tmp_path, progress=lambda report: said.append(str(report)))
     assert (tmp_path / "surface.3dm").exists() == (make is not None)
     assert ("  surface.3dm" in said) == (make is not None)
     if make:

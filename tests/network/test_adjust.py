@@ -228,7 +228,12 @@ def closed(
     told: list[str] = []
     cells = tables["network"]["cells"]
     adjusted = adjust_boundary(
-        table_of(tables), folder, cells=cells, spacing=None, pattern=pattern, progress=told.append
+        table_of(tables),
+        folder,
+        cells=cells,
+        spacing=None,
+        pattern=pattern,
+        progress=lambda report: told.append(str(report)),
     )
     assert any("misses up to" in line for line in told)
     figures = adjusted.figures

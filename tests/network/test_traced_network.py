@@ -184,7 +184,7 @@ def test_the_median_told_is_that_of_the_summary(density: dict[str, Any]) -> None
     table = {"surface": {"kind": "scherk", "extent": 1.25, "scale": 3.0}}
     project = parse_project(table | {"network": {"normal_curvature": 0.02, "minimum_length": 1.5} | density})
     lines: list[str] = []
-    told = compute(project, until="network", progress=lines.append).summary["network"]
+    told = compute(project, until="network", progress=lambda report: lines.append(str(report))).summary["network"]
     medians = [line.split("median cell edge ")[1] for line in lines if "median cell edge" in line]
     assert f"{told['cell_edge_median']:.3g} m" in medians
     assert medians[-1] == f"{told['cell_edge_median']:.3g} m" or "spacing" in density

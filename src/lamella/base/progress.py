@@ -1,51 +1,121 @@
-"""Lines of progress while something takes long, and how long it took."""
+"""Reports of a computation on its way: what is being done, in which stage, how much of it is done."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-
-Progress = Callable[[str], None]
-"""Is told what is being done, a line at a time; details are indented by four spaces."""
+from dataclasses import dataclass, replace
+from enum import IntEnum
 
 # s without a line
-LONG = 2.0
+LONGEST_SILENCE = 2.0
 
 
-def silent(message: str) -> None:
-    """Tell nobody."""
+class Level(IntEnum):
+    """How much a report matters: stages begin and end, steps within them, details of a step (Newton steps, say)."""
+
+    STAGE = 0
+    STEP = 1
+    DETAIL = 2
+
+
+@dataclass(frozen=True)
+class Report:
+    """What is being done, reported before it is done.
+
+    Attributes
+    ----------
+    text : str
+        One line.
+    level : Level
+    stage : str
+        Name of the stage; empty outside of the stages of a project.
+    fraction : float or None
+        Share of the work under way that is done, 0 to 1, where it is known.
+    """
+
+    text: str
+    level: Level = Level.STEP
+    stage: str = ""
+    fraction: float | None = None
+
+    @classmethod
+    def heading(cls, text: str) -> Report:
+        """That a stage begins."""
+        return cls(text, Level.STAGE)
+
+    @classmethod
+    def step(cls, text: str, fraction: float | None = None) -> Report:
+        """Of a step of a stage."""
+        return cls(text, Level.STEP, fraction=fraction)
+
+    @classmethod
+    def detail(cls, text: str, fraction: float | None = None) -> Report:
+        """Of a detail of a step."""
+        return cls(text, Level.DETAIL, fraction=fraction)
+
+    def __str__(self) -> str:
+        """The line on a screen, indented by its level."""
+        return 2 * self.level * " " + self.text
+
+
+Progress = Callable[[Report], None]
+"""Receives each report; `print` will do. An exception it raises ends the computation (`cancelled_by`)."""
+
+
+class Cancelled(Exception):
+    """The computation was ended on request; nothing was written."""
+
+
+def silent(report: Report) -> None:
+    """Report to nobody."""
+
+
+def in_stage(progress: Progress, stage: str) -> Progress:
+    """The same receiver; reports carry the stage's name."""
+    return lambda report: progress(replace(report, stage=stage))
+
+
+def as_details(progress: Progress) -> Progress:
+    """The same receiver; every report is a detail."""
+    return lambda report: progress(replace(report, level=Level.DETAIL))
+
+
+def cancelled_by(progress: Progress, is_cancelled: Callable[[], bool]) -> Progress:
+    """The same receiver, which ends the computation at the next report once it is cancelled.
+
+    Parameters
+    ----------
+    progress : callable
+    is_cancelled : callable
+        Asked at each report, between stages and inside them.
+
+    Raises
+    ------
+    Cancelled
+        By the returned receiver.
+    """
+
+    def receive(report: Report) -> None:
+        if is_cancelled():
+            raise Cancelled(f"cancelled at: {report.text}")
+        progress(report)
+
+    return receive
 
 
 def patient(progress: Progress) -> Progress:
-    """Details, which begin with four spaces, become lines of their own where none was told for two seconds."""
-    told = time.monotonic()
+    """Details become steps where nothing was reported for two seconds."""
+    last = time.monotonic()
 
-    def tell(message: str) -> None:
-        nonlocal told
+    def receive(report: Report) -> None:
+        nonlocal last
         now = time.monotonic()
-        if not message.startswith("    "):
-            told = now
-        elif now - told > LONG:
-            told = now
-            message = message[2:]
-        progress(message)
+        if report.level < Level.DETAIL:
+            last = now
+        elif now - last > LONGEST_SILENCE:
+            last = now
+            report = replace(report, level=Level.STEP)
+        progress(report)
 
-    return tell
-
-
-class Clock:
-    """CPU seconds of each stage."""
-
-    def __init__(self, progress: Progress) -> None:
-        self.seconds: dict[str, float] = {}
-        self.progress, self._start = progress, 0.0
-
-    def start(self, message: str) -> None:
-        """Say what begins."""
-        self.progress(message)
-        self._start = time.process_time()
-
-    def stop(self, stage: str, result: str) -> None:
-        """Say what has come out of it."""
-        self.seconds[stage] = round(time.process_time() - self._start, 4)
-        self.progress(f"  {result} ({self.seconds[stage]:.2f} s)")
+    return receive

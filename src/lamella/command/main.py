@@ -16,8 +16,10 @@ from typing import NoReturn
 
 from lamella import __version__
 from lamella.base.errors import InputError
+from lamella.base.progress import silent
 from lamella.base.wording import readable
 from lamella.command.optimise import add_optimise, run_optimise
+from lamella.command.screen import Screen
 
 _ABOUT = """\
 lamella takes a designer from a surface of constant mean curvature to the net of lamellas on it,
@@ -118,27 +120,20 @@ def _say(message: str) -> None:
     print(readable(message), file=sys.stderr, flush=True)
 
 
-def _progress(arguments: argparse.Namespace) -> Callable[[str], None]:
-    """What to do with lines of progress; those indented by four spaces are details."""
-
-    def tell(message: str) -> None:
-        if arguments.verbose or not message.startswith("    "):
-            _say(message)
-
-    return tell
-
-
 def _run(arguments: argparse.Namespace) -> None:
     from lamella.stages.pipeline import run
 
-    quiet = arguments.quiet
-    folder = run(
-        arguments.project,
-        out=arguments.out,
-        until=arguments.until,
-        progress=(lambda message: None) if quiet else _progress(arguments),
-        warn=lambda message: _say(f"warning: {message}"),
-    )
+    quiet, screen = arguments.quiet, Screen(verbose=arguments.verbose)
+    try:
+        folder = run(
+            arguments.project,
+            out=arguments.out,
+            until=arguments.until,
+            progress=silent if quiet else screen,
+            warn=lambda message: _say(f"warning: {message}"),
+        )
+    finally:
+        screen.clear()
     if not quiet:
         _tell(f"report: {folder / 'report.html'}")
 
@@ -148,10 +143,13 @@ def _check(arguments: argparse.Namespace) -> None:
     from lamella.stages.check import check_project
 
     project = read_project(arguments.project)
+    screen = Screen(verbose=arguments.verbose)
     try:
-        checked = check_project(project, folder=arguments.project.parent, progress=_progress(arguments))
+        checked = check_project(project, folder=arguments.project.parent, progress=screen)
     except InputError as error:
         raise located(error, arguments.project) from None
+    finally:
+        screen.clear()
     for message in checked.warnings:
         _say(f"warning{' (from coarse elements)' if checked.coarse else ''}: {message}")
     _tell(f"{arguments.project}: {checked}")

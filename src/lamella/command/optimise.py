@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from lamella import __version__
 from lamella.base.errors import InputError
+from lamella.base.progress import Progress, silent
 from lamella.base.wording import one_line, readable
 from lamella.command.optimise_options import USED, Wishes, driver_of
+from lamella.command.screen import Screen
 from lamella.files.ours import is_ours
 
 if TYPE_CHECKING:
@@ -146,12 +148,13 @@ def run_optimise(arguments: argparse.Namespace) -> int:
         if not arguments.quiet:
             print(readable(line), file=sys.stderr, flush=True)
 
+    progress: Progress = silent if arguments.quiet else Screen(verbose=False)
     require_format(arguments.out)
     given = read_quad_mesh(arguments.mesh, arguments.unit)
     say(f"{arguments.mesh}: {told_mesh(given.mesh)}")
     for note in given.notes:
         say(f"  {note}")
-    result = optimise(given, arguments.problem, wishes, tell=say)
+    result = optimise(given, arguments.problem, wishes, progress=progress)
     figures = mesh_figures(result.mesh, given.mesh if result.same else None)
     figures = replace(figures, faces={**figures.faces, **result.faces})
     files = _files(arguments, given, result, figures)

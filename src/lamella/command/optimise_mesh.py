@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast, get_args
@@ -11,6 +11,7 @@ from typing import Any, cast, get_args
 import numpy as np
 
 from lamella.base.errors import InputError
+from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
 from lamella.command.optimise_options import Wishes
 from lamella.files.quad_mesh_files import QuadFile, quad_mesh_bytes
@@ -28,8 +29,6 @@ from lamella.projection.unknowns import Floats
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import refuse_umbilic
-
-Tell = Callable[[str], None]
 
 # what the solutions of a problem with several are called
 STAGES = {"deform": "state", "planar": "round"}
@@ -103,7 +102,7 @@ def told_mesh(mesh: QuadMesh) -> str:
     )
 
 
-def optimise(given: QuadFile, problem: str, wishes: Wishes, *, tell: Tell = lambda line: None) -> Optimised:
+def optimise(given: QuadFile, problem: str, wishes: Wishes, *, progress: Progress = silent) -> Optimised:
     """Optimise a mesh.
 
     Parameters
@@ -113,8 +112,8 @@ def optimise(given: QuadFile, problem: str, wishes: Wishes, *, tell: Tell = lamb
         A key of `lamella.command.optimise_options.USED`.
     wishes : Wishes
         Those that are not None have to be of use to the problem.
-    tell : callable
-        Is told of each iteration.
+    progress : callable
+        Receives each iteration.
 
     Raises
     ------
@@ -127,11 +126,17 @@ def optimise(given: QuadFile, problem: str, wishes: Wishes, *, tell: Tell = lamb
     def on_iteration(state: Iteration) -> None:
         nonlocal count
         if not count:
-            tell("iteration: root mean square residual by constraint, in edges or radians; step, damping")
+            progress(
+                Report.heading("iteration: root mean square residual by constraint, in edges or radians; step, damping")
+            )
         count += state.number == 0
         if state.number == 0 and (count > 1 or problem in STAGES):
-            tell(f"{STAGES.get(problem, 'with the radius found')} {count if problem in STAGES else ''}".rstrip())
-        tell(f"  {state}")
+            progress(
+                Report.heading(
+                    f"{STAGES.get(problem, 'with the radius found')} {count if problem in STAGES else ''}".rstrip()
+                )
+            )
+        progress(Report.step(str(state)))
 
     common: dict[str, Any] = {"on_iteration": on_iteration}
     for name in ("iterations", "tolerance"):
@@ -139,11 +144,11 @@ def optimise(given: QuadFile, problem: str, wishes: Wishes, *, tell: Tell = lamb
             common[name] = getattr(wishes, name)
     match problem:
         case "straighten":
-            return _straighten(given, wishes, common, tell)
+            return _straighten(given, wishes, common, progress)
         case "deform":
             return _deform(mesh, wishes, common)
         case "planar":
-            return _planar(given, wishes, common, tell)
+            return _planar(given, wishes, common, progress)
     return _stars(mesh, problem, wishes, common)
 
 
@@ -182,8 +187,8 @@ def _told_moves(before: QuadMesh, after: QuadMesh) -> str:
     return line + ": the mesh was no such net by far, look whether the result still is your design" if far else line
 
 
-def _straighten(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell) -> Optimised:
-    surface = _surface(given, wishes, tell)
+def _straighten(given: QuadFile, wishes: Wishes, common: dict[str, Any], progress: Progress) -> Optimised:
+    surface = _surface(given, wishes, progress)
     refuse_umbilic(surface)
     _require_near(given.mesh, surface, wishes)
     if not isinstance(surface, ClosedForm):
@@ -238,7 +243,7 @@ def _deform(mesh: QuadMesh, wishes: Wishes, common: dict[str, Any]) -> Optimised
     return Optimised(last.mesh, tuple(state.solution for state in states), told=told, remarks=tuple(remarks))
 
 
-def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell) -> Optimised:
+def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], progress: Progress) -> Optimised:
     assert wishes.height is not None
     lines = polylines(given.mesh)
     long = [line for line in lines if len(line) >= STRIP_POINTS]
@@ -250,7 +255,7 @@ def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], tell: Tell)
         )
     if wishes.rounds is not None:
         common["rounds"] = wishes.rounds
-    surface = _surface(given, wishes, tell)
+    surface = _surface(given, wishes, progress)
     _require_near(given.mesh, surface, wishes)
     if not isinstance(surface, ClosedForm):
         common.setdefault("tolerance", FOUND)
@@ -308,7 +313,7 @@ def _require_near(mesh: QuadMesh, surface: Surface[Any], wishes: Wishes) -> None
         )
 
 
-def _surface(given: QuadFile, wishes: Wishes, tell: Tell) -> Surface[Any]:
+def _surface(given: QuadFile, wishes: Wishes, progress: Progress) -> Surface[Any]:
     """That of a project, or the surface of constant mean curvature the mesh itself means."""
     from lamella.project.read import located, parse_project, read_project
     from lamella.stages.pipeline import make_surface
@@ -316,10 +321,12 @@ def _surface(given: QuadFile, wishes: Wishes, tell: Tell) -> Surface[Any]:
     if wishes.surface is not None:
         project = read_project(wishes.surface)
         try:
-            return make_surface(project, wishes.surface.parent, tell)
+            return make_surface(project, wishes.surface.parent, progress)
         except InputError as error:
             raise located(error, wishes.surface) from None
-    tell("no --surface: looking for the surface of constant mean curvature that the mesh itself means")
+    progress(
+        Report.heading("no --surface: looking for the surface of constant mean curvature that the mesh itself means")
+    )
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "mesh.ply"
         content = quad_mesh_bytes(
@@ -328,7 +335,7 @@ def _surface(given: QuadFile, wishes: Wishes, tell: Tell) -> Surface[Any]:
         file.write_bytes(content)
         try:
             project = parse_project({"surface": {"kind": "mesh", "file": str(file), "unit": "m"}})
-            return make_surface(project, Path(folder), tell)
+            return make_surface(project, Path(folder), progress)
         except InputError as error:
             raise InputError(
                 f"no surface of constant mean curvature fits the mesh: {error.message}",

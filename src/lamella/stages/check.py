@@ -15,10 +15,11 @@ from typing import Any
 from lamella.base.drawing_origin import drawing_origin, told_from
 from lamella.base.errors import InputError
 from lamella.base.plausible_size import unit_first
-from lamella.base.progress import Clock, Progress, silent
+from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
 from lamella.network.streamlines.applicability import is_traced
 from lamella.project.tables import FormFoundTable, MeshTable, Project
+from lamella.stages.clock import Clock
 from lamella.stages.pipeline import Planned, Results, complete, plan
 from lamella.stages.warnings import order_caution
 from lamella.surface.surface import Surface
@@ -95,7 +96,7 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
         surface, density = plan(project, folder=folder, progress=progress)
     if coarse is not project and umbilic_reason(surface.check_points(), COARSE):
         # the elements' own errors would decide
-        progress("  nearly a sphere or a plane: found anew as finely as the run does")
+        progress(Report.step("nearly a sphere or a plane: found anew as finely as the run does"))
         coarse = project
         left.clear()
         surface, density = plan(project, folder=folder, progress=progress)
@@ -103,7 +104,7 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
     if density:
         sizes = density.cells, density.estimated_nodes
     elif not umbilic_reason(surface.check_points()):
-        progress("  laying the net")
+        progress(Report.step("laying the net"))
         sizes = _laid(coarse, surface, progress)
     cells, nodes = sizes or (None, None)
     until = None

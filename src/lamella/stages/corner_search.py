@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from lamella.base.errors import InputError
-from lamella.base.progress import Progress, silent
+from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import rounded
 from lamella.network.elements.element_network import ElementNetwork
 from lamella.network.streamlines.streamline_network import TracedNetwork
@@ -75,12 +75,12 @@ def radius_that_does(
         radius = rounded(min(radii[0] * 2**doubling, radii[1]), up=False, digits=2)
         if tried and radius <= tried[-1][1]:
             break
-        progress(f"    corner_radius = {radius:g} m tried for {name!r}")
+        progress(Report.detail(f"corner_radius = {radius:g} m tried for {name!r}"))
         try:
             used = _utilisation(_with_radius(project, loop, radius, coarse), surface_of)
             # what is said is what a run finds: lamellas lie elsewhere on a finer surface, and peaks are narrow
             if used <= ENOUGH and coarse > table.tolerance:
-                progress(f"    the surface with corner_radius = {radius:g} m as fine as asked for")
+                progress(Report.detail(f"the surface with corner_radius = {radius:g} m as fine as asked for"))
                 used = _utilisation(_with_radius(project, loop, radius, table.tolerance), surface_of)
         except InputError:
             continue

@@ -11,6 +11,7 @@ import numpy as np
 
 from lamella import __version__
 from lamella.base.drawing_origin import Origin
+from lamella.base.progress import Progress, Report
 from lamella.base.wording import one_line
 from lamella.fabrication import write_drawings, write_schedule
 from lamella.files.whole import write_whole
@@ -41,7 +42,7 @@ REPORT_SAG = 2.5e-4
 """A quarter of what the files' mesh has, over the diagonal of the bounding box: four times the vertices."""
 
 
-def write_files(results: Results, folder: Path, *, progress: Callable[[str], None]) -> None:
+def write_files(results: Results, folder: Path, *, progress: Progress) -> None:
     """Write all files but summary.json into an existing folder.
 
     Parameters
@@ -60,7 +61,7 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
     signed: Any = {"name": project.name, "version": __version__}
 
     def put(file: str, write: Callable[..., object], *content: Any, **more: Any) -> None:
-        progress(f"  {file}")
+        progress(Report.step(file))
         write(folder / file, *content, **more)
 
     heading = f"# {one_line(project.name)}, all defaults filled in by lamella {__version__}\n"
@@ -88,7 +89,7 @@ def write_files(results: Results, folder: Path, *, progress: Callable[[str], Non
         put("lamellas.json", write_lamellas, network, lamellas, **signed)
     if network and lamellas and results.parts and results.nesting:
         (folder / "fabrication").mkdir()
-        progress("  fabrication/A.dxf, B.dxf, sheets.dxf")
+        progress(Report.step("fabrication/A.dxf, B.dxf, sheets.dxf"))
         write_drawings(folder / "fabrication", results.parts, results.nesting, **signed)
         put("fabrication/schedule.csv", write_schedule, results.parts, results.nesting, network, lamellas, **signed)
     put("report.html", write_report, report_data(results))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import partial
@@ -13,7 +14,7 @@ from lamella import __version__
 from lamella.base.drawing_origin import Origin, drawing_origin, told_from, with_drawn_points
 from lamella.base.errors import InputError
 from lamella.base.plausible_size import unit_first
-from lamella.base.progress import Clock, Progress, silent
+from lamella.base.progress import Progress, Report, in_stage, silent
 from lamella.fabrication import Nesting, Parts, make_parts, nest
 from lamella.fabrication.rules import LEAST_END, LEAST_HUB, Rules, clear_hub, edge_scale
 from lamella.files.own import SCHEMA
@@ -25,6 +26,7 @@ from lamella.project.read import located, read_project
 from lamella.project.tables import FormFoundTable, Project
 from lamella.stages import summary
 from lamella.stages import warnings as cautions
+from lamella.stages.clock import Clock
 from lamella.stages.other_cells import OtherCells
 from lamella.strip.lamellas import Lamellas, Section, make_lamellas
 from lamella.strip.layer_curves import check_layer_curves
@@ -41,9 +43,6 @@ if TYPE_CHECKING:
 
 STAGES = ("surface", "network", "lamellas", "fabrication", "structure")
 LAST_STAGE = "fabrication"
-
-# Is told what is being done, a line at a time and before it is done: stages without indent, what they do below two
-# spaces, details below four (Newton steps, say; the command line shows those with --verbose only).
 
 
 @dataclass(frozen=True)
@@ -113,16 +112,16 @@ def make_surface(project: Project, folder: str | Path = Path(), progress: Progre
         return CLOSED_FORMS[table.kind](**table.model_dump(exclude={"kind"}))
     too_low = cautions.order_caution(table.order, table.tolerance, table.most_nodes)
     if too_low:
-        progress(f"  {too_low}")
+        progress(Report.step(too_low))
     try:
         if table.kind == "form-found":
             from lamella.surface.form_finding.find import surface_of_table as find
 
-            progress("  finding the surface between its curves")
+            progress(Report.step("finding the surface between its curves"))
             return find(table, folder, progress)
         from lamella.surface.from_mesh.fit_cmc import surface_of_table as adopt
 
-        progress("  reading the mesh")
+        progress(Report.step("reading the mesh"))
         return adopt(table, folder, progress)
     except InputError as error:
         if too_low and error.where == "surface.tolerance":
@@ -272,8 +271,10 @@ def compute(
     """
     clock = Clock(progress)
     _last_of(project, until)
-    clock.start(f"surface: {project.surface.kind}")
-    return complete(project, _planned(project, until, Path(folder), progress), clock, until=until, folder=Path(folder))
+    clock.start("surface", project.surface.kind)
+    return complete(
+        project, _planned(project, until, Path(folder), clock.progress), clock, until=until, folder=Path(folder)
+    )
 
 
 def complete(
@@ -290,13 +291,13 @@ def complete(
 def _complete(
     project: Project, planned: Planned, clock: Clock, *, until: str | None, folder: Path, finer: float
 ) -> Results:
-    depth, progress = _last_of(project, until), clock.progress
+    depth = _last_of(project, until)
     warnings: list[str] = []
     if depth < STAGES.index("lamellas") and until is None:
         warnings.append(f"the run ends with the network: {project.network.pattern.no_strips}")
     surface, density, adjusted = planned
     project = fill_in(project, surface)
-    progress("    sampling the surface for files and pictures")
+    clock.progress(Report.detail("sampling the surface for files and pictures"))
     mesh = surface.mesh(project.files.mesh_tolerance)
     loops = summary.loop_summary(surface, getattr(project.surface, "boundary", ()))
     figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh) | loops}
@@ -316,7 +317,7 @@ def _complete(
         table = project.network
         if density:
             assert isinstance(surface, ClosedForm)
-            clock.start(f"network: {density.requested}, about {density.estimated_nodes:,} nodes")
+            clock.start("network", f"{density.requested}, about {density.estimated_nodes:,} nodes")
             network = trace_closed_form(surface, density, minimum_length=table.minimum_length)
             figures["network"] = f = summary.network_summary(network, density.requested)
         else:
@@ -324,12 +325,12 @@ def _complete(
             from lamella.stages.weaving import MANNERS, lay, trace, weave
 
             traced = is_traced(surface, table.pattern)
-            clock.start(f"network: {MANNERS[traced]}")
+            clock.start("network", MANNERS[traced])
             with unit_first(surface):
                 if traced:
-                    woven = trace(surface, project, progress)
+                    woven = trace(surface, project, clock.progress)
                 else:
-                    woven = weave(lay(surface, project, adjusted.step if adjusted else None, progress), project)
+                    woven = weave(lay(surface, project, adjusted.step if adjusted else None, clock.progress), project)
             network = woven.network
             figures["network"] = f = summary.network_summary(network, woven.requested) | woven.describe()
             if adjusted:
@@ -351,7 +352,7 @@ def _complete(
         )
     if network and depth >= STAGES.index("lamellas"):
         strip = project.lamella
-        clock.start(f"lamellas: {strip.height * 1000:g} x {strip.thickness * 1000:g} mm, {strip.material}")
+        clock.start("lamellas", f"{strip.height * 1000:g} x {strip.thickness * 1000:g} mm, {strip.material}")
         section = Section(**strip.model_dump(exclude={"material"}))
         strips = partial(make_lamellas, section=section, material=project.material(), surface=surface)
         lamellas = strips(network)
@@ -362,7 +363,9 @@ def _complete(
         if woven:
             from lamella.stages.corner_search import corner_help
 
-            advice = corner_help(woven, lamellas.utilisation, project, partial(make_surface, folder=folder), progress)
+            advice = corner_help(
+                woven, lamellas.utilisation, project, partial(make_surface, folder=folder), clock.progress
+            )
         warnings += cautions.lamella_cautions(
             mesh,
             network,
@@ -376,7 +379,7 @@ def _complete(
         warnings += cautions.layer_cautions(network, lamellas, project.material())
     if network and lamellas and others and depth >= STAGES.index("fabrication"):
         cut = project.fabrication
-        clock.start("fabrication: parts and sheets")
+        clock.start("fabrication", "parts and sheets")
         parts = make_parts(
             network,
             lamellas,
@@ -433,7 +436,7 @@ def run(
     out: str | Path | None = None,
     until: str | None = None,
     progress: Progress = silent,
-    warn: Progress = silent,
+    warn: Callable[[str], None] | None = None,
 ) -> Path:
     """Run a project file and write its folder.
 
@@ -471,8 +474,9 @@ def run(
     except InputError as error:
         raise located(error, project_file) from None
     write(results, target, progress=progress)
-    for message in results.summary["warnings"]:
-        warn(message)
+    if warn:
+        for message in results.summary["warnings"]:
+            warn(message)
     return target
 
 
@@ -491,7 +495,8 @@ def write(results: Results, target: str | Path, *, progress: Progress = silent) 
     from lamella.stages.output import write_files
 
     start, target = time.process_time(), Path(target)
-    progress(f"writing {target}")
+    progress = in_stage(progress, "files")
+    progress(Report.heading(f"writing {target}"))
     with staged_folder(target) as folder:
         write_files(results, folder, progress=progress)
         seconds = results.summary["seconds"] | {"files": round(time.process_time() - start, 4)}

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from lamella import InputError, compute, make_surface, parse_project
+from lamella.base.progress import Report
 from lamella.project.tables import FormFoundTable
 from lamella.stages.check import check_project
 from lamella.surface.boundary import boundary_loops
@@ -65,9 +66,9 @@ def test_what_many_corners_cost_is_said_at_once(count: int, teeth: float) -> Non
     for start in (check_project, compute):
         told: list[str] = []
 
-        def tell(line: str, told: list[str] = told) -> None:
-            told.append(line)
-            if "corners" in line:
+        def tell(report: Report, told: list[str] = told) -> None:
+            told.append(str(report))
+            if "corners" in report.text:
                 raise Told
 
         with pytest.raises(Told):
@@ -93,7 +94,7 @@ def test_what_takes_less_is_found_in_seconds(interpolation: str, surface: dict[s
     boundary = [{"points": ellipse(36).tolist(), "interpolation": interpolation}]
     project = parse_project({"surface": {"kind": "form-found", "boundary": boundary, **surface}})
     told: list[str] = []
-    found = make_surface(project, progress=told.append)
+    found = make_surface(project, progress=lambda report: told.append(str(report)))
     assert not any("corners" in line for line in told)
     assert len(found.nodes) < 36 * 1000  # type: ignore[attr-defined]
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lamella.base.errors import InputError
-from lamella.base.progress import LONG, patient
+from lamella.base.progress import LONGEST_SILENCE, Report, patient
 from lamella.surface.boundary import make_loop
 from lamella.surface.boundary.arcs import arc_through
 from lamella.surface.boundary.pieces import lines, stack
@@ -40,17 +40,17 @@ def test_details_become_lines_after_two_seconds(monkeypatch) -> None:
     now = [0.0]
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
     told: list[str] = []
-    tell = patient(told.append)
-    tell("    a")
-    now[0] = LONG + 0.1
-    tell("    b")
-    tell("    c")
-    now[0] += LONG - 0.2
-    tell("  line")
-    now[0] += LONG - 0.2
-    tell("    d")
-    now[0] += LONG
-    tell("    e")
+    progress = patient(lambda report: told.append(str(report)))
+    progress(Report.detail("a"))
+    now[0] = LONGEST_SILENCE + 0.1
+    progress(Report.detail("b"))
+    progress(Report.detail("c"))
+    now[0] += LONGEST_SILENCE - 0.2
+    progress(Report.step("line"))
+    now[0] += LONGEST_SILENCE - 0.2
+    progress(Report.detail("d"))
+    now[0] += LONGEST_SILENCE
+    progress(Report.detail("e"))
     assert told == ["    a", "  b", "    c", "  line", "    d", "  e"]
 
 

@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from lamella.base.drawing_origin import NOWHERE, measured_from, told_from
 from lamella.base.errors import InputError
-from lamella.base.progress import Progress, patient
+from lamella.base.progress import Progress, Report, patient
 from lamella.base.wording import counted
 from lamella.network.adjust.adjustable_films import Films, FollowError
 from lamella.network.adjust.aim import Aim, LostError, StuckError, worst
@@ -139,12 +139,12 @@ def _adjusted(
     pattern: Pattern,
 ) -> Adjusted:
     if table.origin:
-        progress(f"  {measured_from(table.origin)}")
+        progress(Report.step(measured_from(table.origin)))
     freedom = Freedom(table)
     refuse_held(freedom)
     progress = patient(progress)
     films = Films(table, folder, freedom, pattern, progress)
-    progress(f"  adjusting {', '.join(freedom.names)}: {freedom.count} parameters")
+    progress(Report.step(f"adjusting {', '.join(freedom.names)}: {freedom.count} parameters"))
     first = films.first(COARSE)
     names = tuple(loop.name for loop in table.boundary)
     around = holonomies(first.iso)
@@ -168,7 +168,7 @@ def _adjusted(
         "mean_curvature_change": float(state.surface.mean_curvature - first.surface.mean_curvature),
         "steps": search.steps,
     }
-    progress(f"  adjusted: the boundary moved by at most {1000 * farthest:.3g} mm, misses {after:.1e} cells")
+    progress(Report.step(f"adjusted: the boundary moved by at most {1000 * farthest:.3g} mm, misses {after:.1e} cells"))
     return Adjusted(final, state.surface, step, figures)
 
 
@@ -191,7 +191,7 @@ class _Search:
         ways, beyond = self._ways(first, lattice)
         for way in ways:
             if lost:
-                self.progress(f"  {lost[-1]}: other whole numbers of cells")
+                self.progress(Report.step(f"{lost[-1]}: other whole numbers of cells"))
             try:
                 return self.polish(self.descend(way, hasty=True))
             except StuckError as error:
@@ -200,7 +200,7 @@ class _Search:
             except LostError as error:
                 lost.append(error)
         for aim in sorted(waiting, key=lambda one: one.size):
-            self.progress(f"  {lost[-1]}: back to those that were left with {worst(aim.misses):.2g} cells")
+            self.progress(Report.step(f"{lost[-1]}: back to those that were left with {worst(aim.misses):.2g} cells"))
             try:
                 return self.polish(self.descend(aim))
             except LostError as error:
@@ -224,7 +224,9 @@ class _Search:
         aims = [Aim(first, whole, lattice.step) for whole in self._targets(first, lattice)]
         reaches = [self._least_reach(aim, UNDONE) for aim in aims]
         told = ", ".join(f"{reach:.2g}" if reach < np.inf else f"over {2 * MOST_REACH:g}" for reach in reaches)
-        self.progress(f"  whole numbers of cells take, to first order, {told} times what the boundary may change")
+        self.progress(
+            Report.step(f"whole numbers of cells take, to first order, {told} times what the boundary may change")
+        )
         why = f"to first order over {HOPELESS:g} times what the boundary may change is needed"
         far = [reach > HOPELESS for reach in reaches]
         ways = [aim for aim, is_far in zip(aims, far, strict=True) if not is_far]
@@ -243,7 +245,7 @@ class _Search:
         # to first order tells most where little is missed
         for reach, aim in sorted(wanted, key=lambda one: one[0] * (1 + worst(one[1].misses)))[:MOST_WIDER]:
             self.reach, self.steps = reach * WIDER, 0
-            self.progress(f"  how much change would do: with {self.reach:.2g} times as much")
+            self.progress(Report.step(f"how much change would do: with {self.reach:.2g} times as much"))
             try:
                 there = self.descend(aim, goal=OFFERED)
             except LostError:
@@ -340,7 +342,7 @@ class _Search:
             try:
                 return self._moved(aim, aim.rates, 1)
             except LostError:
-                self.progress("    the rates carried on do not lead on")
+                self.progress(Report.detail("the rates carried on do not lead on"))
         return self._moved(aim, self.films.cell_rates(aim.net, aim.step), MOST_HALVINGS)
 
     def _moved(self, aim: Aim, rates: Complexes, halvings: int) -> tuple[Aim, str]:
@@ -359,7 +361,9 @@ class _Search:
         reason = ""
         for move in moves[:halvings]:
             share = float(np.linalg.norm(move) / np.linalg.norm(change))
-            self.progress(f"    following the film over {share:.2g} of a step" + (f" ({reason})" if reason else ""))
+            self.progress(
+                Report.detail(f"following the film over {share:.2g} of a step" + (f" ({reason})" if reason else ""))
+            )
             try:
                 there = self._carried(aim, self.films.moved(net, net.shares + move[:-1]), rates, move)
             except FollowError as error:
@@ -399,7 +403,7 @@ class _Search:
         move = np.zeros(len(aim.net.shares) + 1)
         best: Aim | None = None
         for _ in range(MOST_POLISHING):
-            self.progress("    the film as fine as asked for")
+            self.progress(Report.detail("the film as fine as asked for"))
             try:
                 found = self.films.found(aim.net.shares + move[:-1], min(self.films.table.tolerance, COARSE))
                 there = self._carried(aim, found, rates, move)
@@ -463,8 +467,10 @@ class _Search:
 
     def _tell(self, aim: Aim) -> None:
         self.progress(
-            f"  {self.steps} steps: misses up to {worst(aim.misses):.2e} cells, parameters up to "
-            f"{100 * self.films.freedom.used(aim.net.shares):.0f} % of what they may change"
+            Report.step(
+                f"{self.steps} steps: misses up to {worst(aim.misses):.2e} cells, parameters up to "
+                f"{100 * self.films.freedom.used(aim.net.shares):.0f} % of what they may change"
+            )
         )
 
 

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from lamella.base.drawing_origin import origin_figure
-from lamella.base.progress import Progress, silent
+from lamella.base.progress import Progress, as_details, silent
 from lamella.network.adjust.film_net import FilmNet
 from lamella.network.isothermic.transition_sensitivities import (
     Rates,
@@ -63,7 +63,7 @@ class Films:
         self, table: FormFoundTable, folder: Path, freedom: Freedom, pattern: Pattern, progress: Progress = silent
     ) -> None:
         self.table, self.folder, self.freedom, self.pattern = table, folder, freedom, pattern
-        self._detail: Progress = lambda message: progress(f"    {message.strip()}")
+        self._progress: Progress = as_details(progress)
         self._drawn: Drawn = {}
         self._rates: WeakKeyDictionary[FilmNet, Rates] = WeakKeyDictionary()
 
@@ -83,7 +83,7 @@ class Films:
             tolerance=tolerance,
             branch=table.branch,
             most_nodes=table.most_nodes,
-            progress=self._detail,
+            progress=self._progress,
         )
         notes = remarks_on(loops) + notes_on(found, given_curvature=table.volume is None)
         surface = found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
@@ -107,7 +107,7 @@ class Films:
                 lambda share: self.loops(start + share * (shares - start)),
                 0.0,
                 loops,
-                self._detail,
+                self._progress,
                 volume=table.volume,
                 stable=table.branch == "stable",
                 stride=min(1.0, STRIDE * net.equilibrium.film.size / max(far, 1e-300)),
@@ -144,7 +144,7 @@ class Films:
             if self.table.volume is not None:
                 curvature = curvature_rates_of_volume(film, h, rim)
             fields = jacobi_fields(film, h, rim, curvature)
-            self._rates[net] = shift_rates(net.surface, film, net.iso, fields, rim, curvature, self._detail)
+            self._rates[net] = shift_rates(net.surface, film, net.iso, fields, rim, curvature, self._progress)
         return self._rates[net]
 
     def rim_shifts(self, film: Film, shares: Floats) -> Floats:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
-from lamella.base.progress import Progress, silent
+from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
 from lamella.network.elements.closing_steps import CLOSES
 from lamella.network.elements.integer_grid_map import CellMap
@@ -385,13 +385,16 @@ def lay_net(
     mesh = make_net_mesh(surface, umbilics)
     inner = umbilics.orders[mesh.umbilics >= 0].tolist()
     told = ", ".join(f"order {m}" for m in inner)
-    progress(f"  {len(inner)} umbilics" + (f" ({told})" if told else ""))
+    progress(Report.step(f"{len(inner)} umbilics" + (f" ({told})" if told else "")))
     iso = integrate(mesh, mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)])
     if seams:
         iso = straightened(iso, surface)
         mesh = iso.mesh
     progress(
-        f"  isothermic coordinates on {mesh.connectivity.node_count:,} nodes: off by {iso.residual:.1e} of their slope"
+        Report.step(
+            f"isothermic coordinates on {mesh.connectivity.node_count:,} nodes: off by {iso.residual:.1e} of their "
+            "slope"
+        )
     )
     names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
     around = holonomies(iso)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lamella.base.progress import Progress, silent
+from lamella.base.progress import Progress, Report, silent
 from lamella.network.isothermic.holonomy import vertex_relations
 from lamella.network.isothermic.isothermic import Isothermic, sectors
 from lamella.network.isothermic.poisson import Poisson
@@ -116,7 +116,7 @@ def shift_rates(
     fields: Floats,
     rim_shifts: Floats,
     curvature_rates: Floats,
-    detail: Progress = silent,
+    progress: Progress = silent,
 ) -> Rates:
     """Change of every shift, and of how far umbilics are inside the rim, with each of p parameters.
 
@@ -131,7 +131,7 @@ def shift_rates(
         See `jacobi_fields`.
     rim_shifts, curvature_rates
         See `jacobi_fields`.
-    detail : callable
+    progress : callable
         Is told which parameter it is.
     """
     mesh = iso.mesh
@@ -145,7 +145,7 @@ def shift_rates(
     umbilics = UmbilicDepths.of(surface)
     depths = np.zeros((len(umbilics.depth), len(fields)))
     for number, (field, rate) in enumerate(zip(fields, curvature_rates, strict=True)):
-        detail(f"how the net follows: {number} of {len(fields)} parameters")
+        progress(Report.detail(f"how the net follows: {number} of {len(fields)} parameters", number / len(fields)))
         step = STEP * film.size / max(float(np.abs(field).max()), 1e-12 * film.size)
         moved = ElementSurface(
             surface.kind,

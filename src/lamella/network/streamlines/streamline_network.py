@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.base.errors import InputError
-from lamella.base.progress import Progress, silent
+from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import rounded
 from lamella.network.elements.sharp_turns import more_samples
 from lamella.network.lattice.lattice import ragged_ranges
@@ -181,7 +181,11 @@ def traced_network(
         met = find_crossings(tried.flow, distance * guide.share)
         flow, met = without_short(tried.flow, met, minimum_length)
         median = median_edge(flow, met)
-        progress(f"  {flow.count} lines from even seeds, {len(met.a):,} crossings, median cell edge {median:.3g} m")
+        progress(
+            Report.step(
+                f"{flow.count} lines from even seeds, {len(met.a):,} crossings, median cell edge {median:.3g} m"
+            )
+        )
         off = 0.0 if spacing is None else abs(np.log(median / spacing)) if np.isfinite(median) else np.inf
         if chosen is None or off < best:
             best, chosen = off, (tried, flow, met, distance)

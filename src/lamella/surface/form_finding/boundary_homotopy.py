@@ -15,12 +15,13 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
+from lamella.base.progress import Progress, Report
 from lamella.surface.form_finding.chart import Chart, vector_area
 from lamella.surface.form_finding.continuation import Reached
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.film import Film, Loop, Slide, moved_with_rim
 from lamella.surface.form_finding.meshing import SAMPLES_OF_A_LOOP, is_worn, on_surface, renewed
-from lamella.surface.form_finding.newton import Detail, Equilibrium, NoFilmError, find_equilibrium
+from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, find_equilibrium
 from lamella.surface.points import Floats
 from lamella.surface.remesh.remesh import TriangleMesh
 
@@ -176,7 +177,7 @@ def from_flat(chart: Chart, loops: Loops) -> tuple[Path, TriangleMesh]:
     return held, TriangleMesh(flat, chart.faces, chart.loop, chart.parameter)
 
 
-def along_flat(chart: Chart, loops: Loops, order: int, detail: Detail) -> Reached:
+def along_flat(chart: Chart, loops: Loops, order: int, progress: Progress) -> Reached:
     """Follow the minimal films from flat loops to the given ones.
 
     Raises
@@ -188,7 +189,7 @@ def along_flat(chart: Chart, loops: Loops, order: int, detail: Detail) -> Reache
         flat = on_surface(Film.on_mesh(mesh, held(0.0), 1), order, 0.7)
     except NoFilmError as error:
         raise BreakError(0.0, 0, str(error)) from None
-    return along_loops(Equilibrium(flat, 0.0, 0, 0, ()), held, 0.0, loops, detail, finer=0.7)
+    return along_loops(Equilibrium(flat, 0.0, 0, 0, ()), held, 0.0, loops, progress, finer=0.7)
 
 
 def along_loops(
@@ -196,7 +197,7 @@ def along_loops(
     path: Path,
     share: float,
     loops: Loops,
-    detail: Detail,
+    progress: Progress,
     *,
     volume: float | None = None,
     stable: bool = True,
@@ -214,7 +215,7 @@ def along_loops(
         Where the start is.
     loops : tuple of Loop
         The end of the path.
-    detail : callable
+    progress : callable
     volume : float, optional
         Enclosed at the end, m^3.
     stable : bool
@@ -253,7 +254,11 @@ def along_loops(
                     raise BreakError(share, steps, str(error)) from None
                 continue
             steps += here.steps
-            detail(f"    loops at {wanted:.3f} of their way: H = {here.mean_curvature:.6g} 1/m ({here.steps} steps)")
+            progress(
+                Report.detail(
+                    f"loops at {wanted:.3f} of their way: H = {here.mean_curvature:.6g} 1/m ({here.steps} steps)"
+                )
+            )
             share, step = wanted, step * 1.5
             film, curvature = here.film, here.mean_curvature
             if is_worn(film):

@@ -6,10 +6,11 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 
+from lamella.base.progress import Progress
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.family import MANY, Member, Stretch, member_of, stretches
 from lamella.surface.form_finding.film import Film
-from lamella.surface.form_finding.newton import Detail, Equilibrium, NoFilmError, Way, find_equilibrium
+from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, Way, find_equilibrium
 
 # of its first size, of the radius 1 / H or of the volume's edge: a film larger than this many times has left for good
 FAR = 5.0
@@ -67,7 +68,7 @@ class Reached:
     steps: int
 
 
-def to_curvature(start: Equilibrium, target: float, detail: Detail, *, unstable: bool = False) -> Reached:
+def to_curvature(start: Equilibrium, target: float, progress: Progress, *, unstable: bool = False) -> Reached:
     """Follow a family to the film of a mean curvature (1/m).
 
     Where the stable films turn back before it, the unstable ones are followed on: they may become stable again and then
@@ -80,7 +81,7 @@ def to_curvature(start: Equilibrium, target: float, detail: Detail, *, unstable:
     start : Equilibrium
         Where it has the wanted mean curvature already, another film is looked for to both sides of it.
     target : float
-    detail : callable
+    progress : callable
     unstable : bool
         Whether an unstable one is wanted, or a stable one.
 
@@ -99,7 +100,7 @@ def to_curvature(start: Equilibrium, target: float, detail: Detail, *, unstable:
         sides = [first, first.backwards()]
     else:
         sides = [first if (away < 0) == (first.rise < 0) else first.backwards()]
-    ways = [_Side(side, stretches(side, detail, largest)) for side in sides]
+    ways = [_Side(side, stretches(side, progress, largest)) for side in sides]
     on = list(ways)
     # both sides in turn: the nearer film comes first
     while on:
@@ -107,7 +108,7 @@ def to_curvature(start: Equilibrium, target: float, detail: Detail, *, unstable:
             try:
                 stretch = next(way.rest)
                 way.steps = stretch.steps
-                found = _on_stretch(stretch, target, detail, unstable)
+                found = _on_stretch(stretch, target, progress, unstable)
                 if found:
                     return Reached(found.equilibrium, sum(way.steps for way in ways) + found.steps)
                 if not unstable:
@@ -165,20 +166,20 @@ class _Side:
             self.fold = last.extreme()
 
 
-def _on_stretch(stretch: Stretch, target: float, detail: Detail, unstable: bool) -> Reached | None:
+def _on_stretch(stretch: Stretch, target: float, progress: Progress, unstable: bool) -> Reached | None:
     """The wanted film, if it lies on a stretch."""
     steps = 0
     for root in stretch.roots("mean_curvature", target):
         with suppress(NoFilmError):
             near = _part(stretch, float(root))
-            found = find_equilibrium(near.film, target, stable=False, most_steps=MANY, detail=detail)
+            found = find_equilibrium(near.film, target, stable=False, most_steps=MANY, progress=progress)
             steps += near.steps + found.steps
             if (found.negative > 0) == unstable and _between(stretch, found.film):
                 return Reached(found, steps)
     return None
 
 
-def to_volume(start: Equilibrium, volume: float, detail: Detail) -> Reached:
+def to_volume(start: Equilibrium, volume: float, progress: Progress) -> Reached:
     """Follow a family to the film of an enclosed volume (m^3), stable or not.
 
     Raises
@@ -195,12 +196,12 @@ def to_volume(start: Equilibrium, volume: float, detail: Detail) -> Reached:
     if (missing < 0) != (first.growth < 0):
         first = first.backwards()
     turned, fold = 0, volume
-    for stretch in stretches(first, detail, FAR * max(start.film.size, abs(volume) ** (1 / 3))):
+    for stretch in stretches(first, progress, FAR * max(start.film.size, abs(volume) ** (1 / 3))):
         for root in stretch.roots("volume", volume):
             with suppress(NoFilmError):
                 near = _part(stretch, float(root))
                 left = volume - enclosed_volume(near.film)
-                found = find_equilibrium(near.film, near.mean_curvature, volume=left, stable=False, detail=detail)
+                found = find_equilibrium(near.film, near.mean_curvature, volume=left, stable=False, progress=progress)
                 return Reached(found, stretch.steps + near.steps + found.steps)
         if stretch.second.growth * missing < 0:
             fold = fold if turned else stretch.extreme("volume")

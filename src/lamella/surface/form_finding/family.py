@@ -15,11 +15,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from lamella.base.progress import Progress, Report
 from lamella.base.sparse import SingularError
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.meshing import is_worn, renewed
-from lamella.surface.form_finding.newton import Detail, NoFilmError, Way, find_equilibrium
+from lamella.surface.form_finding.newton import NoFilmError, Way, find_equilibrium
 from lamella.surface.form_finding.variation import Variation
 from lamella.surface.points import Floats
 
@@ -132,7 +133,7 @@ class Stretch:
         return np.polynomial.Polynomial([a, da, 3 * (b - a) - 2 * da - db, 2 * (a - b) + da + db])
 
 
-def stretches(start: Member, detail: Detail, largest: float) -> Iterator[Stretch]:
+def stretches(start: Member, progress: Progress, largest: float) -> Iterator[Stretch]:
     """Follow a family from a film in its direction, as far as it goes, or until a film is larger than a size (m).
 
     Raises
@@ -162,9 +163,11 @@ def stretches(start: Member, detail: Detail, largest: float) -> Iterator[Stretch
         steps += found.steps
         if float((there.weights * (found.film.nodes - here.film.nodes)).sum()) < 0:
             there = there.backwards()
-        detail(
-            f"    films followed: volume {there.volume:.5g} m3, H = {there.mean_curvature:.6g} 1/m ({found.steps} "
-            f"steps, {there.negative} negative eigenvalues)"
+        progress(
+            Report.detail(
+                f"films followed: volume {there.volume:.5g} m3, H = {there.mean_curvature:.6g} 1/m ({found.steps} "
+                f"steps, {there.negative} negative eigenvalues)"
+            )
         )
         yield Stretch(here, there, step, steps)
         if there.film.size > largest:

@@ -9,7 +9,7 @@ import numpy as np
 
 from lamella.base.drawing_origin import NOWHERE, coordinates, measured_from, origin_figure, told_from
 from lamella.base.errors import InputError
-from lamella.base.progress import Progress, patient, silent
+from lamella.base.progress import Progress, Report, patient, silent
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.film import Film, Loop
@@ -70,12 +70,12 @@ def _of_table(table: FormFoundTable, folder: Path, progress: Progress) -> Elemen
     from lamella.surface.boundary.corner_cost import corner_cost
 
     if table.origin:
-        progress(f"  {measured_from(table.origin)}")
+        progress(Report.step(measured_from(table.origin)))
     loops = boundary_loops(table, folder)
     remarks = remarks_on(loops)
     for remark in (*remarks, corner_cost(loops, table.most_nodes, table.tolerance)):
         if remark:
-            progress(f"  {remark}")
+            progress(Report.step(remark))
     found = find_film(
         loops,
         table.mean_curvature or 0.0,
@@ -197,7 +197,7 @@ def find_film(
         nonlocal tried
         if tried > MOST_TRIED:
             return False
-        progress(f"  trying mean_curvature = {value:g} 1/m")
+        progress(Report.step(f"trying mean_curvature = {value:g} 1/m"))
         search = FirstFilm(others, order, silent, short=len(others) == 1)
         try:
             _found(others, value, None, order, coarse, unstable, most_nodes, silent, search)
@@ -237,15 +237,15 @@ def _found(
     """See `find_film`; a search that ends without a film is a SearchError, and no bound is asked."""
     search = search or FirstFilm(loops, order, progress)
     first = search.of_curvature(mean_curvature, unstable=unstable) if volume is None else search.of_volume(volume)
-    told = f"  {'path' if first.followed else 'Newton'}: {first.steps} steps"
-    progress(told + (" on the whole path" if first.followed else " from the harmonic start"))
+    text = f"{'path' if first.followed else 'Newton'}: {first.steps} steps"
+    progress(Report.step(text + (" on the whole path" if first.followed else " from the harmonic start")))
 
     def settled(film: Film) -> Equilibrium:
         if volume is not None:
             missing = volume - enclosed_volume(film)
             guess = first.equilibrium.mean_curvature
-            return find_equilibrium(film, guess, volume=missing, stable=False, detail=progress)
-        return find_equilibrium(film, mean_curvature, stable=not unstable, detail=progress)
+            return find_equilibrium(film, guess, volume=missing, stable=False, progress=progress)
+        return find_equilibrium(film, mean_curvature, stable=not unstable, progress=progress)
 
     found = adapted(first.equilibrium, settled, tolerance, most_nodes, first.steps, first.followed, progress)
     verdict = found.stability

@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 from lamella.base.errors import InputError
+from lamella.base.progress import Progress, Report
 from lamella.surface.form_finding.boundary_homotopy import (
     BreakError,
     along_flat,
@@ -26,7 +27,7 @@ from lamella.surface.form_finding.film import Film, Loop, harmonic_over_itself
 from lamella.surface.form_finding.from_fixed_support import from_held
 from lamella.surface.form_finding.meshing import renewed, start_film
 from lamella.surface.form_finding.necessary_conditions import refuse_apart
-from lamella.surface.form_finding.newton import Detail, Equilibrium, find_equilibrium
+from lamella.surface.form_finding.newton import Equilibrium, find_equilibrium
 from lamella.surface.form_finding.no_film import NoFilmError, SearchError
 
 # Newton steps from the harmonic start before a path is taken
@@ -76,7 +77,7 @@ class FirstFilm:
 
     loops: tuple[Loop, ...]
     order: int
-    progress: Detail
+    progress: Progress
     steps: int = 0
     reasons: list[str] = field(default_factory=list)
     fold: float | None = None
@@ -180,7 +181,7 @@ class FirstFilm:
 
     def tell(self, reason: str) -> None:
         """Note where a way ended, once."""
-        self.progress(f"    {reason}")
+        self.progress(Report.detail(reason))
         if reason not in self.reasons:
             self.reasons.append(reason)
 
@@ -204,10 +205,12 @@ class FirstFilm:
             chart = make_chart(loops)
             film = harmonic_over_itself(start_film(chart, loops, self.order))
         except NoFilmError as error:
-            self.progress(f"    no harmonic start: {error}")
+            self.progress(Report.detail(f"no harmonic start: {error}"))
             return None
         self.progress(
-            f"    start: harmonic over a {chart.kind}, {film.connectivity.node_count:,} nodes of order {self.order}"
+            Report.detail(
+                f"start: harmonic over a {chart.kind}, {film.connectivity.node_count:,} nodes of order {self.order}"
+            )
         )
         return film
 
@@ -219,16 +222,16 @@ class FirstFilm:
             # blown up to about the wanted curvature first
             film = harmonic_over_itself(film, mean_curvature)
         except NoFilmError as error:
-            self.progress(f"    no start with pressure: {error}")
+            self.progress(Report.detail(f"no start with pressure: {error}"))
             return None
         return self._newton(film, mean_curvature, "a start with pressure")
 
     def _newton(self, film: Film, mean_curvature: float, start: str) -> Equilibrium | None:
         try:
-            here = find_equilibrium(film, mean_curvature, most_steps=DIRECT_STEPS, detail=self.progress)
+            here = find_equilibrium(film, mean_curvature, most_steps=DIRECT_STEPS, progress=self.progress)
         except NoFilmError as error:
             self.steps += DIRECT_STEPS
-            self.progress(f"    from {start}: {error}")
+            self.progress(Report.detail(f"from {start}: {error}"))
             return None
         self.steps += here.steps
         return here
@@ -244,15 +247,15 @@ class FirstFilm:
                 film = harmonic_over_itself(start_film(chart, self.loops, self.order, rounds, 0.7))
                 for _ in range(AREA_ROUNDS):
                     try:
-                        here = find_equilibrium(film, 0.0, most_steps=DIRECT_STEPS, detail=self.progress)
+                        here = find_equilibrium(film, 0.0, most_steps=DIRECT_STEPS, progress=self.progress)
                         self.steps += here.steps
                         return here
                     except NoFilmError as error:
                         self.steps += DIRECT_STEPS
-                        self.progress(f"    {error}; elements are made anew")
+                        self.progress(Report.detail(f"{error}; elements are made anew"))
                         film = harmonic_over_itself(renewed(error.last or film, 0.7))
             except NoFilmError as error:
-                self.progress(f"    {error}")
+                self.progress(Report.detail(f"{error}"))
         try:
             reached = along_flat(chart, self.loops, self.order, self.progress)
         except BreakError as error:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from lamella.base.progress import Report
 from lamella.surface.form_finding.boundary_homotopy import is_moved
 from lamella.surface.form_finding.chart import make_chart
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
@@ -32,7 +33,7 @@ def from_held(search: FirstFilm, mean_curvature: float, volume: float | None) ->
     """
     near, straight = held(search.loops), held(search.loops, straight=True)
     for loops in (near, straight) if is_moved(near, straight) else (near,):
-        search.progress("    the sliding edges are held, and let go little by little")
+        search.progress(Report.detail("the sliding edges are held, and let go little by little"))
         there = replace(search, loops=loops, steps=0, reasons=[], fold=None, calm=False, unstable=None)
         try:
             if volume is None:

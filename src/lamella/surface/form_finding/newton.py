@@ -26,7 +26,7 @@ from functools import partial
 
 import numpy as np
 
-from lamella.base.progress import silent
+from lamella.base.progress import Progress, Report, silent
 from lamella.base.sparse import Factor, SingularError, SymmetricPattern
 from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.no_film import NoFilmError
@@ -81,9 +81,6 @@ class Way:
     amount: float
 
 
-Detail = Callable[[str], None]
-
-
 def find_equilibrium(
     film: Film,
     mean_curvature: float = 0.0,
@@ -93,7 +90,7 @@ def find_equilibrium(
     springs: Floats | None = None,
     stable: bool = True,
     most_steps: int = 30,
-    detail: Detail = silent,
+    progress: Progress = silent,
 ) -> Equilibrium:
     """The film of a mean curvature near a given one.
 
@@ -113,7 +110,7 @@ def find_equilibrium(
     stable : bool
         Look for a minimum of area + 2 H volume (shift the second variation while it has negative eigenvalues).
     most_steps : int
-    detail : callable
+    progress : callable
         Is told each step.
 
     Raises
@@ -188,10 +185,12 @@ def find_equilibrium(
                     shifted += part * more
         move = float(np.abs(shift).max()) * share
         moves.append(move)
-        detail(
-            f"    step {step + 1}: largest shift {move:.2e} m, residual {np.abs(gradient).max() / size:.2e}"
-            + (f", {share:.2g} of the step" if share < 1 else "")
-            + (f", {negative} negative eigenvalues" if negative else "")
+        progress(
+            Report.detail(
+                f"step {step + 1}: largest shift {move:.2e} m, residual {np.abs(gradient).max() / size:.2e}"
+                + (f", {share:.2g} of the step" if share < 1 else "")
+                + (f", {negative} negative eigenvalues" if negative else "")
+            )
         )
         if share == 1 and move <= LAST_STEP * size and abs(change) * size <= 1e-6:
             return Equilibrium(film, mean_curvature, step + 1, negative, tuple(moves))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from lamella.base.errors import InputError
+from lamella.base.progress import Report
 from lamella.base.wording import rounded
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.first_film import FirstFilm
@@ -113,7 +114,7 @@ def _of_tube(tries: Tries, mean_curvature: float, limit: float | None = None) ->
 
 
 def _again(search: FirstFilm) -> FirstFilm:
-    search.progress("    the other sign is tried")
+    search.progress(Report.detail("the other sign is tried"))
     return FirstFilm(search.loops, search.order, search.progress)
 
 

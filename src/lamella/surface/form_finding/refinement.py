@@ -9,11 +9,12 @@ import numpy as np
 
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
+from lamella.base.progress import Progress, Report
 from lamella.surface.form_finding.adaptivity import Deviation, deviation_of, refined_sizes
 from lamella.surface.form_finding.film import Film, harmonic_over_itself
 from lamella.surface.form_finding.found_film import Found
 from lamella.surface.form_finding.meshing import is_worn, renewed, straightened, with_sizes
-from lamella.surface.form_finding.newton import Detail, Equilibrium, NoFilmError
+from lamella.surface.form_finding.newton import Equilibrium, NoFilmError
 from lamella.surface.form_finding.redistribution import redistributed
 from lamella.surface.form_finding.stability import stability_of
 from lamella.surface.points import Floats
@@ -37,7 +38,7 @@ def adapted(
     most_nodes: int,
     steps: int,
     followed: bool,
-    progress: Detail,
+    progress: Progress,
 ) -> Found:
     """The same surface on elements as small as a tolerance asks for.
 
@@ -71,8 +72,10 @@ def adapted(
     for round_ in range(MOST_ROUNDS):
         here, deviation = _at_rest(here, settled, tolerance)
         progress(
-            f"  {here.film.connectivity.node_count:,} nodes: |H - H0| up to {deviation.largest:.1e} of the curvature "
-            f"scale {deviation.scale:.3g} 1/m"
+            Report.step(
+                f"{here.film.connectivity.node_count:,} nodes: |H - H0| up to {deviation.largest:.1e} of the curvature "
+                f"scale {deviation.scale:.3g} 1/m"
+            )
         )
         gain = deviation.weighted / best[0] if best else 0.0
         if best is None or deviation.weighted < best[0]:
@@ -87,7 +90,7 @@ def adapted(
         try:
             here = _settled_anew(with_sizes(here.film, size), here.mean_curvature, settled)
         except NoFilmError as error:
-            progress(f"    on finer elements: {error}")
+            progress(Report.detail(f"on finer elements: {error}"))
             try:
                 here = _settled_anew(straightened(renewed(here.film, 0.6)), here.mean_curvature, settled)
             except NoFilmError as again:

@@ -13,11 +13,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from lamella.base.progress import Progress, Report
 from lamella.surface.form_finding.continuation import Reached
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.film import Film, Loop
 from lamella.surface.form_finding.meshing import is_worn, renewed
-from lamella.surface.form_finding.newton import Detail, Equilibrium, NoFilmError, find_equilibrium
+from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, find_equilibrium
 from lamella.surface.points import Floats
 
 # stiffness of the first springs times the film's size, how it falls and rises, and the most and least of it
@@ -28,7 +29,7 @@ MOST_FILMS, MANY = 60, 15
 CALM = 0.05
 
 
-def let_go(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, detail: Detail) -> Reached:
+def let_go(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, progress: Progress) -> Reached:
     """The film of a held one's mean curvature, or of a volume, with its edges free to slide.
 
     Parameters
@@ -38,7 +39,7 @@ def let_go(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, de
     loops : tuple of Loop
     volume : float or None
         m^3; None: H stays.
-    detail : callable
+    progress : callable
 
     Raises
     ------
@@ -51,7 +52,7 @@ def let_go(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, de
     def found(springs: Floats | None) -> Equilibrium:
         missing = None if volume is None else volume - enclosed_volume(film)
         return find_equilibrium(
-            film, curvature, volume=missing, springs=springs, stable=volume is None, most_steps=MANY, detail=detail
+            film, curvature, volume=missing, springs=springs, stable=volume is None, most_steps=MANY, progress=progress
         )
 
     stiffness, calm = FIRST / size, True
@@ -61,7 +62,7 @@ def let_go(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, de
                 free = found(None)
             except NoFilmError as error:
                 steps += MANY
-                detail(f"    edges cannot be let go yet: {error}")
+                progress(Report.detail(f"edges cannot be let go yet: {error}"))
             else:
                 return Reached(free, steps + free.steps)
         if stiffness * size < LEAST:
@@ -75,7 +76,7 @@ def let_go(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, de
             continue
         steps += there.steps
         moved = np.linalg.norm(there.film.nodes - film.nodes, axis=1)[film.connectivity.rim_nodes].max()
-        detail(f"    edges held with {stiffness * size:.3g} over the film's size move by {moved:.3g} m")
+        progress(Report.detail(f"edges held with {stiffness * size:.3g} over the film's size move by {moved:.3g} m"))
         film, curvature, calm = there.film, there.mean_curvature, bool(moved * stiffness < CALM)
         stiffness /= FALL
         if is_worn(film):

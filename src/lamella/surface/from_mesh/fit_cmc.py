@@ -11,7 +11,7 @@ import numpy as np
 
 from lamella.base.drawing_origin import measured_from, origin_figure, told_from
 from lamella.base.errors import InputError
-from lamella.base.progress import Progress, silent
+from lamella.base.progress import Progress, Report, silent
 from lamella.files.read.mesh import read_mesh
 from lamella.files.read.raw_mesh import Floats, RawMesh
 from lamella.surface.boundary import Loop, check_loops
@@ -68,14 +68,14 @@ def surface_of_table(table: MeshTable, folder: Path, progress: Progress = silent
     """
     raw = read_mesh(folder / table.file, table.unit, table.origin)
     if any(raw.origin):
-        progress(f"  {measured_from(raw.origin)}")
+        progress(Report.step(measured_from(raw.origin)))
     with told_from(raw.origin):
         return _meant(raw, table, progress)
 
 
 def _meant(raw: RawMesh, table: MeshTable, progress: Progress) -> ElementSurface:
     mesh = clean(raw)
-    progress(f"  {raw.source}: {len(mesh.points):,} vertices, {len(mesh.faces):,} triangles")
+    progress(Report.step(f"{raw.source}: {len(mesh.points):,} vertices, {len(mesh.faces):,} triangles"))
     loops, notes = border_loops(mesh, table.corner_angle)
     check_loops(loops)
     if table.mean_curvature == "varying":
@@ -118,8 +118,10 @@ def _constant(
     fit = fit_mean_curvature(mesh.points, mesh.faces)
     given = None if table.mean_curvature == "fit" else float(table.mean_curvature)
     progress(
-        f"  curvature at the vertices: H = {fit.mean_curvature:.6g} 1/m, off by {fit.deviation:.2g} of the curvature "
-        f"scale {fit.scale:.4g} 1/m"
+        Report.step(
+            f"curvature at the vertices: H = {fit.mean_curvature:.6g} 1/m, off by {fit.deviation:.2g} of the curvature "
+            f"scale {fit.scale:.4g} 1/m"
+        )
     )
     areas = vertex_areas(mesh.points, mesh.faces)
     first, exact = _coarse(mesh, loops, fit, areas, table, progress)
@@ -130,9 +132,9 @@ def _constant(
 
     def settled(film: Film) -> Equilibrium:
         if given is not None or not first.mean_curvature:
-            return find_equilibrium(film, first.mean_curvature, stable=False, detail=progress)
+            return find_equilibrium(film, first.mean_curvature, stable=False, progress=progress)
         # by the volume: at a fold of H there may be no surface of the H of the elements before
-        here = find_equilibrium(film, first.mean_curvature, volume=0.0, stable=False, detail=progress)
+        here = find_equilibrium(film, first.mean_curvature, volume=0.0, stable=False, progress=progress)
         return nearest_of_family(here, mesh.points, areas, progress)
 
     found = adapted(first, settled, table.tolerance, table.most_nodes, first.steps, False, progress)
@@ -140,7 +142,7 @@ def _constant(
     distance = distances(found.equilibrium.film, mesh.points)
     _refuse_far(distance, found.equilibrium)
     for note in (*mesh.notes, *notes):
-        progress(f"  {note}")
+        progress(Report.step(note))
     return found.surface(
         "mesh",
         (
@@ -175,7 +177,7 @@ def _coarse(
     uneven = fit.deviation > table.deviation
     if uneven and (len(mesh.points) > COARSE or _crumpled(mesh)):
         raise _not_constant(fit, table.deviation)
-    progress("  laying elements on the mesh")
+    progress(Report.step("laying elements on the mesh"))
     try:
         first = _near(_film(mesh, loops, table.order, start), start, free, progress)
     except InputError:
@@ -186,7 +188,7 @@ def _coarse(
         first = nearest_of_family(first, mesh.points, areas, progress)
     distance = distances(first.film, mesh.points)
     typical = float(np.sqrt(areas @ distance**2 / areas.sum()))
-    progress(f"  nearest to the vertices: H = {first.mean_curvature:.6g} 1/m, {1000 * typical:.3g} mm off")
+    progress(Report.step(f"nearest to the vertices: H = {first.mean_curvature:.6g} 1/m, {1000 * typical:.3g} mm off"))
     # vertices off by d change the curvature of edges of length h by up to 8 d / h^2
     edge = float(np.median(find_edges(mesh.faces).lengths(mesh.points)))
     exact = 8 * typical / edge**2 <= table.deviation * fit.scale
@@ -273,7 +275,7 @@ def _without_curvature(here: Equilibrium, scale: float, progress: Progress) -> E
     if abs(here.mean_curvature) > MINIMAL * scale:
         return here
     with suppress(NoFilmError):
-        minimal = find_equilibrium(here.film, 0.0, stable=False, detail=progress)
+        minimal = find_equilibrium(here.film, 0.0, stable=False, progress=progress)
         return replace(minimal, steps=here.steps + minimal.steps)
     return here
 
@@ -295,9 +297,9 @@ def _near(film: Film, mean_curvature: float, free: bool, progress: Progress) -> 
     reasons = []
     for volume in (0.0, None) if free else (None,):
         try:
-            return find_equilibrium(film, mean_curvature, volume=volume, stable=False, detail=progress)
+            return find_equilibrium(film, mean_curvature, volume=volume, stable=False, progress=progress)
         except NoFilmError as error:
-            progress(f"    {error}")
+            progress(Report.detail(f"{error}"))
             reasons.append(str(error))
     raise InputError(
         f"no surface of constant mean curvature {mean_curvature:.4g} 1/m was found near the mesh "

@@ -21,7 +21,7 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from lamella.base.errors import InputError
-from lamella.base.progress import Progress
+from lamella.base.progress import Progress, Report
 from lamella.files.read.raw_mesh import Integers
 from lamella.surface.boundary import Loop, check_loops
 from lamella.surface.element.closest import ClosestPoint
@@ -83,7 +83,7 @@ class Kept(NamedTuple):
     jump: float
 
 
-def fitted_film(film: Film, points: Floats, areas: Floats, detail: Progress) -> tuple[Film, Floats]:
+def fitted_film(film: Film, points: Floats, areas: Floats, progress: Progress) -> tuple[Film, Floats]:
     """The film nearest to points, its rim held, and their distances, m, (n,)."""
     connectivity, basis = film.connectivity, film.connectivity.basis
     free = connectivity.inner_unknowns >= 0
@@ -112,7 +112,7 @@ def fitted_film(film: Film, points: Floats, areas: Floats, detail: Progress) -> 
         shift[free] = splu(inner).solve(right[free])
         film = film.at(film.nodes + shift[:, None] * directions)
         move = float(np.abs(shift).max())
-        detail(f"    fit, step {step + 1}: largest shift {move:.2e} m")
+        progress(Report.detail(f"fit, step {step + 1}: largest shift {move:.2e} m"))
         if move <= LAST_MOVE * film.size:
             break
     return film, distance
@@ -213,8 +213,10 @@ def kept_film(
         film, distance = fitted_film(film, mesh.points, areas, progress)
         jump = curvature_jump(film)
         progress(
-            f"  {len(film.connectivity.faces):,} elements: vertices off by up to {distance.max():.2g} m, curvature "
-            f"jumps by {jump:.2g} of its scale"
+            Report.step(
+                f"{len(film.connectivity.faces):,} elements: vertices off by up to {distance.max():.2g} m, curvature "
+                f"jumps by {jump:.2g} of its scale"
+            )
         )
         if best is not None and jump >= best.jump:
             break
@@ -261,14 +263,17 @@ def through_film(
         film = _relaxed(film, len(mesh.points), progress)
         jump = curvature_jump(film)
     progress(
-        f"  {len(film.connectivity.faces):,} elements through the vertices: curvature jumps by {jump:.2g} of its scale"
+        Report.step(
+            f"{len(film.connectivity.faces):,} elements through the vertices: curvature jumps by {jump:.2g} of its "
+            "scale"
+        )
     )
     if jump > SMOOTH:
         return None
     return Kept(film, jump)
 
 
-def _relaxed(film: Film, vertices: int, detail: Progress) -> Film:
+def _relaxed(film: Film, vertices: int, progress: Progress) -> Film:
     """The film of the least jumps whose first nodes, the vertices, and whose rim are held."""
     free = film.connectivity.inner_unknowns >= 0
     free[:vertices] = False
@@ -280,7 +285,7 @@ def _relaxed(film: Film, vertices: int, detail: Progress) -> Film:
         shift = np.zeros(len(free))
         shift[free] = -splu(matrix).solve((jumps.T @ (weights * now))[free])
         film = film.at(film.nodes + shift[:, None] * directions)
-        detail(f"    least jumps, step {step + 1}: largest shift {np.abs(shift).max():.2e} m")
+        progress(Report.detail(f"least jumps, step {step + 1}: largest shift {np.abs(shift).max():.2e} m"))
     return film
 
 
@@ -329,7 +334,7 @@ def kept_surface(
     InputError
         The mesh is so rough that it has no curvature to speak of.
     """
-    progress("  laying smooth elements through the vertices")
+    progress(Report.step("laying smooth elements through the vertices"))
     given = mesh.points
     flat = as_film(mesh, loops)
     # the border's vertices are where their curves are
@@ -358,7 +363,7 @@ def kept_surface(
             "surface.file",
         )
     for note in (*mesh.notes, *notes):
-        progress(f"  {note}")
+        progress(Report.step(note))
     errors = vertex_errors(film, fits, mesh.faces, smoothed)
     typical = float(np.sqrt(np.average(errors**2, weights=vertex_areas(mesh.points, mesh.faces)))) / scale
     if smoothed is not None and np.median(errors) > OPEN * scale:

@@ -14,10 +14,9 @@ By the volume rather than by H itself, because H has a fold (at a hemisphere, sa
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
+from lamella.base.progress import Progress, Report
 from lamella.base.sparse import SingularError
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.form_finding.film import Film
@@ -25,15 +24,13 @@ from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, find_e
 from lamella.surface.form_finding.variation import Variation
 from lamella.surface.points import Floats
 
-Detail = Callable[[str], None]
-
 MOST_STEPS = 12
 # a step that moves no vertex by more than this part of the size changes H by less than the elements' error
 LAST_MOVE = 1e-7
 MOST_HALVINGS = 6
 
 
-def nearest_of_family(start: Equilibrium, points: Floats, areas: Floats, detail: Detail) -> Equilibrium:
+def nearest_of_family(start: Equilibrium, points: Floats, areas: Floats, progress: Progress) -> Equilibrium:
     """The surface through the same border that comes nearest to points.
 
     Parameters
@@ -44,7 +41,7 @@ def nearest_of_family(start: Equilibrium, points: Floats, areas: Floats, detail:
         Vertices of a mesh of it, m.
     areas : (n,)
         Their weights.
-    detail : callable
+    progress : callable
         Is told each step.
 
     Returns
@@ -66,9 +63,11 @@ def nearest_of_family(start: Equilibrium, points: Floats, areas: Floats, detail:
             break
         here, off, answer = new
         steps += here.steps
-        detail(
-            f"    nearest to the vertices: H = {here.mean_curvature:.6g} 1/m, moved by {move:.2e} m, "
-            f"{np.sqrt(areas @ off**2 / areas.sum()):.2e} m off ({here.steps} steps)"
+        progress(
+            Report.detail(
+                f"nearest to the vertices: H = {here.mean_curvature:.6g} 1/m, moved by {move:.2e} m, "
+                f"{np.sqrt(areas @ off**2 / areas.sum()):.2e} m off ({here.steps} steps)"
+            )
         )
     return Equilibrium(here.film, here.mean_curvature, steps, here.negative, here.moves)
 
