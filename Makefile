@@ -6,7 +6,7 @@ ONE := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1
 
 # what can differ between processors, besides the examples: elements and films
 NUMERICS := tests/surface/element tests/surface/form_finding/test_last_bits.py tests/surface/form_finding/test_rings.py \
-	tests/surface/from_mesh/test_imported_last_bits.py tests/projection/test_star_measures.py tests/test_sparse.py
+	tests/surface/from_mesh/test_last_bits.py tests/projection/test_star_measures.py tests/base/test_sparse.py
 
 .PHONY: demo test slow kernels lint types bench docs clean
 
@@ -21,8 +21,8 @@ slow: .venv/ready
 	$(ONE) $(BIN)/python -m pytest -m slow -n auto
 
 kernels: .venv/ready
-	$(BIN)/python tests/kernels.py
-	$(BIN)/python tests/kernels.py --pytest -m "not slow" -n auto --dist loadfile $(NUMERICS)
+	$(BIN)/python tests/examples/kernels.py
+	$(BIN)/python tests/examples/kernels.py --pytest -m "not slow" -n auto --dist loadfile $(NUMERICS)
 
 lint: .venv/ready
 	$(BIN)/ruff check .

@@ -14,7 +14,7 @@ from lamella.network.elements.element_network import element_network
 from lamella.network.network import Network
 from lamella.network.turning import turning
 from lamella.surface.closed_forms.closed_form import ClosedForm
-from network.test_found_network import catenoid
+from network.elements.test_element_network import catenoid
 
 FORMS = {
     "catenoid": Catenoid(1.0, (-0.8, 1.1)),

@@ -39,9 +39,9 @@ from lamella.strip.lamellas import Section, make_lamellas
 from lamella.strip.material import MATERIALS
 from lamella.surface.closed_forms.outline import Ring
 from lamella.surface.form_finding.find import find_film
-from network.random_boundaries import sketch
-from network.test_found_network import FORMS, euler, from_exact_nodes
-from network.test_network import _check_combinatorics
+from network.elements.random_boundaries import sketch
+from network.elements.test_element_network import FORMS, euler, from_exact_nodes
+from network.lattice.test_trace import _check_combinatorics
 
 
 def inner(network: Network) -> np.ndarray:
@@ -198,7 +198,7 @@ def test_around_a_hole_of_elements() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(100, 112))
 def test_patterns_on_random_films(seed: int) -> None:
-    """What holds of every net (tests/network/test_random_networks.py) holds of its patterns."""
+    """What holds of every net (tests/network/elements/test_random_networks.py) holds of its patterns."""
     case = sketch(seed)
     try:
         found = find_film(case.loops, case.mean_curvature, tolerance=2e-2, most_nodes=12_000)

@@ -15,7 +15,7 @@ import pytest
 from conftest import run_of_example
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
-from network.test_found_network import enneper
+from network.elements.test_element_network import enneper
 
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 

@@ -12,7 +12,7 @@ import pytest
 from lamella import Catenoid, Enneper, Unduloid, compute, make_network, parse_project
 from lamella.files.write.network_json import network_bytes
 from lamella.network.written_lines import WrittenLines
-from measure_network import measure
+from validation.measure_network import measure
 
 
 @pytest.mark.parametrize("surface", [Catenoid(1.0, (-1.0, 1.2)), Unduloid(0.6, 1.2, (-1.6, 2.0))])

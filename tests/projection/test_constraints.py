@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 
 from conftest import KINDS, draw_places, draw_surface
-from exact_elements import catenoid_map, whole_catenoid
 from lamella import Catenoid, Unduloid, make_loop
 from lamella.projection import constraints as package
 from lamella.projection.constraint import Constraint
@@ -45,6 +44,7 @@ from lamella.projection.foot_points import MeshFeet, foot_surface
 from lamella.projection.solve import LEAST_DAMPING, solve
 from lamella.projection.unknowns import Block
 from lamella.surface.boundary.arcs import circle
+from surface.element.exact_elements import catenoid_map, whole_catenoid
 
 EDGE = 0.7
 ROUNDING = 1e-13

@@ -8,13 +8,13 @@ from functools import cache
 
 import numpy as np
 import pytest
-from nets import noisy, rotational_net
 
 from lamella import InputError, Unduloid
 from lamella.projection.problems.deform import DeformedState, deform
 from lamella.projection.problems.sphere_stars import sphere_stars
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.star_measures import circle_angles, star_spheres
+from projection.nets import noisy, rotational_net
 
 AROUND, ROWS = 20, 19
 RING = AROUND * (ROWS // 2) + np.arange(AROUND)

@@ -12,7 +12,6 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
-from nets import grid_faces, hexagonal_net, lamella_patch, noisy, rotational_net, spider, weingarten_patch
 
 from lamella import Catenoid, Enneper, Unduloid, quad_mesh
 from lamella.command.main import main
@@ -22,6 +21,7 @@ from lamella.files.write.optimise_json import optimise_schema
 from lamella.projection.mesh_figures import mesh_figures
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.star_measures import circle_angles, star_spheres
+from projection.nets import grid_faces, hexagonal_net, lamella_patch, noisy, rotational_net, spider, weingarten_patch
 
 SCHEMA = jsonschema.Draft202012Validator(optimise_schema())
 UNDULOID = Unduloid(0.6, 1.4, (-8.0, 8.0))

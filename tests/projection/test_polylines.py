@@ -4,10 +4,10 @@ import itertools
 
 import numpy as np
 import pytest
-from nets import grid_faces, lamella_patch, rotational_net, spider
 
 from lamella import InputError, Unduloid, quad_mesh
 from lamella.projection.polylines import diagonal_ring, polylines
+from projection.nets import grid_faces, lamella_patch, rotational_net, spider
 
 UNDULOID = Unduloid(0.6, 1.4, (-6.0, 6.0))
 

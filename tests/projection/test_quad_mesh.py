@@ -6,10 +6,10 @@ by walking on a grid, each once. 3. Vertices of valence 3, 5 and 6 are found and
 
 import numpy as np
 import pytest
-from nets import grid_faces, spider
 
 from lamella import InputError
 from lamella.projection.quad_mesh import quad_mesh
+from projection.nets import grid_faces, spider
 
 
 def grid(rows: int, columns: int, closed: bool = False):

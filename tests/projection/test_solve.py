@@ -12,7 +12,6 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from nets import lamella_patch, noisy
 
 from lamella import Catenoid, InputError
 from lamella.projection.constraint import Constraint
@@ -27,6 +26,7 @@ from lamella.projection.normal_equations import NormalEquations
 from lamella.projection.problems.asymptotic import asymptotic
 from lamella.projection.solve import solve
 from lamella.projection.unknowns import Block, Layout, Slot
+from projection.nets import lamella_patch, noisy
 
 EDGES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from nets import hexagonal_net, lamella_patch, noisy, rotational_net, spider, weingarten_patch
 
 from lamella import Catenoid, Enneper, InputError, Unduloid
 from lamella.projection.constraints.curved_star import CurvedStar
@@ -29,6 +28,7 @@ from lamella.projection.star_measures import chord_angles, circle_angles, face_a
 from lamella.projection.unknowns import Block
 from lamella.projection.vertex_normals import smoothed_normals
 from lamella.surface.closed_forms.closed_form import ClosedForm
+from projection.nets import hexagonal_net, lamella_patch, noisy, rotational_net, spider, weingarten_patch
 
 NOISE = 0.02
 CATENOID = Catenoid(1.0, (-1.5, 1.5))

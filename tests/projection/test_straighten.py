@@ -7,13 +7,13 @@ allows. 3. Middles of edges on a plane.
 
 import numpy as np
 import pytest
-from nets import grid_faces
 
 from lamella import Catenoid, Enneper, InputError, Unduloid
 from lamella.projection.foot_points import foot_surface
 from lamella.projection.problems.straighten import edge_middles, straighten
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.star_measures import circle_angles, star_spheres
+from projection.nets import grid_faces
 from surface.form_finding.films import surface, tube
 
 UNDULOID = Unduloid(0.6, 1.4, (-8.0, 8.0))

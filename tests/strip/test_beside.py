@@ -18,7 +18,7 @@ from lamella.network.network import SINGULAR, Network
 from lamella.network.pattern import Pattern
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.darboux import sideways_slope
-from network.test_found_network import catenoid
+from network.elements.test_element_network import catenoid
 
 FORMS = [
     Catenoid(1.3, (-1.0, 1.4)),

@@ -29,7 +29,7 @@ from lamella.network.elements.element_network import element_network
 from lamella.network.network import Network
 from lamella.strip.lamellas import crossings
 from lamella.strip.unroll import development_deviation
-from network.test_found_network import catenoid
+from network.elements.test_element_network import catenoid
 
 STEEL = find_material("1.4301")
 SECTION = Section(height=0.06, thickness=0.001, layers=2, offset=0.03, layer_curves="lamella")

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from plate_strip import plate_strip
 
 from lamella.strip.material import Material
 from lamella.strip.plate import across, mean_tension, poisson_ratio
 from lamella.strip.stress import stresses
+from strip.plate_strip import plate_strip
 
 E, NU = 200e9, 0.3
 STEEL = Material(7850, E, E / (2 * (1 + NU)), 235e6)

@@ -15,7 +15,7 @@ from lamella.network.network import REGULAR, SEAM
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.form_finding.find import find_film
 from lamella.surface.form_finding.newton import find_equilibrium
-from network.test_found_network import check_combinatorics, from_exact_nodes, size_of
+from network.elements.test_element_network import check_combinatorics, from_exact_nodes, size_of
 from surface.form_finding.exact_patches import ArcLength
 from surface.form_finding.films import on_sizes, order_of, start, surface
 

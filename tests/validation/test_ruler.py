@@ -16,7 +16,7 @@ from conftest import KINDS, draw_surface, load
 from lamella import Catenoid, Enneper, Helicoid, Nodoid, Scherk, Unduloid, make_network
 from lamella.files.write.network_json import network_bytes
 from lamella.network.lattice.density import choose_density
-from measure_network import measure
+from validation.measure_network import measure
 
 
 def _measured(surface, cells):
@@ -91,7 +91,7 @@ def test_ruler_sees_a_wrong_network():
 
 def test_ruler_runs_on_a_written_file(run):
     folder = run("network", surface={"kind": "catenoid", "neck_radius": 1.0, "height": [-1.0, 1.0]})
-    ruler = Path(__file__).parents[1] / "measure_network.py"
+    ruler = Path(__file__).with_name("measure_network.py")
     done = subprocess.run(
         [sys.executable, ruler, folder / "network.json", "--json"], capture_output=True, text=True, check=True
     )

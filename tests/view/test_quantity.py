@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from exact_elements import catenoid_patch
 from lamella import Catenoid, Cylinder, Unduloid
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.quantity import DIVERGING, SEQUENTIAL, surface_quantities
+from surface.element.exact_elements import catenoid_patch
 
 
 def mesh(k1: np.ndarray, k2: np.ndarray, x: np.ndarray | None = None) -> SurfaceMesh:

@@ -12,7 +12,6 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from exact_elements import sphere_cap
 from lamella.network.make import make_network
 from lamella.strip.lamellas import Section, make_lamellas
 from lamella.strip.material import find_material
@@ -22,6 +21,7 @@ from lamella.surface.mesh import SurfaceMesh
 from lamella.view import report
 from lamella.view.quantity import surface_quantities
 from lamella.view.report import CORNER_LIMIT, ReportData, report_html, write_report
+from surface.element.exact_elements import sphere_cap
 
 FIGURES = (
     ("Surface", "Area", "62.41", "m²"),

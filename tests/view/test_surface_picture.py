@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import lamella
-from exact_elements import catenoid_patch, sphere_cap, whole_catenoid
 from lamella.base.errors import InputError
 from lamella.surface.element.surface import ElementSurface
+from surface.element.exact_elements import catenoid_patch, sphere_cap, whole_catenoid
 
 pytest.importorskip("matplotlib")
 from matplotlib.colors import to_rgb

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from exact_elements import catenoid_patch, sphere_cap, whole_catenoid
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
+from surface.element.exact_elements import catenoid_patch, sphere_cap, whole_catenoid
 
 SURFACES = {"patch": catenoid_patch, "cap": sphere_cap, "whole": whole_catenoid}
 
@@ -102,7 +102,7 @@ def test_sphere_projects_along_its_radius() -> None:
 
 def test_border_holds_points_outside() -> None:
     """Beyond the edge of a flat square the closest point is the square's own: clipped coordinates."""
-    from exact_elements import on_map
+    from surface.element.exact_elements import on_map
 
     side = np.linspace(0, 1, 4)
     uv = np.array([(x, y) for x in side for y in side])

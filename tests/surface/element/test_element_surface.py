@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from exact_elements import catenoid_patch, on_map, sphere_cap, whole_catenoid
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.places import Places
 from lamella.surface.element.placing import place_nodes
 from lamella.surface.element.surface import ElementSurface
+from surface.element.exact_elements import catenoid_patch, on_map, sphere_cap, whole_catenoid
 from surface.form_finding.exact_patches import (
     ArcLength,
     CatenoidPatch,

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from exact_elements import catenoid_patch, on_map, sphere_cap, whole_catenoid
 from lamella.surface.element.surface import RIM_SHARE, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
+from surface.element.exact_elements import catenoid_patch, on_map, sphere_cap, whole_catenoid
 
 Floats = NDArray[np.float64]
 

@@ -1,11 +1,11 @@
-"""Zeros of the deviator of minimal surfaces that have them in given places: `surface.weierstrass`."""
+"""Zeros of the deviator of minimal surfaces that have them in given places: `surface.element.weierstrass`."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from surface.weierstrass import weierstrass
+from surface.element.weierstrass import weierstrass
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 4, 5])

@@ -16,8 +16,8 @@ from lamella.surface.from_mesh.edges import find_edges
 from lamella.surface.from_mesh.fit_cmc import surface_of_table
 from lamella.surface.from_mesh.vertex_fits import fit_vertices
 from lamella.surface.from_mesh.vertex_noise import without_scatter
-from network.test_traced_network import lamellas
-from surface.from_mesh.test_kept_smooth import errors, true_form
+from network.streamlines.test_streamline_network import lamellas
+from surface.from_mesh.test_fit_surface import errors, true_form
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

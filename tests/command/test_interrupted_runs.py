@@ -1,0 +1,125 @@
+"""Runs that do not come to their end: full disks, kills, readers that go early."""
+
+from __future__ import annotations
+
+import os
+import resource
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from command.command_line import FILES, contents, lamella
+from lamella.command.main import main
+
+
+@pytest.fixture
+def earlier(here: Path) -> dict[str, bytes]:
+    """An earlier run's folder out/p."""
+    assert main(["run", "p.toml", "--until", "network", "--quiet"]) == 0
+    return contents(here / "out")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX limits")
+@pytest.mark.parametrize("most", [0, 1_000, 60_000, 200_000])
+def test_a_full_disk_leaves_the_earlier_run_whole(here: Path, earlier: dict[str, bytes], most: int) -> None:
+    process = lamella("run", "p.toml", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 2, err
+    told = err[err.index("lamella: ") :]
+    assert "File too large; what was there before is unchanged\n  remedy: free some space" in told
+    assert "Traceback" not in err
+    assert out == ""
+    assert contents(here / "out") == earlier
+    assert [p.name for p in (here / "out").iterdir()] == ["p"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX limits")
+def test_a_full_disk_leaves_nothing_where_nothing_was(here: Path) -> None:
+    process = lamella("run", "p.toml", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (9_000, 9_000)))
+    process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert sorted(p.name for p in here.iterdir()) == ["p.toml"]
+
+
+def kill_half_way(here: Path, number: signal.Signals) -> tuple[int, str]:
+    """Kill a run once it has begun to write; it stops there, so that the moment is always the same."""
+    code = (
+        "import signal, sys, time, lamella.stages.output as output\n"
+        # a suite in the background of a shell has it ignored, and its processes inherit that
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "write = output.write_network\n"
+        "def stop(*a, **k):\n"
+        "    print('half-way', file=sys.stderr, flush=True)\n"
+        "    time.sleep(60)\n"
+        "output.write_network = stop\n"
+        "from lamella.command.main import main\n"
+        "sys.exit(main(['run', 'p.toml', '--quiet']))"
+    )
+    process = subprocess.Popen([sys.executable, "-c", code], cwd=here, stderr=subprocess.PIPE, text=True)
+    assert process.stderr
+    assert process.stderr.readline() == "half-way\n"
+    assert len(list((here / "out").iterdir())) == 2  # the earlier run and the one in the making
+    process.send_signal(number)
+    _, err = process.communicate(timeout=30)
+    return process.returncode, err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGINT", 130)])
+def test_a_polite_kill_cleans_up(here: Path, earlier: dict[str, bytes], name: str, code: int) -> None:
+    returned, err = kill_half_way(here, signal.Signals[name])
+    assert returned == code
+    assert "Traceback" not in err
+    if name == "SIGINT":
+        assert err == "lamella: interrupted, nothing written\n"
+    assert contents(here / "out") == earlier
+    assert [p.name for p in (here / "out").iterdir()] == ["p"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+def test_what_a_hard_kill_leaves_is_cleaned_by_the_next_run(here: Path, earlier: dict[str, bytes]) -> None:
+    assert kill_half_way(here, signal.SIGKILL)[0] == -signal.SIGKILL
+    assert contents(here / "out" / "p") == {name.removeprefix("p/"): data for name, data in earlier.items()}
+    assert len(list((here / "out").iterdir())) == 2
+    assert main(["run", "p.toml", "--until", "surface", "--quiet"]) == 0
+    assert [p.name for p in (here / "out").iterdir()] == ["p"]
+    assert set(contents(here / "out" / "p")) == FILES["surface"]
+
+
+def test_no_memory_is_told(here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def exhausted(*arguments: object, **more: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("lamella.stages.output.write_network", exhausted)
+    assert main(["run", "p.toml", "--quiet"]) == 2
+    told = capsys.readouterr().err
+    assert told == "lamella: not enough memory; what was there before is unchanged\n  remedy: choose fewer cells\n"
+    assert sorted(p.name for p in here.iterdir()) == ["p.toml"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX pipes")
+@pytest.mark.parametrize("arguments", [["schema", "project"], ["examples"], ["new", "unduloid", "--out", "-"]])
+def test_a_reader_that_goes_early(arguments: list[str]) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "lamella", *arguments], stdout=write, stderr=subprocess.PIPE, text=True
+    )
+    os.close(write)
+    _, err = process.communicate(timeout=30)
+    assert process.returncode == 1
+    assert err == ""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX pipes")
+def test_a_reader_of_the_progress_that_goes_early(here: Path, earlier: dict[str, bytes]) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    process = subprocess.Popen([sys.executable, "-m", "lamella", "run", "p.toml"], stdout=write, stderr=write)
+    os.close(write)
+    assert process.wait(30) == 1
+    assert contents(here / "out") == earlier
+    assert [p.name for p in (here / "out").iterdir()] == ["p"]
