@@ -14,6 +14,8 @@ from lamella.surface.darboux import Darboux
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+A, B = range(2)
+FAMILIES = ("A", "B")
 NODE_KINDS = ("regular", "boundary", "singular", "seam")
 REGULAR, BOUNDARY, SINGULAR, SEAM = range(4)
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.base.vectors import dots
+from lamella.surface.darboux import Darboux
 from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
@@ -67,6 +68,24 @@ def derivative(values: Floats, arclengths: Floats, offsets: Integers, closed: ND
     first, second = (v_b - v_a) / (b - a)[:, None], (v_c - v_b) / (c - b)[:, None]
     # Newton's form of the parabola through (a, v_a), (b, v_b), (c, v_c), derived
     return np.asarray(first + (second - first) * ((2 * arclengths - a - b) / (c - a))[:, None])
+
+
+def sideways_slopes(
+    darboux: Darboux, mean_curvature: Floats | float, arclengths: Floats, offsets: Integers, closed: NDArray[np.bool_]
+) -> Floats:
+    """d kn / d u towards u = n x t, 1/m^2, (k,): tg' + 2 kg (kn - H), see `lamella.surface.darboux.sideways_slope`.
+
+    Parameters
+    ----------
+    darboux : Darboux
+        Of the curves at their samples.
+    mean_curvature : (k,) or float
+        H, 1/m.
+    arclengths, offsets, closed
+        See `derivative`.
+    """
+    torsion = derivative(darboux.tg[:, None], arclengths, offsets, closed)[:, 0]
+    return np.asarray(torsion + 2 * darboux.kg * (darboux.kn - mean_curvature))
 
 
 class _Three(NamedTuple):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lamella.base.blocks import blocks
 from lamella.base.vectors import lengths
-from lamella.network.arcs import ArcLengths
+from lamella.network.arc_length import ArcLengths
 from lamella.network.elements.segments import ElementSegments
 from lamella.surface.element.places import Places
 from lamella.surface.points import Floats

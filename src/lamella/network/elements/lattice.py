@@ -11,12 +11,12 @@ from lamella.base.wording import rounded
 from lamella.network.elements.cell_count import CellCount
 from lamella.network.elements.choose_step import LEAST_CELLS, Better, better_density, near_step
 from lamella.network.elements.closing_steps import CLOSES, ClosingLengths
+from lamella.network.elements.edge_sizes import EdgeSizes
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.elements.lattice_origin import lattice_origin
 from lamella.network.isothermic.holonomy import Holonomy
 from lamella.network.isothermic.isothermic import Integers, Isothermic
 from lamella.network.lattice.density import BYTES_FIXED, BYTES_PER_NODE, MOST_NODES
-from lamella.network.median_edge import EdgeSizes
 from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 
 # share of a spacing; moved by more for a net that closes, the new one is reported

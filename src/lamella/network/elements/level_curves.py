@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.elements.level_lines import CLOSED, SINGULAR_END, Chains, SmallTriangles
+from lamella.network.network import A, B
 from lamella.surface.element.places import Places
 from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
 
-A, B = 0, 1
 # Newton steps to a place on an element's edge, and of the edge: the step after one as small as this is rounding
 EDGE_STEPS, EDGE_FINE = 8, 1e-7
 

@@ -17,13 +17,13 @@ from scipy.sparse.csgraph import connected_components, depth_first_order
 from lamella.base.errors import InputError
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.isothermic.isothermic import sectors
+from lamella.network.network import A, B
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.lagrange import local_faces
 from lamella.surface.points import Complexes, Floats
 
 Integers = NDArray[np.int64]
 
-A, B = 0, 1
 # small triangles reach over at most this many cells; parts of an element's edge at least and at most
 REACH, FEWEST, MOST = 0.4, 3, 24
 # cells; values as near as this to a whole number are moved off it

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from lamella.base.vectors import crosses, dots, lengths
+from lamella.network.elements.crossings import Crossings
 from lamella.network.elements.integer_grid_map import CellMap
-from lamella.network.elements.level_curves import A, B, Tracks
+from lamella.network.elements.level_curves import Tracks
 from lamella.network.elements.level_lines import RIM, SINGULAR_END
-from lamella.network.lattice.crossings import Crossings
+from lamella.network.network import A, B
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import ElementRim
 from lamella.surface.points import Floats

@@ -17,7 +17,8 @@ from scipy.special import beta, betainc, betaincinv
 from lamella.base.blocks import blocks
 from lamella.base.vectors import lengths
 from lamella.network.elements.integer_grid_map import CellMap
-from lamella.network.elements.level_curves import A, Tracks, passages
+from lamella.network.elements.level_curves import Tracks, passages
+from lamella.network.network import A
 from lamella.surface.element.places import Places
 from lamella.surface.points import Floats
 
@@ -74,8 +75,11 @@ class ElementSegments:
 
     Attributes
     ----------
+    cells : CellMap
     owner : (s,) int
         Chain of each.
+    reach : (s,)
+        Length of each, cells.
     """
 
     def __init__(
@@ -88,8 +92,8 @@ class ElementSegments:
         zeros: Integers,
         orders: Integers,
     ) -> None:
-        self._cells, self._tracks = cells, tracks
-        self.owner, self._tau, self._reach, self._zeros = chain, tau, reach, zeros
+        self.cells, self._tracks = cells, tracks
+        self.owner, self._tau, self.reach, self._zeros = chain, tau, reach, zeros
         self._is_a = tracks.family[chain] == A
         self._power = np.where(zeros >= 0, 1 + np.r_[orders, 0][zeros] / 2, 1.0)
         # whether each end is an umbilic
@@ -105,7 +109,7 @@ class ElementSegments:
         share = np.clip(sigma, 0, 1)
         bent = np.flatnonzero(self._bent[segment])
         share[bent] = betainc(*self._power[segment[bent]].T, share[bent])
-        tau = self._tau[segment] + share * self._reach[segment]
+        tau = self._tau[segment] + share * self.reach[segment]
         link = np.searchsorted(self._keys, chain * self._stride + np.clip(tau, 0, self._stride - 1), side="right") - 1
         link = np.clip(link, t.first[chain], t.last[chain])
         return Spots(segment, sigma, link, tau - t.tau[link])
@@ -130,7 +134,7 @@ class ElementSegments:
         share = np.clip(ahead / np.maximum(t.span[link], 1e-300), 0, 1)
         begin = t.local_start.take(link, 0)
         local[alone] = begin + share[:, None] * (t.local_end.take(link, 0) - begin)
-        places, turn, _ = self._cells.invert(Places(element, local), target)
+        places, turn, _ = self.cells.invert(Places(element, local), target)
         return places, turn * way
 
     def velocity(self, spots: Spots, near: Places | None = None) -> tuple[Places, Floats, Floats]:
@@ -155,11 +159,11 @@ class ElementSegments:
         beside[some] = np.clip(sigma[some], BESIDE * first_is, 1 - BESIDE * last_is)
         moved = np.flatnonzero(beside != sigma)
         places, way = self._find(self.spots(segment, beside) if len(moved) else spots, near)
-        (_, chi_x, chi_y), (position, first, second) = self._cells.jet_and_tangents(places)
+        (_, chi_x, chi_y), (position, first, second) = self.cells.jet_and_tangents(places)
         # along the level line, where the other part of chi does not change
         is_a = self._is_a[segment]
         held_x, held_y = (np.where(is_a, slope.imag, -slope.real) for slope in (chi_x, chi_y))
-        rate = way * self._reach[segment] / (chi_x.real * chi_y.imag - chi_x.imag * chi_y.real)
+        rate = way * self.reach[segment] / (chi_x.real * chi_y.imag - chi_x.imag * chi_y.real)
         bent = np.flatnonzero(self._bent[segment])
         p, q = self._power[segment[bent]].T
         rate[bent] *= beside[bent] ** (p - 1) * (1 - beside[bent]) ** (q - 1) / beta(p, q)
@@ -168,15 +172,15 @@ class ElementSegments:
             places = Places(places.element.copy(), places.local.copy())
             exact, _ = self._find(spots[moved])
             places.element[moved], places.local[moved] = exact.element, exact.local
-            position[moved] = self._cells.tangents(exact)[0]
+            position[moved] = self.cells.tangents(exact)[0]
         return places, position, velocity
 
     def passages(self) -> tuple[Integers, Floats]:
         """Segments and parameters where they go over from one element to the next, each (k,)."""
-        chain, tau = passages(self._cells, self._tracks)
+        chain, tau = passages(self.cells, self._tracks)
         starts = self.owner * self._stride + self._tau
         segment = np.searchsorted(starts, chain * self._stride + tau, side="right") - 1
-        share = (tau - self._tau[segment]) / self._reach[segment]
+        share = (tau - self._tau[segment]) / self.reach[segment]
         inside = (segment >= 0) & (self.owner[segment] == chain) & (share > 0) & (share < 1)
         segment, sigma = segment[inside], share[inside]
         bent = np.flatnonzero(self._bent[segment])
@@ -224,4 +228,4 @@ class ElementSegments:
         away = np.r_[np.zeros(len(out)), out]
         node, beside = np.split(self._velocity(self.spots(np.tile(segment, 2), np.abs(side - away)))[1], 2)
         speed = lengths(beside - node) / out
-        return np.asarray(np.minimum(out, self._cells.mesh.radii[self._zeros[segment, side]] / (LEADING[-1] * speed)))
+        return np.asarray(np.minimum(out, self.cells.mesh.radii[self._zeros[segment, side]] / (LEADING[-1] * speed)))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +14,11 @@ from lamella.base.blocks import blocks
 from lamella.base.errors import InputError
 from lamella.base.sparse import counted
 from lamella.base.vectors import crosses, dots, images, lengths
+from lamella.network.assemble import Curves, CurveSamples, RimNodes, SampledCurves, assemble
 from lamella.network.elements.arc_lengths import ElementArcs
+from lamella.network.elements.crossings import Crossings, find_crossings
 from lamella.network.elements.integer_grid_map import CellMap
-from lamella.network.elements.level_curves import A, B, Tracks, make_tracks, rim_tips, singular_ends
+from lamella.network.elements.level_curves import Tracks, make_tracks, rim_tips, singular_ends
 from lamella.network.elements.level_lines import (
     CLOSED,
     RIM,
@@ -23,16 +27,12 @@ from lamella.network.elements.level_lines import (
     level_chains,
     small_triangles,
 )
+from lamella.network.elements.numbering import numbered, rim_places
 from lamella.network.elements.rim_ends import Ends, along_rim, settled_ends, within_tips
 from lamella.network.elements.segments import ElementSegments
-from lamella.network.elements.sharp_turns import more_samples
-from lamella.network.faces import trace_faces
-from lamella.network.lattice.crossings import Crossings, find_crossings
-from lamella.network.lattice.lattice import ragged_ranges
-from lamella.network.lattice.trace import COARSE, FINE, FINE_LIMIT
-from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network, Period
-from lamella.network.numbering import numbered, rim_places
-from lamella.network.turning import derivative, turning
+from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, A, B, Network, Period
+from lamella.network.sampling import Division, divide, parts_of
+from lamella.network.turning import sideways_slopes, turning
 from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
 from lamella.surface.element.polynomials import Polynomials
@@ -41,9 +41,6 @@ from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
 Onto = Callable[[Integers, Floats], Floats]
-
-# samples a segment, however short: next to the rim curvatures are read from the last of them
-FEWEST = 3
 
 
 @dataclass(frozen=True)
@@ -137,127 +134,123 @@ def trace_elements(
     short = length < minimum_length * median
     tracks, on_rim = _kept(cells, rims, found, ~short)
     short &= ~on_rim
-    chains = len(tracks.family)
     singular = singular_ends(cells, tracks)
     crossings, rim_ends = _settled(cells, tracks)
     stops = _stops(tracks, crossings, singular, rim_ends)
     if not (stops.kinds == REGULAR).any():
-        if short.any():
-            raise InputError(
-                f"no two lamellas cross: {short.sum()} of {len(short)} are shorter than minimum_length = "
-                f"{minimum_length:g} median cell edges of {median:.3g} m, the longest has {length.max() / median:.2g}",
-                "write minimum_length = 0, with which none is left out, or raise network.cells",
-                "network.minimum_length",
-            )
-        longest = float(np.bincount(found.owner, found.span, len(short)).max(initial=0.0))
-        raise InputError(
-            f"no two lamellas cross: with {count} cells the longest one runs over {longest:.2g} cells",
-            f"raise network.cells to about {np.ceil(2 * count / max(longest, 1e-3)):.0f}, or lower network.spacing",
-            "network.cells",
+        raise _none_cross(found, count, length / median, short, minimum_length, median)
+    curves, nodes, used = _curves(tracks, stops)
+    segments = _segments(cells, tracks, stops, singular, orders)
+    sampled, samples = _sampled(segments, curves, onto, mean_curvature)
+    loops, directions = _rims(cells, rims, tracks, stops, rim_ends, nodes)
+    return assemble(
+        sampled,
+        samples,
+        RimNodes(loops, directions, curves.kinds == SEAM),
+        pattern=cells.pattern,
+        mean_curvature=mean_curvature,
+        step=cells.step,
+        cells=count,
+        periods=periods,
+        left_out=int(short.sum()) + len(tracks.family) - len(used),
+    )
+
+
+def _none_cross(
+    found: Tracks, count: int, edges: Floats, short: NDArray[np.bool_], minimum_length: float, median: float
+) -> InputError:
+    """Why no two of the chains cross that are `edges` median cell edges (c,) long, and with what they do."""
+    if short.any():
+        return InputError(
+            f"no two lamellas cross: {short.sum()} of {len(short)} are shorter than minimum_length = "
+            f"{minimum_length:g} median cell edges of {median:.3g} m, the longest has {edges.max():.2g}",
+            "write minimum_length = 0, with which none is left out, or raise network.cells",
+            "network.minimum_length",
         )
+    longest = float(np.bincount(found.owner, found.span, len(short)).max(initial=0.0))
+    return InputError(
+        f"no two lamellas cross: with {count} cells the longest one runs over {longest:.2g} cells",
+        f"raise network.cells to about {np.ceil(2 * count / max(longest, 1e-3)):.0f}, or lower network.spacing",
+        "network.cells",
+    )
+
+
+def _curves(tracks: Tracks, stops: _Stops) -> tuple[Curves, Integers, Integers]:
+    """The chains that have two stops, as curves of the net; the nodes (of the stops) and the chains that they keep."""
+    chains = len(tracks.family)
+    used = np.unique(stops.chain[1:][stops.chain[1:] == stops.chain[:-1]])
+    curve_of = np.full(chains, -1)
+    curve_of[used] = np.arange(len(used))
+    kept = curve_of[stops.chain] >= 0
+    nodes, number = np.unique(stops.node[kept], return_inverse=True)
+    closed = tracks.ends[used, 0] == CLOSED
+    curves = Curves(tracks.family[used], closed, curve_of[stops.chain[kept]], number.ravel(), stops.kinds[nodes])
+    return curves, nodes, used
+
+
+def _segments(cells: CellMap, tracks: Tracks, stops: _Stops, singular: Integers, orders: Integers) -> ElementSegments:
+    """The pieces of the chains between neighbouring stops."""
     pair = np.flatnonzero(stops.chain[1:] == stops.chain[:-1])
     chain, reach = stops.chain[pair], stops.tau[pair + 1] - stops.tau[pair]
     begins = np.r_[True, stops.chain[1:] != stops.chain[:-1]][pair]
     ends = np.r_[stops.chain[1:] != stops.chain[:-1], True][pair + 1]
     zeros = np.where(np.stack([begins, ends], 1), singular[chain], -1)
-    segments = ElementSegments(cells, tracks, chain, stops.tau[pair], reach, zeros, orders)
+    return ElementSegments(cells, tracks, chain, stops.tau[pair], reach, zeros, orders)
+
+
+class _Spots(NamedTuple):
+    """Tangents in order along the curves (k, 3), and all else element by element: that is in `order` (k,) of those."""
+
+    tangents: Floats
+    order: Integers
+    places: Places
+    points: Floats
+    directions: Floats
+
+
+def _sampled(
+    segments: ElementSegments, curves: Curves, onto: Onto, mean_curvature: float
+) -> tuple[SampledCurves, CurveSamples]:
+    """Samples along the segments, exactly on the surface, and the curvatures of the lamellas there."""
     arcs = ElementArcs(segments)
-
-    per_cell = FINE if len(stops.kinds) <= FINE_LIMIT else COARSE
-    whole = np.minimum(np.bincount(chain, reach, chains), 1.0)[chain]
-    number = np.maximum(np.ceil(reach / whole * per_cell - 1e-6), FEWEST).astype(np.int64)
-    last = np.r_[chain[1:] != chain[:-1], True]
-    first_number = number
-    while True:
-        given = number + last
-        segment = np.repeat(np.arange(len(number)), given)
-        fraction = ragged_ranges(given) / number[segment]
-        parameter, near = arcs.parameter(segment, fraction)
-        # element by element
-        order = counted(near.element + 1, len(cells.value) + 1).astype(np.int64)
-        back = np.empty(len(order), np.int64)
-        back[order] = np.arange(len(order))
-        spots = segments.spots(segment, parameter)[order]
-        places, points, velocity = segments.velocity(spots, near[order])
-        tangents = velocity / lengths(velocity)[:, None]
-        before, number = number, more_samples(first_number, number, given, tangents.take(back, 0))
-        if (number == before).all():
-            break
-    points = onto(places.element, points)
-    normals, tangents, bend, twist = _frames(cells, places, tangents)
-    places, bend, twist = places[back], bend[back], twist[back]
+    owner = segments.owner
+    # a lamella shorter than a cell is sampled as finely as a whole cell
+    whole = np.minimum(np.bincount(owner, segments.reach), 1.0)[owner]
+    parts = parts_of(segments.reach / whole, len(curves.kinds))
+    division, spots = divide(parts, owner, partial(_spots, segments, arcs))
+    sampled = SampledCurves(curves, division)
+    points = onto(spots.places.element, spots.points)
+    normals, tangents, bend, twist = _frames(segments.cells, spots.places, spots.directions)
+    back = _inverse(spots.order)
+    places, bend, twist = spots.places[back], bend[back], twist[back]
     points, normals, tangents = (t.take(back, 0) for t in (points, normals, tangents))
-
-    used = np.flatnonzero(np.bincount(chain, minlength=chains) > 0)
-    lamella_of = np.full(chains, -1)
-    lamella_of[used] = np.arange(len(used))
-    owner = lamella_of[chain]
-    offsets = np.r_[0, np.cumsum(np.bincount(owner, given, minlength=len(used)).astype(np.int64))]
     begun = np.cumsum(arcs.length) - arcs.length
     begun -= begun[np.searchsorted(owner, owner)]
-    arclengths = begun[segment] + fraction * arcs.length[segment]
-    kept = lamella_of[stops.chain] >= 0
-    stop_chain, stop_node = lamella_of[stops.chain[kept]], stops.node[kept]
-    segment_start = np.cumsum(given) - given
-    first_stop = (np.cumsum(kept) - 1)[pair]
-    stop_sample = np.empty(len(stop_node), np.int64)
-    stop_sample[first_stop] = segment_start
-    stop_sample[first_stop[last] + 1] = (segment_start + number)[last]
-    family = tracks.family[used]
-    closed = tracks.ends[used, 0] == CLOSED
+    arclengths = begun[division.piece] + division.fraction * arcs.length[division.piece]
+    offsets, closed = sampled.offsets, curves.closed
     darboux = Darboux(bend, turning(tangents, crosses(normals, tangents), arclengths, offsets, closed), twist)
+    # kn is H on a lamella but for errors; along principal lines tg is 0 but for them
+    slopes = sideways_slopes(darboux, mean_curvature, arclengths, offsets, closed)
+    where = np.column_stack([places.element, places.local])
+    mean = np.full(len(bend), mean_curvature)
+    return sampled, CurveSamples(points, normals, tangents, darboux, mean, slopes, where, arclengths)
 
-    nodes, at = np.unique(stop_node, return_inverse=True)
-    at = at.ravel()
-    node_sample = np.empty(len(nodes), np.int64)
-    node_sample[at[::-1]] = stop_sample[::-1]
-    kinds = stops.kinds[nodes]
-    loops, rim_directions = _rims(cells, rims, tracks, stops, rim_ends, nodes)
-    starts, ends = stop_sample[first_stop], stop_sample[first_stop + 1]
-    tails, heads = at[first_stop], at[first_stop + 1]
-    faces = trace_faces(
-        normals[node_sample],
-        np.r_[tails, heads],
-        np.r_[heads, tails],
-        np.vstack([tangents[starts], -tangents[ends]]),
-        loops,
-        rim_directions,
-        seam=kinds == SEAM,
-    )
-    rank = np.where(family == A, np.cumsum(family == A), np.cumsum(family != A))
-    ids = tuple(f"{'AB'[f]}{r}" for f, r in zip(family.tolist(), rank.tolist(), strict=True))
-    return Network(
-        mean_curvature=mean_curvature,
-        step=cells.step,
-        cells=count,
-        periods=periods,
-        left_out=int(short.sum() + chains - len(used)),
-        node_points=points[node_sample],
-        node_normals=normals[node_sample],
-        node_kinds=kinds,
-        ids=ids,
-        families=np.where(family == A, "A", "B"),
-        closed=closed,
-        sample_offsets=offsets,
-        sample_points=points,
-        sample_normals=normals,
-        sample_tangents=tangents,
-        sample_darboux=darboux,
-        sample_mean_curvature=np.full(len(bend), mean_curvature),
-        # kn is H on a lamella but for errors; along principal lines tg is 0 but for them
-        sample_slopes=derivative(twist[:, None], arclengths, offsets, closed)[:, 0]
-        + 2 * darboux.kg * (bend - mean_curvature),
-        sample_where=np.column_stack([places.element, places.local]),
-        sample_arclengths=arclengths,
-        stop_offsets=np.r_[0, np.cumsum(np.bincount(stop_chain, minlength=len(used)))],
-        stop_nodes=at,
-        stop_samples=stop_sample - offsets[stop_chain],
-        stop_arclengths=arclengths[stop_sample],
-        face_offsets=faces.offsets,
-        face_nodes=faces.nodes,
-        faces_left_out=faces.large,
-        pattern=cells.pattern,
-    )
+
+def _spots(segments: ElementSegments, arcs: ElementArcs, division: Division) -> _Spots:
+    """Places that divide the segments evenly."""
+    parameter, near = arcs.parameter(division.piece, division.fraction)
+    # element by element
+    order = counted(near.element + 1, len(segments.cells.value) + 1).astype(np.int64)
+    spots = segments.spots(division.piece, parameter)[order]
+    places, points, velocity = segments.velocity(spots, near[order])
+    directions = velocity / lengths(velocity)[:, None]
+    return _Spots(directions.take(_inverse(order), 0), order, places, points, directions)
+
+
+def _inverse(order: Integers) -> Integers:
+    inverse = np.empty(len(order), np.int64)
+    inverse[order] = np.arange(len(order))
+    return inverse
 
 
 def _frames(cells: CellMap, places: Places, directions: Floats) -> tuple[Floats, Floats, Floats, Floats]:

@@ -8,10 +8,11 @@ import numpy as np
 
 from lamella.base.errors import InputError
 from lamella.base.wording import rounded
-from lamella.network.arcs import ArcLengths, Segments, Stretched
+from lamella.network.arc_length import ArcLengths, Stretched
 from lamella.network.lattice.domain import Lines
 from lamella.network.lattice.domain_of import domain_of
 from lamella.network.lattice.lattice import build_lattice
+from lamella.network.lattice.segments import Segments
 from lamella.network.lattice.skew_band import check_normal_curvature
 from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 from lamella.surface.closed_forms.closed_form import ClosedForm

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.network.network import Period
+from lamella.network.network import A, B, Period
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.outline import Disc, Rectangle, Ring
@@ -28,7 +28,6 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
-A, B = 0, 1
 # places along a loop start a little before 0, so that rounding does not send its first node to the end
 FIRST = 1e-9
 # cells; a lattice point this close to the rim counts as on it (docs/files.md)

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.network.lattice.domain import RIM_TOLERANCE, A, Domain, Lines, Rim
-from lamella.network.network import BOUNDARY, REGULAR, SINGULAR
+from lamella.base.ragged import ragged_ranges
+from lamella.network.lattice.domain import RIM_TOLERANCE, Domain, Lines, Rim
+from lamella.network.network import BOUNDARY, REGULAR, SINGULAR, A
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -49,12 +50,6 @@ class Lattice:
     def owner(self) -> Integers:
         """Line of each stop, (q,)."""
         return np.repeat(np.arange(len(self.offsets) - 1), np.diff(self.offsets))
-
-
-def ragged_ranges(counts: Integers) -> Integers:
-    """0..counts[0]-1, 0..counts[1]-1, ... one after the other."""
-    ends = np.cumsum(counts)
-    return np.arange(ends[-1] if len(ends) else 0) - np.repeat(ends - counts, counts)
 
 
 def build_lattice(domain: Domain, lines: Lines) -> Lattice:

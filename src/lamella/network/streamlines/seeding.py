@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from lamella.base.errors import InputError
+from lamella.base.ragged import ragged_ranges
 from lamella.base.ties import MARGIN, nearest_whole
-from lamella.network.lattice.lattice import ragged_ranges
 from lamella.network.streamlines.charts import Ground, Look
 from lamella.network.streamlines.direction_field import LineField
 from lamella.network.streamlines.probing import LONGEST, wound

@@ -10,7 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from lamella.network.faces import Faces, trace_faces
+from lamella.network.assemble import RimNodes
 from lamella.network.network import BOUNDARY, REGULAR
 from lamella.network.streamlines.charts import Ground
 from lamella.network.streamlines.intersections import Crossings
@@ -105,32 +105,12 @@ def stop_nodes(ground: Ground, flow: Flow, stops: Stops, same: float) -> tuple[I
     return node, kinds, inner
 
 
-def faces_of(
-    ground: Ground,
-    where: Places,
-    normals: Floats,
-    tangents: Floats,
-    node: Integers,
-    stop_sample: Integers,
-    first: Integers,
-    kinds: Integers,
-    inner: Booleans,
-) -> Faces:
-    """Faces; none across the ends inside the surface."""
+def rim_nodes(ground: Ground, where: Places, kinds: Integers, inner: Booleans) -> RimNodes:
+    """How the boundary runs through nodes at places (n,); no face across the ends inside the surface."""
     rim = np.flatnonzero((kinds == BOUNDARY) & ~inner)
     places = ground.rim_places(where[rim])
     order = np.lexsort((places.along, places.loop))
     loops = np.split(rim[order], np.flatnonzero(np.diff(places.loop[order])) + 1)
     directions = np.zeros((len(kinds), 3))
     directions[rim] = places.tangent
-    starts, ends = stop_sample[first], stop_sample[first + 1]
-    tails, heads = node[first], node[first + 1]
-    return trace_faces(
-        normals,
-        np.r_[tails, heads],
-        np.r_[heads, tails],
-        np.vstack([tangents[starts], -tangents[ends]]),
-        loops,
-        directions,
-        seam=inner,
-    )
+    return RimNodes(loops, directions, inner)

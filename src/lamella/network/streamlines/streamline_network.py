@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,21 +17,20 @@ from numpy.typing import NDArray
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import rounded
-from lamella.network.elements.sharp_turns import more_samples
-from lamella.network.lattice.lattice import ragged_ranges
-from lamella.network.lattice.trace import COARSE, FINE, FINE_LIMIT
-from lamella.network.network import Network
+from lamella.network.assemble import Curves, CurveSamples, SampledCurves, assemble
+from lamella.network.network import A, B, Network
 from lamella.network.pattern import Pattern
-from lamella.network.streamlines.charts import Ground
+from lamella.network.sampling import Division, divide, parts_of
+from lamella.network.streamlines.charts import Ground, Look
 from lamella.network.streamlines.direction_field import LEAST_ANGLE
 from lamella.network.streamlines.intersections import Crossings, find_crossings
 from lamella.network.streamlines.seeding import Seeded, seeded_lines
 from lamella.network.streamlines.stops import (
     SAME_NODE,
-    faces_of,
     line_stops,
     median_edge,
     merged_stops,
+    rim_nodes,
     stop_nodes,
     whole_edge,
     without_short,
@@ -39,9 +38,10 @@ from lamella.network.streamlines.stops import (
 from lamella.network.streamlines.streamline_plan import Reach, lay_lines
 from lamella.network.streamlines.streamlines import Flow
 from lamella.network.streamlines.winding import refuse_winding
-from lamella.network.turning import derivative, turning
+from lamella.network.turning import sideways_slopes, turning
 from lamella.network.written_lines import WrittenLines, angle_figures
 from lamella.surface.darboux import Darboux
+from lamella.surface.element.places import Places
 from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]
@@ -49,8 +49,6 @@ Booleans = NDArray[np.bool_]
 
 # how far the median cell edge may be from the spacing asked for, and how often seeds are spaced anew for it
 OFF_SPACING, MOST_TRIES = 0.1, 3
-# samples of a piece of lamella, however short
-FEWEST = 3
 # share of the area worth telling
 LEAST_SHARE = 1e-3
 # of the curvature scale: the normal curvature of lamellas is promised to be off by no more (docs/getting-started.md)
@@ -260,75 +258,61 @@ def _network(
     stops = merged_stops(flow, line_stops(flow, crossings), SAME_NODE * spacing)
     node, kinds, inner = stop_nodes(ground, flow, stops, SAME_NODE * spacing)
 
-    owner = stops.line
-    first = np.flatnonzero(owner[1:] == owner[:-1])
-    length = stops.s[first + 1] - stops.s[first]
-    per_cell = FINE if len(kinds) <= FINE_LIMIT else COARSE
-    # a lamella shorter than a cell is sampled as finely as a whole cell
-    total = np.bincount(owner[first], length, flow.count)[owner[first]]
-    count = np.maximum(np.ceil(length / np.minimum(total, spacing) * per_cell - 1e-6), FEWEST).astype(np.int64)
-    last = np.r_[owner[first][1:] != owner[first][:-1], True]
-    first_count = count
-    while True:
-        given = count + last
-        segment = np.repeat(np.arange(len(count)), given)
-        s = stops.s[first[segment]] + ragged_ranges(given) / count[segment] * length[segment]
-        where, look, tangents = flow.at(owner[first[segment]], s)
-        before, count = count, more_samples(first_count, count, given, tangents)
-        if (count == before).all():
-            break
-    begin = np.cumsum(given) - given
-    stop_sample = np.empty(len(owner), np.int64)
-    stop_sample[first] = begin
-    stop_sample[first[last] + 1] = (begin + count)[last]
-    offsets = np.r_[0, np.cumsum(np.bincount(owner[first], given, minlength=flow.count).astype(np.int64))]
+    curves = Curves(np.where(flow.is_a, A, B), np.zeros(flow.count, bool), stops.line, node, kinds)
+    sampled, found = _sampled(flow, stops.s, curves, spacing)
+    look, tangents, where = found.look, found.tangents, found.where
+    s, offsets, closed = found.arclengths, sampled.offsets, curves.closed
 
     heading = (tangents * look.e_u).sum(1) + 1j * (tangents * look.e_v).sum(1)
     turned = look.deviator * heading**2
     sideways = np.cross(look.normal, tangents)
-    closed = np.zeros(flow.count, bool)
     darboux = Darboux(look.mean + turned.real, turning(tangents, sideways, s, offsets, closed), -turned.imag)
     mean, deviator = ground.measured(where)
     missed = np.abs(mean - look.mean + ((deviator - look.deviator) * heading**2).real) + ground.uncertain(where)
-    node_sample = np.empty(len(kinds), np.int64)
-    node_sample[node[::-1]] = stop_sample[::-1]
-    faces = faces_of(
-        ground, where[node_sample], look.normal[node_sample], tangents, node, stop_sample, first, kinds, inner
-    )
-    families = np.where(flow.is_a, "A", "B")
-    rank = np.where(flow.is_a, np.cumsum(flow.is_a), np.cumsum(~flow.is_a))
-    return (
-        Network(
-            mean_curvature=mean_curvature,
-            step=distance,
-            cells=seeded.count,
-            periods=(),
-            left_out=seeded.flow.count - flow.count,
-            node_points=look.position[node_sample],
-            node_normals=look.normal[node_sample],
-            node_kinds=kinds,
-            ids=tuple(f"{f}{r}" for f, r in zip(families.tolist(), rank.tolist(), strict=True)),
-            families=families,
-            closed=closed,
-            sample_offsets=offsets,
-            sample_points=look.position,
-            sample_normals=look.normal,
-            sample_tangents=tangents,
-            sample_darboux=darboux,
-            sample_mean_curvature=look.mean,
-            sample_slopes=derivative(darboux.tg[:, None], s, offsets, closed)[:, 0]
-            + 2 * darboux.kg * (darboux.kn - look.mean),
-            sample_where=np.column_stack([where.element, where.local]),
-            sample_arclengths=s,
-            stop_offsets=np.r_[0, np.cumsum(np.bincount(owner, minlength=flow.count))],
-            stop_nodes=node,
-            stop_samples=stop_sample - offsets[owner],
-            stop_arclengths=stops.s,
-            face_offsets=faces.offsets,
-            face_nodes=faces.nodes,
-            faces_left_out=faces.large,
-            pattern=pattern,
+    network = assemble(
+        sampled,
+        CurveSamples(
+            look.position,
+            look.normal,
+            tangents,
+            darboux,
+            look.mean,
+            sideways_slopes(darboux, look.mean, s, offsets, closed),
+            np.column_stack([where.element, where.local]),
+            s,
         ),
-        int(inner.sum()),
-        np.asarray(missed, np.float64),
+        rim_nodes(ground, where[sampled.node_samples], kinds, inner),
+        pattern=pattern,
+        mean_curvature=mean_curvature,
+        step=distance,
+        cells=seeded.count,
+        periods=(),
+        left_out=seeded.flow.count - flow.count,
     )
+    return network, int(inner.sum()), np.asarray(missed, np.float64)
+
+
+class _Samples(NamedTuple):
+    """Samples in order along the lines."""
+
+    tangents: Floats
+    where: Places
+    look: Look
+    arclengths: Floats
+
+
+def _sampled(flow: Flow, stops: Floats, curves: Curves, spacing: float) -> tuple[SampledCurves, _Samples]:
+    """Samples along the lines between stops (q,), m, of a net with a spacing (m)."""
+    first = curves.first_stops
+    owner = curves.owner[first]
+    length = stops[first + 1] - stops[first]
+    # a lamella shorter than a cell is sampled as finely as a whole cell
+    whole = np.minimum(np.bincount(owner, length, flow.count)[owner], spacing)
+
+    def sample(division: Division) -> _Samples:
+        line, s = owner[division.piece], stops[first[division.piece]] + division.fraction * length[division.piece]
+        where, look, tangents = flow.at(line, s)
+        return _Samples(tangents, where, look, s)
+
+    division, samples = divide(parts_of(length / whole, len(curves.kinds)), owner, sample)
+    return SampledCurves(curves, division), samples

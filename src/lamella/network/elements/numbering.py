@@ -10,10 +10,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.network.elements.crossings import Crossings
 from lamella.network.elements.integer_grid_map import CellMap
-from lamella.network.elements.level_curves import A, B, Tracks, rim_tips
+from lamella.network.elements.level_curves import Tracks, rim_tips
 from lamella.network.elements.level_lines import CLOSED, RIM, SINGULAR_END
-from lamella.network.lattice.crossings import Crossings
+from lamella.network.network import A, B
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import ElementRim
 from lamella.surface.points import Floats

@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lamella.network.elements.level_curves import A, Tracks
-from lamella.network.lattice.lattice import ragged_ranges
+from lamella.base.ragged import ragged_ranges
+from lamella.network.elements.level_curves import Tracks
+from lamella.network.network import A
 from lamella.surface.points import Floats
 
 Integers = NDArray[np.int64]

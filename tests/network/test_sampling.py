@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamella.network.elements.sharp_turns import MOST, TURN, more_samples
+from lamella.network.sampling import REFINEMENT_MAX, SAMPLE_TURN, more_samples
 
 
 def test_pieces_that_turn_evenly() -> None:
@@ -17,15 +17,15 @@ def test_pieces_that_turn_evenly() -> None:
     tangents = np.column_stack([np.cos(heading), np.sin(heading), np.zeros(len(heading))])
     wanted = more_samples(count, count, given, tangents)
     assert (wanted % count == 0).all()
-    assert (angles / wanted <= TURN * (1 + 1e-6)).all()
-    assert (angles / wanted >= TURN / 2).tolist() == [True, True, False, True]
+    assert (angles / wanted <= SAMPLE_TURN * (1 + 1e-6)).all()
+    assert (angles / wanted >= SAMPLE_TURN / 2).tolist() == [True, True, False, True]
     assert wanted[2] == 3
 
 
 def test_a_kink_has_no_end() -> None:
-    """Where the tangent jumps no number is enough: `MOST` times as many, however often it is asked."""
+    """Where the tangent jumps no number is enough: `REFINEMENT_MAX` times as many, however often it is asked."""
     first = count = np.array([3])
     for _ in range(4):
         tangents = np.repeat([[1.0, 0, 0], [0, 1, 0]], [2, count[0] - 1], 0)
         count = more_samples(first, count, count + 1, tangents)
-    assert count.tolist() == [3 * MOST]
+    assert count.tolist() == [3 * REFINEMENT_MAX]

@@ -1,0 +1,54 @@
+"""Pieces of lamella between neighbouring stops, on the lattice of a closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lamella.network.lattice.domain import Domain
+from lamella.network.lattice.lattice import Lattice
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+Integers = NDArray[np.int64]
+
+
+class Segments:
+    """The pieces of lamella between neighbouring stops, each with a parameter 0 <= sigma <= 1.
+
+    Attributes
+    ----------
+    owner : (s,) int
+        Lamella of each segment.
+    first_stop : (s,) int
+        The stop it starts from; it ends at the next one.
+    span : (s,)
+        Length in cells.
+    """
+
+    def __init__(self, domain: Domain, lattice: Lattice) -> None:
+        self.domain, lines = domain, lattice.lines
+        owner = lattice.owner
+        first = np.flatnonzero(owner[:-1] == owner[1:])
+        self.owner = owner[first]
+        self.first_stop = first
+        self.sheet = lines.sheet[self.owner]
+        self.base, self.direction = lines.base[self.owner], lines.direction[self.owner]
+        self.t, self.span = lattice.t[first], lattice.t[first + 1] - lattice.t[first]
+        # a ray's first cell is straight in zeta, where the surface is smooth, not in the cell plane
+        self.radial = lines.singular[self.owner] & (self.t == 0)
+
+    def where(self, segment: Integers, sigma: Floats) -> tuple[Complexes, Complexes]:
+        """Places zeta and d zeta / d sigma at parameters of segments, arrays of equal shape (k,)."""
+        radial = self.radial[segment]
+        t = self.t[segment] + np.where(radial, 1.0, sigma) * self.span[segment]
+        point = self.base[segment] + t * self.direction[segment]
+        zeta = self.domain.place(self.sheet[segment], point)
+        velocity = self.domain.velocity(self.sheet[segment], point, self.direction[segment])
+        derivative = velocity * self.span[segment]
+        return np.where(radial, sigma * zeta, zeta), np.where(radial, zeta, derivative)
+
+    def speed(self, segment: Integers, sigma: Floats) -> Floats:
+        """Arc length per sigma, m, at parameters (p,) of segments (s,), shape (s, p)."""
+        zeta, derivative = self.where(np.repeat(segment, len(sigma)), np.tile(sigma, len(segment)))
+        return np.asarray(self.domain.surface.metric(zeta) * np.abs(derivative)).reshape(len(segment), len(sigma))
