@@ -12,7 +12,7 @@ import pytest
 
 from lamella import InputError, read_project
 from lamella.command.main import main
-from lamella.network.lattice.density import BYTES_FIXED, BYTES_PER_NODE
+from lamella.network.density_request import BYTES_FIXED, BYTES_PER_NODE
 from lamella.stages.pipeline import plan
 
 from .projects import UNDULOID, surface

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from lamella.base.errors import InputError
+from lamella.network.density_request import DensityRequest
 from lamella.network.elements.element_network import Closing, element_network
-from lamella.network.lattice.density import check_requested, choose_density
+from lamella.network.lattice.density import choose_density
 from lamella.network.lattice.trace import trace_closed_form
 from lamella.network.network import Network
 from lamella.network.pattern import NetKind, Pattern
@@ -69,7 +70,7 @@ def make_network(
             f"a net needs a surface, not a {type(surface).__name__}",
             'take a closed form, what make_surface returns, or find_film(...).surface("form-found")',
         )
-    check_requested(cells, spacing)
+    DensityRequest.of(cells, spacing)
     pattern = Pattern(kind, every, normal_curvature)
     if is_traced(surface, pattern):
         check_traced(surface, pattern, closing)

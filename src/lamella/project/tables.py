@@ -8,6 +8,7 @@ import tomli_w
 from pydantic import Field, field_validator, model_validator
 
 from lamella.base.wording import is_byte, shown
+from lamella.network.density_request import CELLS_MIN, DEFAULT_CELLS
 from lamella.network.pattern import Pattern
 from lamella.project.boundary_tables import (
     AdjustTable,
@@ -76,12 +77,13 @@ class NetworkTable(Table):
     cells: int | None = number(
         "Number of A lamellas that cross a loop once around the axis, or that end on the rim of the first hole (B "
         "where these are more); on a simply connected surface, number of cells along its longest principal line (with "
-        "several umbilics of odd order: across a disc with as many cells). 24 when spacing is not given either.",
+        "several umbilics of odd order: across a disc with as many cells). "
+        f"{DEFAULT_CELLS} when spacing is not given either.",
         "",
-        ge=3,
+        ge=CELLS_MIN,
         le=10**12,
         default=None,
-        examples=[24],
+        examples=[DEFAULT_CELLS],
     )
     spacing: float | None = length(
         "Wanted median cell edge, instead of cells; the nearest whole number of cells is taken, or a spacing up to a "
@@ -138,7 +140,7 @@ class NetworkTable(Table):
     @classmethod
     def _default(cls, values: Any) -> Any:
         if isinstance(values, dict) and "cells" not in values and "spacing" not in values:
-            return values | {"cells": 24}
+            return values | {"cells": DEFAULT_CELLS}
         return values
 
     @model_validator(mode="after")

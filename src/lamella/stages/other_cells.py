@@ -8,7 +8,8 @@ from typing import Any
 
 from lamella.base.errors import InputError
 from lamella.base.progress import silent
-from lamella.network.lattice.density import LEAST_CELLS, choose_density
+from lamella.network.density_request import CELLS_MIN
+from lamella.network.lattice.density import choose_density
 from lamella.network.lattice.trace import trace_closed_form
 from lamella.network.network import Network
 from lamella.network.streamlines.applicability import is_traced
@@ -62,7 +63,7 @@ class OtherCells:
                     return f"with {cells} cells there are none"
             except InputError:
                 continue
-        return f"with {max(present - FARTHEST, LEAST_CELLS)} to {present + FARTHEST} cells there are such too"
+        return f"with {max(present - FARTHEST, CELLS_MIN)} to {present + FARTHEST} cells there are such too"
 
     def _cheap(self) -> bool:
         """Whether a few more nets can be made at once; nets that change their boundary, or are traced, cannot."""
@@ -78,7 +79,7 @@ class OtherCells:
         """The net of a number of cells, None where a run refuses it or warns of more."""
         if cells not in self._made:
             try:
-                self._made[cells] = self._make(cells) if cells >= LEAST_CELLS else None
+                self._made[cells] = self._make(cells) if cells >= CELLS_MIN else None
             except InputError:
                 self._made[cells] = None
         return self._made[cells]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lamella.base.drawing_origin import coordinates
 from lamella.base.wording import counted, rounded
 from lamella.network.cell_sizes import MOST_RATIO, large_cells, small_cells
-from lamella.network.lattice.density import LEAST_CELLS, MOST_NODES
+from lamella.network.density_request import CELLS_MIN, NODES_MAX
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas, Section, layer_drift
 from lamella.strip.material import Material
@@ -133,7 +133,7 @@ def network_cautions(
 def _fewer(network: Network, median: float, height: float) -> str:
     """How many cells have edges as long as the strip is high, where that many make a net."""
     cells = int(0.95 * network.cells * median / height)
-    return f"at most {cells} cells, or " if cells >= LEAST_CELLS else ""
+    return f"at most {cells} cells, or " if cells >= CELLS_MIN else ""
 
 
 def _small_cells(
@@ -158,7 +158,7 @@ def _why_large(network: Network, traced: bool, ratio: float) -> str:
     """What makes cells large, and what to do about it."""
     finer = (ratio / MOST_RATIO) ** _slowness(network)
     more = ""
-    if len(network.node_points) * finer**2 < MOST_NODES:
+    if len(network.node_points) * finer**2 < NODES_MAX:
         cells = 2 * int(np.ceil(network.cells * finer / 2))
         more = f"{cells} cells make them about {MOST_RATIO:g} x the median of now, or "
     if not traced:

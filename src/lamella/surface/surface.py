@@ -1,4 +1,8 @@
-"""The questions every surface answers, closed form, found or imported: what later stages know of it."""
+"""The questions every surface answers, closed form, found or imported: what later stages know of it.
+
+What a surface can do is asked with these. `ClosedForm` and `ElementSurface`, its classes, say how its places are
+stored: code that needs one of the two asks with `isinstance`. `kind` is a name in files and decides nothing.
+"""
 
 from __future__ import annotations
 
@@ -25,6 +29,12 @@ class Surface(Protocol[Where]):
     @property
     def mean_curvature(self) -> float:
         """H, 1/m, for the surface's own normal."""
+
+    def has_lattice(self, normal_curvature: float | None = None) -> bool:
+        """Whether curves of a normal curvature (1/m; None: lamellas of kn = H, or principal lines) follow a lattice.
+
+        Then they are level curves of isothermic, or of like, coordinates; elsewhere they are traced one by one.
+        """
 
     def at(self, where: Where) -> SurfacePoints:
         """Everything about n places, in one evaluation."""

@@ -250,7 +250,7 @@ def test_what_is_refused() -> None:
         make_network(surface, spacing=9.0, normal_curvature=0.02)
     with pytest.raises(InputError, match="leaves out curves of an isothermic lattice"):
         make_network(surface, cells=12, normal_curvature=0.02, every=(2, 1))
-    with pytest.raises(InputError, match="nodes would take about"):
+    with pytest.raises(InputError, match="nodes and take about"):
         make_network(surface, spacing=1e-3, normal_curvature=0.02)
     table = {"surface": {"kind": "scherk", "extent": 1.25, "scale": 3.0}}
     with pytest.raises(InputError, match='closing = "round"') as refused:

@@ -22,6 +22,7 @@ from lamella.network.adjust.adjustable_films import Films, FollowError
 from lamella.network.adjust.aim import Aim, LostError, StuckError, worst
 from lamella.network.adjust.film_net import FilmNet
 from lamella.network.adjust.least_squares_within import least_squares_within
+from lamella.network.density_request import DensityRequest
 from lamella.network.elements.closing_steps import CLOSES
 from lamella.network.elements.lattice import Lattice, choose_lattice
 from lamella.network.isothermic.between_umbilics import between_umbilics, keeps_apart
@@ -127,14 +128,13 @@ def adjust_boundary(
     """
     table = with_origin(table, folder)
     with told_from(table.origin or NOWHERE):
-        return _adjusted(table, folder, cells, spacing, progress, pattern)
+        return _adjusted(table, folder, DensityRequest.of(cells, spacing), progress, pattern)
 
 
 def _adjusted(
     table: FormFoundTable,
     folder: Path,
-    cells: int | None,
-    spacing: float | None,
+    request: DensityRequest,
     progress: Progress,
     pattern: Pattern,
 ) -> Adjusted:
@@ -148,7 +148,7 @@ def _adjusted(
     first = films.first(COARSE)
     names = tuple(loop.name for loop in table.boundary)
     around = holonomies(first.iso)
-    lattice = choose_lattice(first.iso, around, cells, spacing, pattern=pattern, names=names, seams=False)
+    lattice = choose_lattice(first.iso, around, request, pattern=pattern, names=names, seams=False)
     before = worst(first.whole.nearest(first.cells(lattice.step))[0] - first.cells(lattice.step))
     search = _Search(films, progress)
     state, step, after = search.closed(first, lattice)

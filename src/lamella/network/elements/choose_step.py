@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.network.density_request import CELLS_MIN
 from lamella.network.elements.cell_count import CellCount
 from lamella.network.elements.closing_steps import CLOSES, ClosingLengths
 from lamella.network.pattern import LEAST_KEPT, Pattern
 
-LEAST_CELLS = 3
 # of the number of cells, and cells: how far a spacing may be moved so that the net closes with its umbilics on nodes
 REACH, LEAST_REACH, MOST_REACH = 0.1, 0.75, 3.0
 # cells: a net that misses whole numbers by more gains nothing from a moved spacing
@@ -53,14 +53,14 @@ def near_step(count: CellCount, closing: ClosingLengths, wanted: float, pattern:
         sqrt(m).
     pattern : Pattern
     """
-    if count.cells(wanted) < LEAST_CELLS:
+    if count.cells(wanted) < CELLS_MIN:
         # hardly a curve around the hole: cells are counted across the surface
         count = CellCount(count.across, count.across, 0j)
     cells = count.cells(wanted)
     reach = float(np.clip(REACH * cells, LEAST_REACH, MOST_REACH))
     tied = count.follows_period(pattern)
     multiple = pattern.multiple(count.period) if tied else 1
-    least = (LEAST_KEPT if multiple > 1 else LEAST_CELLS) * multiple
+    least = (LEAST_KEPT if multiple > 1 else CELLS_MIN) * multiple
     low, high = int(np.ceil((cells - reach) / multiple)), int(np.floor((cells + reach) / multiple))
     numbers = {n * multiple for n in range(low, high + 1)} | {round(cells / multiple) * multiple, least}
     whole = [count.step(n, pattern) for n in numbers if n >= least]
@@ -68,7 +68,7 @@ def near_step(count: CellCount, closing: ClosingLengths, wanted: float, pattern:
     if not tied:
         # where a whole number of cells closes the net it needs no others
         kept = np.array([step for step in whole if closing.miss(step) <= CLOSES / 2])
-        most = count.length / max(cells - reach, LEAST_CELLS)
+        most = count.length / max(cells - reach, CELLS_MIN)
         for step in closing.steps(count.length / (cells + reach), most).tolist():
             if not (np.abs(count.length * (1 / step - 1 / kept)) < CLOSES).any():
                 others.append(step)
@@ -98,7 +98,7 @@ def better_density(count: CellCount, closing: ClosingLengths, step: float, patte
         return None
     cells = round(count.cells(step))
     multiple = pattern.multiple(count.period) if count.follows_period(pattern) else 1
-    least = (LEAST_KEPT if multiple > 1 else LEAST_CELLS) * multiple
+    least = (LEAST_KEPT if multiple > 1 else CELLS_MIN) * multiple
     reach = max(int(LOOKED * cells), LEAST_LOOKED)
     # the finer one first where two are as near
     numbers = [n for far in range(1, reach + 1) for n in (cells + far, cells - far) if n >= least and n % multiple == 0]
@@ -106,7 +106,7 @@ def better_density(count: CellCount, closing: ClosingLengths, step: float, patte
     best = next((one for one in found if one.miss <= CLOSES / 2), None)
     if best or count.follows_period(pattern):
         return best or _nearer(found, miss)
-    near = closing.steps(step * cells / (cells + reach), step * cells / max(cells - reach, LEAST_CELLS))
+    near = closing.steps(step * cells / (cells + reach), step * cells / max(cells - reach, CELLS_MIN))
     near = near[np.argsort(np.abs(np.log(near / step)), kind="stable")]
     exact = next((one for one in near.tolist() if closing.miss(one) <= CLOSES / 2), None)
     return Better(None, exact, closing.miss(exact)) if exact else _nearer(found, miss)

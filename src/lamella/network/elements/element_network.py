@@ -14,6 +14,7 @@ from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
+from lamella.network.density_request import DensityRequest
 from lamella.network.elements.closing_steps import CLOSES
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.elements.lattice import Lattice, choose_lattice
@@ -297,7 +298,9 @@ class LaidNet:
 
     def _lattice_of(self, cells: int) -> Lattice:
         """The lattice of another number of cells, for a net without seams."""
-        return choose_lattice(self.iso, self.around, cells, None, pattern=self.pattern, names=self.names, seams=False)
+        return choose_lattice(
+            self.iso, self.around, DensityRequest.of(cells), pattern=self.pattern, names=self.names, seams=False
+        )
 
     def traced(self, *, closing: Closing, minimum_length: float) -> ElementNetwork:
         """The network, see `element_network`."""
@@ -350,7 +353,7 @@ class LaidNet:
             iso.residual,
             joints,
             RimCorners.of(surface),
-            surface.kind == "form-found",
+            surface.has_boundary_curves,
         )
 
 
@@ -379,6 +382,7 @@ def lay_net(
     ------
     InputError
     """
+    request = DensityRequest.of(cells, spacing)
     refuse_umbilic(surface)
     assert not is_traced(surface, pattern)
     umbilics = surface.umbilics
@@ -398,7 +402,7 @@ def lay_net(
     )
     names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
     around = holonomies(iso)
-    choose = partial(choose_lattice, iso, around, cells, spacing, step=step, pattern=pattern, names=names, seams=seams)
+    choose = partial(choose_lattice, iso, around, request, step=step, pattern=pattern, names=names, seams=seams)
     laid = LaidNet(surface, umbilics, mesh, iso, around, choose(), pattern, names)
     if spacing is None or step is not None:
         return laid

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lamella.base.errors import InputError
-from lamella.base.wording import rounded
+from lamella.network.density_request import CELLS_MIN, NODES_MAX, DensityRequest
 from lamella.network.elements.cell_count import CellCount
-from lamella.network.elements.choose_step import LEAST_CELLS, Better, better_density, near_step
+from lamella.network.elements.choose_step import Better, better_density, near_step
 from lamella.network.elements.closing_steps import CLOSES, ClosingLengths
 from lamella.network.elements.edge_sizes import EdgeSizes
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.elements.lattice_origin import lattice_origin
 from lamella.network.isothermic.holonomy import Holonomy
 from lamella.network.isothermic.isothermic import Integers, Isothermic
-from lamella.network.lattice.density import BYTES_FIXED, BYTES_PER_NODE, MOST_NODES
 from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 
 # share of a spacing; moved by more for a net that closes, the new one is reported
@@ -61,8 +59,7 @@ class Lattice:
 def choose_lattice(
     iso: Isothermic,
     around: tuple[Holonomy, ...],
-    cells: int | None,
-    spacing: float | None,
+    request: DensityRequest,
     *,
     step: float | None = None,
     pattern: Pattern = LAMELLAS,
@@ -82,30 +79,25 @@ def choose_lattice(
     """
     count, closing = CellCount.of(iso, around, pattern), ClosingLengths.of(iso, pattern)
     sizes = EdgeSizes.of(iso, pattern, NO_SEAMS)
-    requested, key = f"cells = {cells}", "network.cells"
-    if spacing is not None:
-        requested, key = f"spacing = {spacing:g} m", "network.spacing"
-    elif cells is None:
-        cells, requested = 24, "cells = 24 (default)"
+    cells, requested = request.cells, str(request)
     chosen = step
-    if chosen is None and spacing is not None:
-        wanted = sizes.step(spacing / correction)
-        _check_room(count, sizes, wanted, spacing)
-        _check_size(sizes, wanted, pattern, requested, key, spacing)
+    if chosen is None and request.spacing is not None:
+        wanted = sizes.step(request.spacing / correction)
+        room = max(count.length, count.across)
+        # what is written as a remedy has to do
+        request.refuse_wide(room / wanted, 0.99 * sizes.median(room / CELLS_MIN))
+        _refuse_many(request, sizes, wanted, pattern)
         chosen = near_step(count, closing, wanted, pattern)
         if abs(np.log(chosen / wanted)) > MOVED and closing.miss(chosen) <= CLOSES:
             requested += f" ({sizes.median(chosen):.3g} m: the net closes with it)"
     elif chosen is None:
         assert cells is not None
-        if cells < LEAST_CELLS:
-            raise InputError(
-                f"{cells} cells, at least {LEAST_CELLS} are needed", f"write cells = {LEAST_CELLS} or more", key
-            )
+        request.refuse_few(cells)
         if count.follows_period(pattern):
             name = repr(names[around[0].loop]) if names else "the first hole"
             cells = fitting_cells(cells, pattern.multiple(count.period), name, given=True)
         chosen = count.step(cells, pattern)
-        _check_size(sizes, chosen, pattern, requested, key, None, cells)
+        _refuse_many(replace(request, cells=cells), sizes, chosen, pattern)
     better = better_density(count, closing, chosen, pattern) if step is None else None
     ended = EdgeSizes.of(iso, pattern, _seams(iso, chosen, pattern)) if seams else sizes
     return Lattice(
@@ -120,38 +112,13 @@ def choose_lattice(
     )
 
 
-def _check_room(count: CellCount, sizes: EdgeSizes, step: float, spacing: float) -> None:
-    """Refuse a spacing with which fewer than three cells have room."""
-    room = max(count.length, count.across)
-    if room / step < LEAST_CELLS:
-        # rounded down: what is written has to do
-        most = rounded(0.99 * sizes.median(room / LEAST_CELLS), up=False)
-        raise InputError(
-            f"spacing = {spacing:g} m leaves {room / step:.2g} cells across the surface, at least {LEAST_CELLS} are "
-            "needed",
-            f"choose a spacing of at most {most:g} m",
-            "network.spacing",
-        )
-
-
-def _check_size(
-    sizes: EdgeSizes, step: float, pattern: Pattern, requested: str, key: str, spacing: float | None, cells: int = 0
-) -> None:
+def _refuse_many(request: DensityRequest, sizes: EdgeSizes, step: float, pattern: Pattern) -> None:
     """Refuse a net of too many nodes."""
     crossings, ends = sizes.nodes(step, pattern)
-    estimate = crossings + ends
-    if estimate <= MOST_NODES:
-        return
-    memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
-    finer = float(np.sqrt(ends**2 + 4 * crossings * MOST_NODES) - ends) / (2 * crossings)
-    raise InputError(
-        f"{requested} would make about {estimate:,.0f} nodes and take about {memory:,.0f} GB of memory (limit "
-        f"{MOST_NODES:,} nodes)",
-        f"at most {int(cells * finer)} cells fit this surface"
-        if spacing is None
-        else f"choose a spacing of at least {rounded(1.01 * spacing / finer, up=True):g} m",
-        key,
-    )
+    # how many times more cells there may be
+    finer = float(np.sqrt(ends**2 + 4 * crossings * NODES_MAX) - ends) / (2 * crossings)
+    cells, spacing = request.cells or np.inf, request.spacing or 0.0
+    request.refuse_many(crossings + ends, cells * finer, spacing / finer)
 
 
 def _seams(iso: Isothermic, step: float, pattern: Pattern) -> Integers:

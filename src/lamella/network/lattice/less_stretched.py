@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from lamella.base.errors import InputError
-from lamella.network.lattice.density import MOST_TRIED, Density, choose_density
+from lamella.network.lattice.density import TRIED_NODES_MAX, Density, choose_density
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.scherk import Scherk
 
@@ -36,7 +36,7 @@ def less_stretched(surface: ClosedForm, density: Density, trace: Callable[[Close
     def makes(other: ClosedForm, cells: int) -> bool:
         try:
             there = choose_density(other, cells=cells, pattern=density.pattern)
-            if there.estimated_nodes > MOST_TRIED:
+            if there.estimated_nodes > TRIED_NODES_MAX:
                 return False
             trace(other, there)
         except InputError:

@@ -10,21 +10,13 @@ from lamella.network.streamlines.charts import Ground
 from lamella.network.streamlines.element_charts import ElementGround
 from lamella.network.streamlines.plane_charts import PlaneGround
 from lamella.surface.closed_forms.closed_form import ClosedForm
-from lamella.surface.closed_forms.revolution import SurfaceOfRevolution
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 
 
 def is_traced(surface: Surface[Any], pattern: Pattern) -> bool:
-    """Whether a net has no lattice: its lines are neither lamellas nor principal lines of a constant mean curvature.
-
-    Lines of a given normal curvature on surfaces of revolution have one (`lamella.network.lattice.skew_band`).
-    """
-    if isinstance(surface, ElementSurface) and not surface.constant:
-        return True
-    if pattern.normal_curvature in (None, surface.mean_curvature):
-        return False
-    return not isinstance(surface, SurfaceOfRevolution)
+    """Whether the curves of a net follow no lattice: they are traced one by one, as streamlines."""
+    return not surface.has_lattice(pattern.normal_curvature)
 
 
 def told_mean_curvature(surface: Surface[Any], pattern: Pattern) -> float:
@@ -32,7 +24,7 @@ def told_mean_curvature(surface: Surface[Any], pattern: Pattern) -> float:
 
     So the radius of the unrolled strips is 1 / |mean_curvature| for those who know of nothing else.
     """
-    if isinstance(surface, ElementSurface) and not surface.constant and pattern.normal_curvature is not None:
+    if not surface.has_lattice() and pattern.normal_curvature is not None:
         return pattern.normal_curvature
     return surface.mean_curvature
 

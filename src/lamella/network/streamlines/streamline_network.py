@@ -18,6 +18,7 @@ from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import rounded
 from lamella.network.assemble import Curves, CurveSamples, SampledCurves, assemble
+from lamella.network.density_request import DensityRequest
 from lamella.network.network import A, B, Network
 from lamella.network.pattern import Pattern
 from lamella.network.sampling import Division, divide, parts_of
@@ -171,7 +172,7 @@ def traced_network(
     InputError
     """
     laid = lay_lines(ground, pattern, cells=cells, spacing=spacing)
-    field, guide, distance, size, key = laid.field, laid.guide, laid.distance, laid.size, laid.key
+    request, field, guide, distance, size = laid.request, laid.field, laid.guide, laid.distance, laid.size
     best, known, chosen = np.inf, [], None
     for _ in range(MOST_TRIES):
         tried = seeded_lines(ground, field, guide, distance, size)
@@ -194,14 +195,14 @@ def traced_network(
     assert chosen is not None
     seeded, flow, crossings, step = chosen
     network, inner, missed = _network(
-        ground, seeded, flow, crossings, pattern, mean_curvature, step, minimum_length, key
+        ground, seeded, flow, crossings, pattern, mean_curvature, step, minimum_length, request
     )
     written = WrittenLines.of(network)
     if pattern.normal_curvature is not None:
         missed = np.maximum(missed, written.bend_off(network, pattern.normal_curvature))
     worst = float(missed.max()), float(np.percentile(missed, 95))
     angles = written.node_angles(network)
-    return TracedNetwork(network, laid.requested, laid.reach, seeded.guides, inner, worst, angles, laid.field.scale)
+    return TracedNetwork(network, str(request), laid.reach, seeded.guides, inner, worst, angles, laid.field.scale)
 
 
 def _next_distance(known: list[tuple[float, float]]) -> float:
@@ -215,7 +216,9 @@ def _next_distance(known: list[tuple[float, float]]) -> float:
     return float(np.exp(b + (a - b) * np.clip(-low / (high - low), 0.1, 0.9)))
 
 
-def _none_cross(seeded: Seeded, kept: Flow, distance: float, minimum_length: float, key: str) -> InputError:
+def _none_cross(
+    seeded: Seeded, kept: Flow, distance: float, minimum_length: float, request: DensityRequest
+) -> InputError:
     """Why no two of the seeded lines that are kept cross; seeds are a distance (m) apart."""
     count, longest = seeded.flow.count, float(seeded.flow.lengths.max())
     short = count - kept.count
@@ -229,9 +232,9 @@ def _none_cross(seeded: Seeded, kept: Flow, distance: float, minimum_length: flo
     return InputError(
         f"no two lamellas cross: the longest of {count} is {longest:.3g} m, and they are {distance:.3g} m apart",
         f"write spacing = {rounded(longest / 3, up=False):g} m or less"
-        if key == "network.spacing"
+        if request.spacing is not None
         else f"write cells = {int(np.ceil(3 * seeded.count * distance / longest))} or more",
-        key,
+        request.parameter,
     )
 
 
@@ -244,7 +247,7 @@ def _network(
     mean_curvature: float,
     distance: float,
     minimum_length: float,
-    key: str,
+    request: DensityRequest,
 ) -> tuple[Network, int, Floats]:
     """The network of the seeded lines that are kept, how many ends lie inside, and what the surface misses, 1/m, (k,).
 
@@ -252,7 +255,7 @@ def _network(
     operator.
     """
     if not len(crossings.a):
-        raise _none_cross(seeded, flow, distance, minimum_length, key)
+        raise _none_cross(seeded, flow, distance, minimum_length, request)
     whole = whole_edge(flow, crossings)
     spacing = whole if np.isfinite(whole) else distance
     stops = merged_stops(flow, line_stops(flow, crossings), SAME_NODE * spacing)

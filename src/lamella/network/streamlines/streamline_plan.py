@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lamella.base.errors import InputError
 from lamella.base.vectors import dots, lengths
 from lamella.base.wording import rounded
-from lamella.network.lattice.density import BYTES_FIXED, BYTES_PER_NODE, LEAST_CELLS, MOST_NODES
+from lamella.network.density_request import CELLS_MIN, NODES_MAX, DensityRequest
 from lamella.network.pattern import Pattern
 from lamella.network.streamlines.charts import Ground
 from lamella.network.streamlines.direction_field import LEAST_ANGLE, LineField
@@ -55,10 +55,7 @@ class LaidLines:
     guide : Guide
     distance : float
         Of seeds along the guide, m.
-    requested : str
-        What was asked for.
-    key : str
-        The project's key it stands under.
+    request : DensityRequest
     size : float
         Of the surface, m.
     estimated_nodes : int
@@ -68,8 +65,7 @@ class LaidLines:
     field: LineField
     guide: Guide
     distance: float
-    requested: str
-    key: str
+    request: DensityRequest
     size: float
     estimated_nodes: int
 
@@ -92,6 +88,7 @@ def lay_lines(ground: Ground, pattern: Pattern, *, cells: int | None = None, spa
     InputError
         There are no such lines, or they do not end; too few cells, or too many nodes.
     """
+    request = DensityRequest.of(cells, spacing)
     where, area = ground.samples()
     look = ground.look(where)
     size = float(np.linalg.norm(np.ptp(look.position, axis=0)))
@@ -108,16 +105,17 @@ def lay_lines(ground: Ground, pattern: Pattern, *, cells: int | None = None, spa
     )
     _refuse_nowhere(reach, usable, look.mean, half, pattern)
     guide = choose_guide(ground, field, size)
-    distance, requested, key = _wanted(guide, cells, spacing)
+    distance = _distance(guide, request)
     sines = field.crossing_sine(look.mean, look.deviator)[usable]
     spacing_there = distance * guide.share
     # a cell has the area spacing^2 sin(angle)
     crossings = area[usable].sum() / (spacing_there**2 * float(np.median(sines)))
     nodes = crossings + _ends(ground, field, spacing_there)
-    _refuse_many(nodes, guide, spacing_there, key)
+    least = spacing_there * float(np.sqrt(nodes / NODES_MAX))
+    request.refuse_many(nodes, guide.length * guide.share / least, least)
     few = probes(ground, field, where, look, spacing_there, size)
     refuse_winding(ground, field, few, pattern, spacing_there, size)
-    return LaidLines(reach, field, guide, distance, requested, key, size, round(nodes))
+    return LaidLines(reach, field, guide, distance, request, size, round(nodes))
 
 
 def _refuse_nowhere(reach: Reach, usable: Booleans, mean: Floats, half: Floats, pattern: Pattern) -> None:
@@ -142,26 +140,15 @@ def _refuse_nowhere(reach: Reach, usable: Booleans, mean: Floats, half: Floats, 
     )
 
 
-def _wanted(guide: Guide, cells: int | None, spacing: float | None) -> tuple[float, str, str]:
-    """Distance of seeds along the guide, m, what was asked for, and the key it stands under."""
-    if spacing is None:
-        requested = f"cells = {cells}" if cells is not None else "cells = 24 (default)"
-        cells = 24 if cells is None else cells
-        if cells < LEAST_CELLS:
-            raise InputError(
-                f"{cells} cells, at least {LEAST_CELLS} are needed",
-                f"write cells = {LEAST_CELLS} or more",
-                "network.cells",
-            )
-        return guide.length / cells, requested, "network.cells"
-    fit = guide.length * guide.share / spacing
-    if fit < LEAST_CELLS:
-        raise InputError(
-            f"spacing = {spacing:g} m leaves {fit:.2g} cells across the surface, at least {LEAST_CELLS} are needed",
-            f"choose a spacing of at most {rounded(guide.length * guide.share / LEAST_CELLS, up=False):g} m",
-            "network.spacing",
-        )
-    return spacing / guide.share, f"spacing = {spacing:g} m", "network.spacing"
+def _distance(guide: Guide, request: DensityRequest) -> float:
+    """Distance of seeds along the guide, m."""
+    if request.spacing is None:
+        assert request.cells is not None
+        request.refuse_few(request.cells)
+        return guide.length / request.cells
+    width = guide.length * guide.share
+    request.refuse_wide(width / request.spacing, width / CELLS_MIN)
+    return request.spacing / guide.share
 
 
 def _ends(ground: Ground, field: LineField, spacing: float) -> float:
@@ -183,17 +170,3 @@ def _ends(ground: Ground, field: LineField, spacing: float) -> float:
         across = np.sqrt(np.maximum(1 - dots(line, tangent) ** 2, 0))
         ends += float((arc * across / apart).sum())
     return ends
-
-
-def _refuse_many(estimate: float, guide: Guide, spacing: float, key: str) -> None:
-    """Refuse more nodes than memory holds."""
-    if estimate > MOST_NODES:
-        memory = (BYTES_FIXED + BYTES_PER_NODE * estimate) / 1e9
-        least = spacing * np.sqrt(estimate / MOST_NODES)
-        raise InputError(
-            f"about {estimate:,.0f} nodes would take about {memory:,.0f} GB of memory (limit {MOST_NODES:,} nodes)",
-            f"choose a spacing of at least {rounded(1.01 * least, up=True):g} m"
-            if key == "network.spacing"
-            else f"at most {int(guide.length * guide.share / least)} cells fit this surface",
-            key,
-        )

@@ -41,6 +41,10 @@ class ClosedForm(ABC):
     outline: Outline
     hopf_order: int = 0
 
+    def has_lattice(self, normal_curvature: float | None = None) -> bool:
+        """See `lamella.surface.surface.Surface.has_lattice`."""
+        return normal_curvature in (None, self.mean_curvature)
+
     @abstractmethod
     def at(self, where: Complexes) -> SurfacePoints:
         """Everything about places `where`, shape (n,), in one evaluation."""

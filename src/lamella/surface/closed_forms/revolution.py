@@ -37,6 +37,10 @@ class SurfaceOfRevolution(ClosedForm):
     flux: float
     outline: Ring
 
+    def has_lattice(self, normal_curvature: float | None = None) -> bool:
+        """Always: curves of any one normal curvature repeat around the axis (`lamella.network.lattice.skew_band`)."""
+        return True
+
     @abstractmethod
     def profile(self, u: Floats) -> Profile:
         """Meridian at the parameter U, arrays of u's shape."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,8 +79,14 @@ class ElementSurface:
     loop_starts: Floats | None = None
     slide_ends: Floats | None = None
 
-    constant: ClassVar[bool] = True
-    """Whether the mean curvature is constant."""
+    def has_lattice(self, normal_curvature: float | None = None) -> bool:
+        """See `lamella.surface.surface.Surface.has_lattice`."""
+        return normal_curvature in (None, self.mean_curvature)
+
+    @property
+    def has_boundary_curves(self) -> bool:
+        """Whether the surface was found between curves: their corners can be rounded, and they can be adjusted."""
+        return self.kind == "form-found"
 
     @property
     def origin(self) -> Origin:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -38,7 +38,9 @@ class VaryingSurface(ElementSurface):
     vertices: Floats | None = None
     vertex_errors: Floats | None = None
 
-    constant: ClassVar[bool] = False
+    def has_lattice(self, normal_curvature: float | None = None) -> bool:
+        """Never: isothermic coordinates are those of a constant mean curvature."""
+        return False
 
     @cached_property
     def _gauss(self) -> Floats:
