@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.base.message import Message
 from lamella.fabrication.axis import Axis
 from lamella.fabrication.flat import extents
 
@@ -149,14 +150,14 @@ class Parts:
     ----------
     parts : tuple of Part
         In the lamellas' order, pieces of a split one behind each other.
-    warnings : tuple of str
+    warnings : tuple of Message
         What the user should know about them.
     colliding : bool
         Whether strips meet beyond the rim.
     """
 
     parts: tuple[Part, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[Message, ...]
     colliding: bool = False
 
     @property

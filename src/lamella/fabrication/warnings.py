@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from lamella.base.message import Message
 from lamella.base.wording import counted, rounded
 from lamella.fabrication.rules import ROUNDING, Rules
 
@@ -53,7 +54,7 @@ class Notes:
     hub_cut: float = 0.0
     hub_needed: float = 0.0
 
-    def sentences(self, rules: Rules, lamellas: int, parts: int) -> Iterator[str]:
+    def sentences(self, rules: Rules, lamellas: int, parts: int) -> Iterator[Message]:
         """One warning a matter, given the numbers of all lamellas and parts."""
         sheet = f"{max(rules.sheet):g} x {min(rules.sheet):g} m"
         if self.pieces:
@@ -64,37 +65,43 @@ class Notes:
                 reasons.append(f"{len(self.too_long)} do not fit the sheet of {sheet}{arcs} ({longest})")
             if self.too_round:
                 reasons.append(f"{self.too_round} turn through more than 1.9 pi and would overlap themselves")
-            yield (
+            yield Message(
+                "lamellas_split",
                 f"{len(self.too_long) + self.too_round} of {lamellas} lamellas were split midway between "
-                f"nodes into {self.pieces} pieces: {'; '.join(reasons)}"
+                f"nodes into {self.pieces} pieces: {'; '.join(reasons)}",
             )
         if self.oversize:
             name, length = max(self.oversize, key=lambda item: item[1])
-            yield (
+            yield Message(
+                "lamellas_oversize",
                 f"{len(self.oversize)} of {lamellas} lamellas do not fit the sheet of {sheet} even if cut at "
-                f"every cell (the longest is {name} with {length:.3f} m): drawn alone on over-size sheets"
+                f"every cell (the longest is {name} with {length:.3f} m): drawn alone on over-size sheets",
             )
         if self.left_out:
-            yield (
+            yield Message(
+                "lamellas_left_out",
                 f"{len(self.left_out)} of {lamellas} lamellas are left out of the parts "
                 f"({_few(self.left_out)}): nothing remains of them between hubs of radius "
-                f"{1e3 * rules.hub_radius:g} mm, or a single cell turns through more than 1.9 pi"
+                f"{1e3 * rules.hub_radius:g} mm, or a single cell turns through more than 1.9 pi",
             )
         if self.hub_cut:
-            yield (
+            yield Message(
+                "hub_cut",
                 f"a hub radius of {1e3 * self.hub_cut:.1f} mm would reach the first slots around the singular node: "
-                f"{1e3 * rules.hub_radius:.1f} mm is used"
+                f"{1e3 * rules.hub_radius:.1f} mm is used",
             )
         if self.hub_needed:
-            yield (
+            yield Message(
+                "hub_small",
                 f"strips run into each other around the singular node: fabrication.hub_radius is "
-                f"{1e3 * rules.hub_radius:g} mm, it takes {1e3 * self.hub_needed:.1f} mm, or fewer layers"
+                f"{1e3 * rules.hub_radius:g} mm, it takes {1e3 * self.hub_needed:.1f} mm, or fewer layers",
             )
         if self.collisions:
             count = len(self.collisions)
-            yield (
+            yield Message(
+                "ends_meet",
                 f"{counted(count, 'pair')} of strips ({_few(self.collisions)}) {'meets' if count == 1 else 'meet'} "
-                "beyond the rim, where no slot is cut: " + self._shorter(rules)
+                "beyond the rim, where no slot is cut: " + self._shorter(rules),
             )
         if self.unslotted:
             between = 2 * rules.slot_width / rules.edge_scale
@@ -105,12 +112,13 @@ class Notes:
                 smallest = "on layers beside the middle slots of theirs change places; "
             offset = f", an offset of {1e3 * between:.1f} mm" if rules.layers > 1 else ""
             layers = f"{rules.layers} layer{'s' if rules.layers > 1 else ''}"
-            yield (
+            yield Message(
+                "parts_unslotted",
                 f"{len(self.unslotted)} of {parts} parts are drawn without slots, with marks only "
                 f"({_few([name for name, _ in self.unslotted])}): less than one slot width "
                 f"({1e3 * rules.slot_width:g} mm) would be left between slots or to an end; {smallest}"
                 f"{layers} at {1e3 * rules.offset:g} mm need {1e3 * (2 * spread + between):.1f} mm from node "
-                f"to node{offset} and {1e3 * (spread + 0.75 * between):.1f} mm from a node to an end"
+                f"to node{offset} and {1e3 * (spread + 0.75 * between):.1f} mm from a node to an end",
             )
 
     def ends_help(self, rules: Rules) -> bool:

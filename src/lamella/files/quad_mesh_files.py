@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.plausible_size import SMALLEST
 from lamella.base.wording import counted, one_line
 from lamella.files.compas_json import compas_bytes, read_compas
@@ -43,7 +44,7 @@ class QuadFile:
         In m.
     metres : float
         Metres of the file's unit.
-    notes : tuple of str
+    notes : tuple of Message
         What the user should know about the reading.
     vertex_keys, face_keys : tuple of str
         Of a COMPAS mesh; empty for other formats.
@@ -51,7 +52,7 @@ class QuadFile:
 
     mesh: QuadMesh
     metres: float = 1.0
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     vertex_keys: tuple[str, ...] = ()
     face_keys: tuple[str, ...] = ()
 
@@ -104,7 +105,7 @@ def _read(path: Path, unit: str | None) -> QuadFile:
     metres = told or asked or 1.0
     notes = found.notes
     if told is None and asked is None:
-        notes += ("the file says no unit: taken as metres",)
+        notes += (Message("unit_assumed", "the file says no unit: taken as metres"),)
     mesh = quad_mesh(found.points * metres, found.corners.reshape(-1, 4))
     notes += _check_size(mesh, metres)
     _require_connected(mesh)
@@ -129,7 +130,7 @@ def _require_quads(found: Polygons) -> None:
         )
 
 
-def _check_size(mesh: QuadMesh, metres: float) -> tuple[str, ...]:
+def _check_size(mesh: QuadMesh, metres: float) -> tuple[Message, ...]:
     size = float(np.ptp(mesh.vertices, axis=0).max())
     if not size > 0:
         raise InputError("the mesh has no size: all its vertices are at one place", "export the mesh again")
@@ -138,7 +139,11 @@ def _check_size(mesh: QuadMesh, metres: float) -> tuple[str, ...]:
             f"the mesh is {size:,.0f} m large in {name_of(metres)} (at most {LARGEST_SIZE:,.0f} m)",
             f"say its unit: with --unit mm it is {size / metres * 1e-3:,.4g} m large",
         )
-    return (f"the mesh is {size:.3g} m large: is its unit, {name_of(metres)}, right?",) if size < SMALLEST else ()
+    return (
+        (Message("unit_small", f"the mesh is {size:.3g} m large: is its unit, {name_of(metres)}, right?"),)
+        if size < SMALLEST
+        else ()
+    )
 
 
 def _require_connected(mesh: QuadMesh) -> None:

@@ -14,6 +14,7 @@ from typing import Any
 
 from lamella.base.drawing_origin import drawing_origin, told_from
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.plausible_size import unit_first
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
@@ -43,7 +44,7 @@ class Checked:
         A closed form, or the surface on coarse elements.
     cells, nodes : int or None
         Of the net, about; None: it has none.
-    warnings : tuple of str
+    warnings : tuple of Message
         What a run warns of, as far as it was computed.
     coarse : bool
         Whether they come from coarse elements: their figures are those of a run to a few hundredths.
@@ -54,7 +55,7 @@ class Checked:
     surface: Surface[Any]
     cells: int | None
     nodes: int | None
-    warnings: tuple[str, ...]
+    warnings: tuple[Message, ...]
     coarse: bool
     left: tuple[str, ...]
 

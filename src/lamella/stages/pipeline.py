@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from lamella import __version__
 from lamella.base.drawing_origin import Origin, drawing_origin, told_from, with_drawn_points
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.plausible_size import unit_first
 from lamella.base.progress import Progress, Report, in_stage, silent
 from lamella.fabrication import Nesting, Parts, make_parts, nest
@@ -292,9 +293,11 @@ def _complete(
     project: Project, planned: Planned, clock: Clock, *, until: str | None, folder: Path, finer: float
 ) -> Results:
     depth = _last_of(project, until)
-    warnings: list[str] = []
+    warnings: list[Message] = []
     if depth < STAGES.index("lamellas") and until is None:
-        warnings.append(f"the run ends with the network: {project.network.pattern.no_strips}")
+        warnings.append(
+            Message("ends_with_network", f"the run ends with the network: {project.network.pattern.no_strips}")
+        )
     surface, density, adjusted = planned
     project = fill_in(project, surface)
     clock.progress(Report.detail("sampling the surface for files and pictures"))
@@ -309,9 +312,13 @@ def _complete(
         reason = umbilic_reason(surface.check_points())
         if reason:
             depth = 0
-            warnings.append(f"the run ends with the surface: it is {reason}, and has no net of lamellas")
+            warnings.append(
+                Message(
+                    "ends_with_surface", f"the run ends with the surface: it is {reason}, and has no net of lamellas"
+                )
+            )
     network = lamellas = parts = nesting = others = None
-    told: list[str] = []
+    told: list[Message] = []
     woven: ElementNetwork | TracedNetwork | None = None
     if depth >= STAGES.index("network"):
         table = project.network

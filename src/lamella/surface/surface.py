@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any, Protocol, TypeVar
 
+from lamella.base.message import Message
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.points import Floats, SurfacePoints
 
@@ -66,7 +67,7 @@ class Surface(Protocol[Where]):
     def describe(self) -> dict[str, Any]:
         """Further figures for the summary; "stability" is one where it is asked ("stable", "unstable", "fold")."""
 
-    def warnings(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[Message, ...]:
         """What a user should know about this surface before building it."""
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.wording import counted, cut
 from lamella.files.read.file_curves import CurveFile, FileCurve
 from lamella.files.read.tidy_curves import without_doubles, without_short
@@ -40,12 +41,12 @@ class Chosen:
     ----------
     pieces : Pieces
         Closed, in the file's unit.
-    remarks : tuple of str
+    remarks : tuple of Message
         What was done to it.
     """
 
     pieces: Pieces
-    remarks: tuple[str, ...]
+    remarks: tuple[Message, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +54,7 @@ class _Candidate:
     told: str
     members: Sequence[FileCurve]
     pieces: Pieces
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[Message, ...] = ()
 
 
 def choose_loop(file: CurveFile, layer: str | None, name: str | None, where: str, unit: float) -> Chosen:
@@ -132,7 +133,7 @@ class _Choice:
         own = self.file.tolerance or 0.0
         return max(GAP_LIMIT * size, min(DRAWN / self.unit, DRAWN_SHARE * size), min(own, OWN_SHARE * size))
 
-    def _tidied(self, curves: Sequence[FileCurve]) -> tuple[list[FileCurve], tuple[str, ...]]:
+    def _tidied(self, curves: Sequence[FileCurve]) -> tuple[list[FileCurve], tuple[Message, ...]]:
         """Curves without what is shorter than the tolerance, none of them twice, and remarks on what was left out."""
         long = [curve for curve in curves if curve.pieces.extent > self.limit]
         shorter = len(curves) - len(long)
@@ -144,9 +145,11 @@ class _Choice:
         kept = without_doubles([curve.pieces for curve in cleared], self.limit)
         remarks = []
         if shorter:
-            remarks.append(f"{counted(shorter, 'piece')} of no length left out")
+            remarks.append(Message("pieces_short", f"{counted(shorter, 'piece')} of no length left out"))
         if len(kept) < len(cleared):
-            remarks.append(f"{counted(len(cleared) - len(kept), 'curve')} drawn twice left out")
+            remarks.append(
+                Message("curves_doubled", f"{counted(len(cleared) - len(kept), 'curve')} drawn twice left out")
+            )
         return [cleared[k] for k in kept], tuple(remarks)
 
     def _candidates(self, curves: Sequence[FileCurve]) -> tuple[list[_Candidate], list[FileCurve]]:
@@ -194,15 +197,21 @@ class _Choice:
     def _chained(self, members: Sequence[FileCurve], pieces: Pieces, gaps: Floats) -> _Candidate:
         layers = sorted({curve.layer for curve in members})
         told = self._words(members[0], f"chain of {len(members)}", pieces, "closed")
-        joined = f"joined over the layers {', '.join(repr(cut(layer, _MOST_WORD)) for layer in layers[:4])}"
+        joined = Message(
+            "layers_joined", f"joined over the layers {', '.join(repr(cut(layer, _MOST_WORD)) for layer in layers[:4])}"
+        )
         remarks = ((joined,) if len(layers) > 1 else ()) + self._gap_remark(gaps) + _hidden(members)
         return _Candidate(told, members, pieces, remarks)
 
-    def _gap_remark(self, gaps: Floats) -> tuple[str, ...]:
+    def _gap_remark(self, gaps: Floats) -> tuple[Message, ...]:
         wide = gaps[gaps * self.unit > _WRITTEN]
         if not len(wide):
             return ()
-        return (f"{counted(len(wide), 'gap')} of up to {wide.max() * self.unit * 1000:.2g} mm closed",)
+        return (
+            Message(
+                "gaps_closed", f"{counted(len(wide), 'gap')} of up to {wide.max() * self.unit * 1000:.2g} mm closed"
+            ),
+        )
 
     def _refuse_larger(self, best: _Candidate, opened: Sequence[FileCurve]) -> None:
         """Refuse a closed curve beside a larger one that is open by a gap alone: that one is the boundary."""
@@ -315,9 +324,9 @@ def _naming(members: Sequence[FileCurve]) -> str:
     return f'id = "{cut(name, _MOST_WORD)}"' if name else f'layer = "{cut(members[0].layer, _MOST_WORD)}"'
 
 
-def _hidden(members: Sequence[FileCurve]) -> tuple[str, ...]:
+def _hidden(members: Sequence[FileCurve]) -> tuple[Message, ...]:
     why = sorted({curve.hidden for curve in members if curve.hidden})
-    return tuple(f"it is hidden in the file: {one}" for one in why)
+    return tuple(Message("curve_hidden", f"it is hidden in the file: {one}") for one in why)
 
 
 def _remedy(others: Iterable[str]) -> str:

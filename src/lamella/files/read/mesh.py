@@ -8,6 +8,7 @@ import numpy as np
 
 from lamella.base.byte_order import unmarked
 from lamella.base.drawing_origin import Origin, origin_of
+from lamella.base.message import Message
 from lamella.base.plausible_size import refuse_doubtful
 from lamella.base.wording import counted
 from lamella.files.read.mesh_3dm import read_3dm
@@ -71,7 +72,11 @@ def read_mesh(path: Path, unit: str | None = None, origin: Origin | None = None)
     twice = second_diagonals(np.unique(points, axis=0, return_inverse=True)[1].reshape(-1)[faces])
     faces = faces[~twice]
     if covered.any() or twice.any():
-        notes += (f"{counted(int(covered.sum() + twice.sum()), 'face')} that lie on others left out",)
+        notes += (
+            Message(
+                "faces_covered", f"{counted(int(covered.sum() + twice.sum()), 'face')} that lie on others left out"
+            ),
+        )
     source = (
         f"{path.name}: {len(points)} vertices, {len(found.sizes)} faces"
         f"{_kinds(found)}, unit {name_of(metres)}, {size:.4g} m large"
@@ -129,13 +134,15 @@ def check_polygons(found: Polygons) -> None:
         )
 
 
-def _metres(found: Polygons, asked: float | None) -> tuple[float, tuple[str, ...]]:
+def _metres(found: Polygons, asked: float | None) -> tuple[float, tuple[Message, ...]]:
     """Metres of the file's unit."""
     told = found.metres_per_unit
     if told is not None and asked is not None and abs(told / asked - 1) > 1e-9:
-        return asked, (f"unit {name_of(asked)} of the project, not {name_of(told)} as the file says",)
+        return asked, (
+            Message("unit_overruled", f"unit {name_of(asked)} of the project, not {name_of(told)} as the file says"),
+        )
     if told is None and asked is None:
-        return 1.0, ("the file says no unit: taken as metres",)
+        return 1.0, (Message("unit_assumed", "the file says no unit: taken as metres"),)
     return asked or told or 1.0, ()
 
 

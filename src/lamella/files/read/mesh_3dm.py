@@ -9,6 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from lamella.base.message import Message
 from lamella.base.wording import cut
 from lamella.files.read.raw_mesh import FILE_KEY, Floats, Integers, Polygons, mesh_error
 from lamella.files.read.rhino_model import MAGIC, RhinoLayer, RhinoModel, RhinoObject, read_rhino
@@ -50,13 +51,15 @@ def read_3dm(data: bytes) -> Polygons:
     model = read_rhino(data, "meshes", FILE_KEY)
     shown, hidden = _shown_objects(model)
     parts = [_part(item, number) for number, item in enumerate(shown) if item.kind == "Mesh"]
-    notes = [f"{hidden} hidden objects left out"] if hidden else []
+    notes = [Message("objects_hidden", f"{hidden} hidden objects left out")] if hidden else []
     if not parts:
         parts = _render_meshes(shown, hidden)
-        notes.append("render mesh of " + ", ".join(name for name, _, _ in parts))
+        notes.append(Message("mesh_rendered", "render mesh of " + ", ".join(name for name, _, _ in parts)))
     if len(parts) > 1:
         _require_one_surface(parts)
-        notes.append(f"{len(parts)} meshes joined: " + ", ".join(name for name, _, _ in parts))
+        notes.append(
+            Message("meshes_joined", f"{len(parts)} meshes joined: " + ", ".join(name for name, _, _ in parts))
+        )
     points = np.concatenate([points for _, points, _ in parts])
     starts = np.cumsum([0] + [len(points) for _, points, _ in parts])
     faces = np.concatenate([faces + start for (_, _, faces), start in zip(parts, starts, strict=False)])

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from lamella.base.drawing_origin import NOWHERE, Origin, coordinates
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -37,7 +38,7 @@ class Polygons:
         Corners of each face.
     corners : (sum of sizes,) int
         Vertex indices from 0, face after face.
-    notes : tuple of str
+    notes : tuple of Message
         What the reader of the file left out or decided.
     metres_per_unit : float or None
         From the file's header; None if the format has no units.
@@ -46,7 +47,7 @@ class Polygons:
     points: Floats
     sizes: Integers
     corners: Integers
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     metres_per_unit: float | None = None
 
 
@@ -62,7 +63,7 @@ class RawMesh:
         Vertex indices, in the file's own orientation.
     source : str
         File name, format, numbers of vertices and faces, unit: for the summary.
-    notes : tuple of str
+    notes : tuple of Message
         What the reader left out or decided.
     origin : tuple of float
         Point of the drawing, m.
@@ -71,7 +72,7 @@ class RawMesh:
     points: Floats
     faces: Integers
     source: str = ""
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     origin: Origin = NOWHERE
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
 from lamella.network.density_request import DensityRequest
@@ -149,7 +150,7 @@ class ElementNetwork:
         ways = "'round' or 'adjust'" if self.curves else "'round'"
         return (f"{advice}; " if advice else "no density near this one closes it; ") + f"closing = {ways} may close it"
 
-    def warnings(self, finer: float = 1.0) -> Iterator[str]:
+    def warnings(self, finer: float = 1.0) -> Iterator[Message]:
         """Where the net does not meet itself, umbilics that are no nodes, and where elements do not tell directions.
 
         Parameters
@@ -162,28 +163,31 @@ class ElementNetwork:
             for closed in (False, True)
         )
         if open_:
-            yield (
+            yield Message(
+                "net_open",
                 f"the net does not meet itself along {len(open_)} seam{'s' if len(open_) > 1 else ''}: it misses whole "
-                f"cells by up to {max(open_):.3g} (summary: network.joints); {self._remedy()}"
+                f"cells by up to {max(open_):.3g} (summary: network.joints); {self._remedy()}",
             )
         if rounded:
-            yield (
+            yield Message(
+                "net_rounded",
                 f"the net was closed by rounding {len(rounded)} joint{'s' if len(rounded) > 1 else ''} by up to "
                 f"{max(rounded):.3g} cells: node angles and normal curvatures pay for it"
-                + (f"; {self.lattice.advice}" if self.lattice.advice else "")
+                + (f"; {self.lattice.advice}" if self.lattice.advice else ""),
             )
         umbilics = self.describe()["umbilics"]
         missed = [umbilic for umbilic in umbilics if not umbilic["node"]]
         if missed:
             places = "; ".join(coordinates(umbilic["point"], 3) for umbilic in missed)
-            yield (
+            yield Message(
+                "umbilics_missed",
                 f"{len(missed)} of {len(umbilics)} umbilics are no nodes of the net (at {places} m): "
-                f"lamellas pass around them; {self._remedy()}"
+                f"lamellas pass around them; {self._remedy()}",
             )
         if not rounded:
             yield from self._astray(finer)
 
-    def _astray(self, finer: float) -> Iterator[str]:
+    def _astray(self, finer: float) -> Iterator[Message]:
         """Lamellas whose normal curvature is another one, on the surface or by their written points."""
         network = self.network
         if network.pattern.kind != "lamellas":
@@ -197,23 +201,25 @@ class ElementNetwork:
         far = off > ASTRAY
         if far.any():
             worst = network.sample_points[off.argmax()]
-            yield (
+            yield Message(
+                "lamellas_off",
                 f"the normal curvature of lamellas is off by up to {off.max():.2g} of the curvature scale near "
                 f"({coordinates(worst, 3)}) m (by more than {ASTRAY:g} at {far.mean():.2%} of the samples): "
-                + self._why_astray(worst)
+                + self._why_astray(worst),
             )
 
-    def _unresolved(self, off: Floats) -> Iterator[str]:
+    def _unresolved(self, off: Floats) -> Iterator[Message]:
         """Lamellas that come closer to a corner than the surface's elements follow its curvature."""
         at = self.corners.within(self.network.sample_points, self.corners.cores)
         found = np.unique(at[(at >= 0) & (off > ASTRAY)]).tolist()
         if found:
             places = "; ".join(coordinates(self.corners.points[corner], 3) for corner in found)
-            yield (
+            yield Message(
+                "corners_unresolved",
                 f"next to {counted(len(found), 'corner')} of the boundary (at {places} m) the film is not resolved: "
                 f"within {self.corners.cores[found].max():.2g} m the normal curvature of lamellas is off by up to "
                 f"{off[np.isin(at, found)].max():.2g} of the curvature scale (summary: network.corners); "
-                + self.rounding(found[0])
+                + self.rounding(found[0]),
             )
 
     def corner_stresses(self, utilisation: Floats) -> dict[str, Any]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import rounded
 from lamella.network.assemble import Curves, CurveSamples, SampledCurves, assemble
@@ -109,7 +110,7 @@ class TracedNetwork:
         """Nothing, see `corner_stresses`."""
         return ""
 
-    def warnings(self, finer: float = 1.0) -> Iterator[str]:
+    def warnings(self, finer: float = 1.0) -> Iterator[Message]:
         """Where there are no lamellas, and lamellas of another normal curvature than was asked for.
 
         Parameters
@@ -125,17 +126,19 @@ class TracedNetwork:
                 parts.append(f"{unreal:.1%} of the surface has no direction of normal curvature {wanted:g} 1/m")
             if flat > LEAST_SHARE:
                 parts.append(f"in {flat:.1%} of the surface the two families cross at less than {LEAST_ANGLE:g} deg")
-            yield (
+            yield Message(
+                "lamellas_none",
                 f"{', '.join(parts)}: no lamellas there, {self.inner_ends} of their ends lie inside the surface "
-                "(another normal_curvature moves that edge)"
+                "(another normal_curvature moves that edge)",
             )
         most, usual = (miss / finer for miss in self.missed)
         if wanted is not None and most > PROMISED * self.scale:
-            yield (
+            yield Message(
+                "lamellas_off",
                 f"the normal curvature of the lamellas is off by up to {most:.2g} 1/m, "
                 f"{most / self.scale:.1e} of the curvature scale (at 95 % of the samples by {usual / self.scale:.1e}; "
                 f"limit {PROMISED:g}): a finer and smoother mesh, or a smaller surface.tolerance where there "
-                "are vertices enough for it, tells directions better"
+                "are vertices enough for it, tells directions better",
             )
 
 

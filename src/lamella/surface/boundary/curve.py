@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.surface.boundary.arc_length import Course
 from lamella.surface.boundary.pieces import Floats, Integers, Pieces
 
@@ -78,7 +79,7 @@ class Loop:
         Which corners are none to the eye: at most the curvature's derivative jumps there, and a film's curvature is
         bounded.
     slides : tuple of Slide
-    remarks : tuple of str
+    remarks : tuple of Message
         What was done to a curve of a file.
     """
 
@@ -88,7 +89,7 @@ class Loop:
     turns: Floats
     smooth: NDArray[np.bool_]
     slides: tuple[Slide, ...] = ()
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[Message, ...] = ()
 
     @property
     def length(self) -> float:
@@ -189,7 +190,7 @@ def make_loop(
     pieces: Pieces,
     sliding: Sequence[Sliding] = (),
     *,
-    remarks: tuple[str, ...] = (),
+    remarks: tuple[Message, ...] = (),
     drawn: NDArray[np.bool_] | None = None,
     kept: NDArray[np.bool_] | None = None,
     where: str = "",
@@ -202,7 +203,7 @@ def make_loop(
     pieces : Pieces
         m.
     sliding : sequence of Sliding, optional
-    remarks : tuple of str, optional
+    remarks : tuple of Message, optional
         What was done to the curve.
     drawn : (m,) bool, optional
         Which pieces begin at a knot of the curve as it was drawn, where only some do.

@@ -21,6 +21,7 @@ from math import comb, cos, pi, sin, sqrt
 import numpy as np
 
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.wording import rounded
 from lamella.surface.boundary.curve import Loop, Sliding, make_loop, place
 from lamella.surface.boundary.pieces import Floats, Integers, Pieces, stack
@@ -80,7 +81,11 @@ def rounded_loop(loop: Loop, radius: float, where: str = "") -> Loop:
     found = _corners(loop)
     if not len(found.arc):
         return replace(
-            loop, remarks=(*loop.remarks, f"corner_radius has no corner of {np.degrees(LEAST_TURN):g} degrees to round")
+            loop,
+            remarks=(
+                *loop.remarks,
+                Message("fillets_none", f"corner_radius has no corner of {np.degrees(LEAST_TURN):g} degrees to round"),
+            ),
         )
     reach = radius * np.array([tangent_length(turn) for turn in found.turn.tolist()])
     _refuse_cusps(loop, found, where)
@@ -91,7 +96,10 @@ def rounded_loop(loop: Loop, radius: float, where: str = "") -> Loop:
     remarks = loop.remarks
     if tightest < NEAR * radius:
         remarks += (
-            f"corner_radius = {radius:g} m: between sides that bend fillets have radii down to {tightest:.3g} m",
+            Message(
+                "fillets_tight",
+                f"corner_radius = {radius:g} m: between sides that bend fillets have radii down to {tightest:.3g} m",
+            ),
         )
     # elements that begin and end with a fillet: half as many nodes reach the same tolerance
     ends = fillet | np.roll(fillet, 1)

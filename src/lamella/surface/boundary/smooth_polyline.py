@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.wording import counted
 from lamella.surface.boundary.corners import CORNER_ANGLE, edge_lengths, find_corners, thinned, turning_angles
 from lamella.surface.boundary.pieces import Floats, Pieces, lines, stack
@@ -35,7 +36,9 @@ OFF = 1e-6
 """Of the size, or of the scatter if that is more: how far vertices that are left out may lie off the curve."""
 
 
-def smooth_curve(points: Floats, interpolation: Literal["spline", "polyline"] | None, where: str) -> tuple[Pieces, str]:
+def smooth_curve(
+    points: Floats, interpolation: Literal["spline", "polyline"] | None, where: str
+) -> tuple[Pieces, Message | None]:
     """The curve that a closed polyline of a file means, and a remark on it.
 
     Parameters
@@ -53,7 +56,7 @@ def smooth_curve(points: Floats, interpolation: Literal["spline", "polyline"] | 
     little = ~corner & (turns > STRAIGHT)
     is_curve = np.count_nonzero(little) >= FEWEST and turns[~corner].max() < np.radians(LITTLE)
     if interpolation == "polyline" or (interpolation is None and not is_curve):
-        return lines(points, closed=True), ""
+        return lines(points, closed=True), None
     if not is_curve:
         # few points of a curve, none of which is a corner where the project says spline
         corner = np.zeros(len(points), bool)
@@ -68,7 +71,7 @@ def smooth_curve(points: Floats, interpolation: Literal["spline", "polyline"] | 
             f': they turn by {np.degrees(turns[~corner].max()):.2g} deg at most; write interpolation = "spline" '
             'to say so, or interpolation = "polyline" to keep every one of them as a corner'
         )
-    return pieces, told
+    return pieces, Message("polyline_smooth", told)
 
 
 def _curve(points: Floats, corner: NDArray[np.bool_], where: str) -> tuple[Pieces, float]:

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from lamella.base.drawing_origin import NOWHERE, Origin, origin_of
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.plausible_size import SMALLEST, refuse_doubtful
 from lamella.files.read.choose_curve import choose_loop
 from lamella.files.read.curves_3dm import read_3dm
@@ -134,7 +135,7 @@ def _as_drawn(table: BoundaryTable, origin: Origin, folder: Path, where: str) ->
     """A loop before it is placed; numbers of the table are measured from the origin already, those of files not yet."""
     if table.part is not None:
         return _composed(table.name, table.part, where)
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[Message, ...] = ()
     if table.circle is not None:
         ring = table.circle
         pieces = circle(np.array(ring.center), ring.radius, np.array(ring.normal))
@@ -169,7 +170,7 @@ def _waved(loop: Loop, place: PlaceTable, where: str) -> Loop:
     return make_loop(loop.name, pieces, drawn=drawn, kept=kept, remarks=loop.remarks, where=where)
 
 
-def _chosen(table: BoundaryTable, folder: Path, table_key: str) -> tuple[Pieces, float, tuple[str, ...]]:
+def _chosen(table: BoundaryTable, folder: Path, table_key: str) -> tuple[Pieces, float, tuple[Message, ...]]:
     """The curve of a file in its own unit, that unit in metres, and remarks on the curve."""
     where = f"{table_key}.file"
     path = folder / str(table.file)
@@ -197,7 +198,9 @@ def _chosen(table: BoundaryTable, folder: Path, table_key: str) -> tuple[Pieces,
     return chosen.pieces, unit, chosen.remarks
 
 
-def _from_file(table: BoundaryTable, origin: Origin, folder: Path, table_key: str) -> tuple[Pieces, tuple[str, ...]]:
+def _from_file(
+    table: BoundaryTable, origin: Origin, folder: Path, table_key: str
+) -> tuple[Pieces, tuple[Message, ...]]:
     """The curve of a file, measured from the origin, m, and remarks on it."""
     where = f"{table_key}.file"
     path = folder / str(table.file)

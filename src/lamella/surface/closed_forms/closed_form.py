@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from lamella.base.message import Message
 from lamella.surface.closed_forms import sampling
 from lamella.surface.closed_forms.outline import Outline
 from lamella.surface.mesh import SurfaceMesh
@@ -112,7 +113,7 @@ class ClosedForm(ABC):
         """Facts worth telling beside the project's own numbers (for the summary)."""
         return {}
 
-    def warnings(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[Message, ...]:
         """What a user should know about this surface before building it."""
         return ()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.base.errors import InputError, require_positive
+from lamella.base.message import Message
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.outline import Disc
 from lamella.surface.points import Complexes, Floats, SurfacePoints
@@ -42,12 +43,15 @@ class Enneper(ClosedForm):
         """Parameter radius from which on the surface cuts itself, (2 n - 1)^(1 / (2 n - 2))."""
         return float((2 * self.order - 1) ** (1 / (2 * self.order - 2)))
 
-    def warnings(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[Message, ...]:
         if self.outline.radius < self.crossing_radius:
             return ()
         return (
-            f"surface.radius = {self.outline.radius:g}: Enneper's surface of order {self.order} cuts through "
-            f"itself from a parameter radius of {self.crossing_radius:.4g} on; it cannot be built there",
+            Message(
+                "surface_crosses",
+                f"surface.radius = {self.outline.radius:g}: Enneper's surface of order {self.order} cuts through "
+                f"itself from a parameter radius of {self.crossing_radius:.4g} on; it cannot be built there",
+            ),
         )
 
     def at(self, where: Complexes) -> SurfacePoints:

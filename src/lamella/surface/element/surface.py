@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.base.drawing_origin import NOWHERE, Origin
+from lamella.base.message import Message
 from lamella.base.vectors import dots, images, lengths, symmetric
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import Connectivity, connect
@@ -59,7 +60,7 @@ class ElementSurface:
         m.
     figures : dict
         What `describe` tells.
-    notes : tuple of str
+    notes : tuple of Message
         What `warnings` tells.
     rim_loop : (b,) int
         Boundary loop of each boundary edge of the connectivity.
@@ -75,7 +76,7 @@ class ElementSurface:
     nodes: Floats
     rim_loop: Integers
     figures: dict[str, Any] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     loop_starts: Floats | None = None
     slide_ends: Floats | None = None
 
@@ -348,6 +349,6 @@ class ElementSurface:
         """Further figures for the summary."""
         return dict(self.figures)
 
-    def warnings(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[Message, ...]:
         """What a user should know about this surface before building it."""
         return self.notes

@@ -9,6 +9,7 @@ import numpy as np
 
 from lamella.base.drawing_origin import NOWHERE, coordinates, measured_from, origin_figure, told_from
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, patient, silent
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
@@ -90,34 +91,43 @@ def _of_table(table: FormFoundTable, folder: Path, progress: Progress) -> Elemen
     return found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
 
 
-def remarks_on(loops: tuple[BoundaryLoop, ...]) -> tuple[str, ...]:
+def remarks_on(loops: tuple[BoundaryLoop, ...]) -> tuple[Message, ...]:
     """What was done to boundary curves when they were read."""
-    return tuple(f"the loop {loop.name!r}: {remark}" for loop in loops for remark in loop.remarks)
+    return tuple(remark.of(f"the loop {loop.name!r}") for loop in loops for remark in loop.remarks)
 
 
-def notes_on(found: Found, *, given_curvature: bool = True) -> tuple[str, ...]:
+def notes_on(found: Found, *, given_curvature: bool = True) -> tuple[Message, ...]:
     """What a user should know about a film before building it."""
     notes = []
     verdict = found.stability
     if verdict.verdict == "unstable":
         notes.append(
-            f"the surface is unstable as a film at this mean curvature (lowest Jacobi eigenvalue {verdict.lowest:.4g} "
-            f"1/m2, {verdict.negative} negative): a soap film would leave it "
-            # one condition holds back one mode
-            + ("unless" if verdict.negative == 1 else "even if")
-            + " its volume is held; a stiff net need not"
+            Message(
+                "film_unstable",
+                f"the surface is unstable as a film at this mean curvature (lowest Jacobi eigenvalue "
+                f"{verdict.lowest:.4g} 1/m2, {verdict.negative} negative): a soap film would leave it "
+                # one condition holds back one mode
+                + ("unless" if verdict.negative == 1 else "even if")
+                + " its volume is held; a stiff net need not",
+            )
         )
     elif verdict.verdict == "fold":
         notes.append(
-            f"the surface is at the fold of its family (lowest Jacobi eigenvalue {verdict.lowest:.2g} 1/m2): a "
-            "slightly different boundary may have no surface at all"
+            Message(
+                "film_fold",
+                f"the surface is at the fold of its family (lowest Jacobi eigenvalue {verdict.lowest:.2g} 1/m2): a "
+                "slightly different boundary may have no surface at all",
+            )
         )
     if given_curvature and verdict.verdict != "fold" and verdict.beside < BESIDE * found.equilibrium.film.size:
         stable = verdict.verdict == "stable"
         notes.append(
-            f"another surface of the same mean curvature is beside this one, up to about {verdict.beside:.2g} m away: "
-            f'this is the {verdict.verdict} one, branch = "{"unstable" if stable else "stable"}" finds the other. '
-            "Which of the two is the one meant may depend on small changes of the boundary"
+            Message(
+                "film_beside",
+                f"another surface of the same mean curvature is beside this one, up to about {verdict.beside:.2g} m "
+                f'away: this is the {verdict.verdict} one, branch = "{"unstable" if stable else "stable"}" finds the '
+                "other. Which of the two is the one meant may depend on small changes of the boundary",
+            )
         )
     hanging = _hanging(found.equilibrium.film, found.equilibrium.mean_curvature, given_curvature=given_curvature)
     if hanging:
@@ -126,14 +136,17 @@ def notes_on(found: Found, *, given_curvature: bool = True) -> tuple[str, ...]:
     if crossing is not None:
         place = crossing[np.linalg.norm(crossing - crossing.mean(0), axis=1).argmin()]
         notes.append(
-            f"the surface passes through itself, as near ({coordinates(place)}) m: it is a surface of this "
-            "boundary, but cannot be built"
+            Message(
+                "surface_crosses",
+                f"the surface passes through itself, as near ({coordinates(place)}) m: it is a surface of this "
+                "boundary, but cannot be built",
+            )
         )
     return tuple(notes)
 
 
-def _hanging(film: Film, mean_curvature: float, *, given_curvature: bool) -> str:
-    """That a film is pressed down below its boundary, z being up, and what makes a dome of it; empty: it is not.
+def _hanging(film: Film, mean_curvature: float, *, given_curvature: bool) -> Message | None:
+    """That a film is pressed down below its boundary, z being up, and what makes a dome of it; None: it is not.
 
     A film without pressure stays in the convex hull of its boundary.
     """
@@ -141,12 +154,13 @@ def _hanging(film: Film, mean_curvature: float, *, given_curvature: bool) -> str
     rim = height[np.unique(film.connectivity.rim_nodes)]
     below, above, least = rim.min() - height.min(), height.max() - rim.max(), HANGS * film.size
     if below <= least or above > least:
-        return ""
+        return None
     value = f"mean_curvature = {-mean_curvature:.6g}"
-    return (
+    return Message(
+        "film_hangs",
         f"the surface hangs up to {below:.3g} m below its boundary (z is up): where a dome is meant, "
         + (f"write {value}" if given_curvature else "write the volume with the other sign")
-        + ", or reverse the first loop"
+        + ", or reverse the first loop",
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from lamella.base.message import Message
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.newton import Equilibrium
@@ -37,7 +38,7 @@ class Found:
     start_steps: int
     followed: bool
 
-    def surface(self, kind: str, notes: tuple[str, ...] = (), **figures: Any) -> ElementSurface:
+    def surface(self, kind: str, notes: tuple[Message, ...] = (), **figures: Any) -> ElementSurface:
         """The surface as later stages see it, with further figures for the summary."""
         film = self.equilibrium.film
         known = {

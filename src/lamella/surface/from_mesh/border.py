@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.base.message import Message
 from lamella.base.wording import loop_names
 from lamella.files.read.raw_mesh import Floats
 from lamella.surface.boundary.corners import CORNER_ANGLE, edge_lengths, find_corners, thinned
@@ -29,13 +30,13 @@ class BorderCurve:
         m, not repeated at the end, surface to the left.
     corner : (k,) bool
         Where the curve has a corner.
-    notes : tuple of str
+    notes : tuple of Message
         What was thinned or smoothed.
     """
 
     points: Floats
     corner: NDArray[np.bool_]
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
 
 
 def border_curves(
@@ -57,7 +58,7 @@ def border_curves(
         points = mesh.points[loop]
         spacing = float(edge_lengths(points).sum()) / most if most and len(loop) > most else None
         curve = border_curve(points, normals[loop], corner_angle, spacing)
-        curves.append(BorderCurve(curve.points, curve.corner, tuple(f"the {name}: {note}" for note in curve.notes)))
+        curves.append(BorderCurve(curve.points, curve.corner, tuple(note.of(f"the {name}") for note in curve.notes)))
     return tuple(curves)
 
 
@@ -83,8 +84,11 @@ def border_curve(
     if is_zigzag(points, normals):
         points, move = smooth_zigzag(points)
         notes.append(
-            f"its edges turn to and fro; a smooth curve was laid through them, which moves vertices by up to "
-            f"{1000 * move:.3g} mm"
+            Message(
+                "border_zigzag",
+                f"its edges turn to and fro; a smooth curve was laid through them, which moves vertices by up to "
+                f"{1000 * move:.3g} mm",
+            )
         )
     before = len(points)
     limit = TOO_CLOSE * float(np.median(edge_lengths(points)))
@@ -98,11 +102,19 @@ def border_curve(
         kept = thinned(np.column_stack((points, corner)), corner, limit)
         points, corner = kept[:, :3], kept[:, 3] > 0
     if len(points) < before:
-        notes.append(f"{before - len(points)} of {before} vertices left out, closer than {1000 * limit:.3g} mm")
+        notes.append(
+            Message(
+                "border_thinned",
+                f"{before - len(points)} of {before} vertices left out, closer than {1000 * limit:.3g} mm",
+            )
+        )
     points, scatter, move = smooth_scatter(points, corner)
     if scatter:
         notes.append(
-            f"its vertices scatter by {1000 * scatter:.2g} mm about a smooth curve; that was taken, which moves "
-            f"vertices by up to {1000 * move:.2g} mm"
+            Message(
+                "border_scatter",
+                f"its vertices scatter by {1000 * scatter:.2g} mm about a smooth curve; that was taken, which moves "
+                f"vertices by up to {1000 * move:.2g} mm",
+            )
         )
     return BorderCurve(points, corner, tuple(notes))

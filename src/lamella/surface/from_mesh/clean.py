@@ -9,6 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from lamella.base.message import Message
 from lamella.base.wording import counted
 from lamella.files.read.raw_mesh import Floats, Integers, RawMesh, mesh_error, place
 from lamella.surface.from_mesh.cracks import NEAR_EDGE, close_t_junctions, near_border
@@ -42,14 +43,14 @@ class CleanMesh:
         Triangles, counter-clockwise about the normal.
     borders : tuple of (k,) int
         Border loops as vertex indices, the longest (outer) one first, with the surface to the left.
-    notes : tuple of str
+    notes : tuple of Message
         What was mended, for the summary.
     """
 
     points: Floats
     faces: Integers
     borders: tuple[Integers, ...]
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
 
 
 def clean(raw: RawMesh) -> CleanMesh:
@@ -69,28 +70,43 @@ def clean(raw: RawMesh) -> CleanMesh:
     points, faces = merged.points, merged.faces
     # An .stl has no shared vertices: merging them there is reading, not mending.
     if merged.equal and len(raw.points) != 3 * len(raw.faces):
-        notes.append(f"{counted(merged.equal, 'vertex', 'vertices')} merged with others at the same place")
+        notes.append(
+            Message(
+                "vertices_merged", f"{counted(merged.equal, 'vertex', 'vertices')} merged with others at the same place"
+            )
+        )
     if merged.welded:
         notes.append(
-            f"{counted(merged.welded, 'border vertex', 'border vertices')} welded to others "
-            + (f"up to {1000 * merged.gap:.2g} mm away" if merged.gap > ROUNDING else "a rounding away")
+            Message(
+                "vertices_welded",
+                f"{counted(merged.welded, 'border vertex', 'border vertices')} welded to others "
+                + (f"up to {1000 * merged.gap:.2g} mm away" if merged.gap > ROUNDING else "a rounding away"),
+            )
         )
     whole = drop_collapsed(faces)
     single = drop_repeated(whole)
     if len(whole) < len(faces):
-        notes.append(f"{counted(len(faces) - len(whole), 'face')} without area removed")
+        notes.append(Message("faces_collapsed", f"{counted(len(faces) - len(whole), 'face')} without area removed"))
     if len(single) < len(whole):
-        notes.append(f"{counted(len(whole) - len(single), 'face')} given twice removed")
+        notes.append(Message("faces_repeated", f"{counted(len(whole) - len(single), 'face')} given twice removed"))
     faces, removed, left = remove_slivers(points, single)
     if removed:
-        notes.append(f"{counted(removed, 'sliver')} removed")
+        notes.append(Message("slivers_removed", f"{counted(removed, 'sliver')} removed"))
     if left:
-        notes.append(f"{counted(left, 'sliver')} left: without them the mesh would be connected differently")
+        notes.append(
+            Message(
+                "slivers_left", f"{counted(left, 'sliver')} left: without them the mesh would be connected differently"
+            )
+        )
     if not len(faces):
         raise mesh_error("the mesh has no faces with an area", "export it again")
     faces, closed = close_t_junctions(points, faces)
     if closed:
-        notes.append(f"{counted(closed, 'T-junction')} closed: faces split at vertices on their edges")
+        notes.append(
+            Message(
+                "t_junctions_closed", f"{counted(closed, 'T-junction')} closed: faces split at vertices on their edges"
+            )
+        )
     edges = find_edges(faces)
     _require_two_faces_an_edge(points, edges)
     faces, dropped = _one_piece(points, faces, edges)
@@ -119,13 +135,13 @@ def _require_two_faces_an_edge(points: Floats, edges: Edges) -> None:
         )
 
 
-def _one_piece(points: Floats, faces: Integers, edges: Edges) -> tuple[Integers, str]:
+def _one_piece(points: Floats, faces: Integers, edges: Edges) -> tuple[Integers, Message | None]:
     """Faces of the one large piece, and a note about fragments dropped."""
     one, two = (edges.inner_pairs // 3).T
     graph = coo_array((np.ones(len(one), dtype=np.int8), (one, two)), shape=(len(faces), len(faces)))
     count, label = connected_components(graph, directed=False)
     if count == 1:
-        return faces, ""
+        return faces, None
     areas = np.bincount(label, np.linalg.norm(face_normals(points, faces), axis=1) / 2, count)
     large = np.flatnonzero(areas >= FRAGMENT * areas.sum())
     if len(large) > 1:
@@ -139,7 +155,7 @@ def _one_piece(points: Floats, faces: Integers, edges: Edges) -> tuple[Integers,
             "keep one of them; if they should be one surface, join them and weld their vertices",
         )
     share = 1 - float(areas[large[0]] / areas.sum())
-    note = f"{counted(count - 1, 'fragment')} dropped, together {share:.2g} of the area"
+    note = Message("fragments_dropped", f"{counted(count - 1, 'fragment')} dropped, together {share:.2g} of the area")
     return faces[label == large[0]], note
 
 

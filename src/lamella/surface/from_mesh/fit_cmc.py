@@ -11,6 +11,7 @@ import numpy as np
 
 from lamella.base.drawing_origin import measured_from, origin_figure, told_from
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
 from lamella.files.read.mesh import read_mesh
 from lamella.files.read.raw_mesh import Floats, RawMesh
@@ -110,7 +111,7 @@ def _constant(
     raw: RawMesh,
     mesh: CleanMesh,
     loops: tuple[Loop, ...],
-    notes: tuple[str, ...],
+    notes: tuple[Message, ...],
     table: MeshTable,
     progress: Progress,
 ) -> ElementSurface:
@@ -230,42 +231,61 @@ def _refuse_far(distance: Floats, here: Equilibrium) -> None:
         )
 
 
-def _told_off(distance: Floats, size: float, fit: Fit) -> tuple[str, ...]:
+def _told_off(distance: Floats, size: float, fit: Fit) -> tuple[Message, ...]:
     """That the surface is not the mesh."""
     typical = float(np.sqrt((distance**2).mean()))
     if typical <= OFF * size:
         return ()
     return (
-        f"the surface is not the mesh, but the one of constant mean curvature next to it: vertices lie {typical:.2g} m "
-        f"off it (root mean square; up to {distance.max():.2g} m), their curvature varies by {fit.deviation:.1%} of "
-        "the curvature scale",
+        Message(
+            "mesh_far",
+            f"the surface is not the mesh, but the one of constant mean curvature next to it: vertices lie "
+            f"{typical:.2g} m off it (root mean square; up to {distance.max():.2g} m), their curvature varies by "
+            f"{fit.deviation:.1%} of the curvature scale",
+        ),
     )
 
 
-def _told_zero(mean_curvature: float, nearest: float) -> tuple[str, ...]:
+def _told_zero(mean_curvature: float, nearest: float) -> tuple[Message, ...]:
     """That H was taken as 0, if it was and is more than rounding."""
     if mean_curvature == nearest or abs(nearest) < LEAST:
         return ()
-    return (f"H taken as 0: the surface nearest to the mesh has H = {nearest:.4g} 1/m, less than a mesh can tell",)
+    return (
+        Message(
+            "curvature_zero",
+            f"H taken as 0: the surface nearest to the mesh has H = {nearest:.4g} 1/m, less than a mesh can tell",
+        ),
+    )
 
 
-def _doubts(fit: Fit, mean_curvature: float, nearest: float, given: float | None, exact: bool) -> tuple[str, ...]:
+def _doubts(fit: Fit, mean_curvature: float, nearest: float, given: float | None, exact: bool) -> tuple[Message, ...]:
     """Where the surface is not the one that fits the mesh best."""
     if given is not None:
         if abs(given - fit.mean_curvature) > 0.05 * fit.scale:
-            return (f"mean_curvature = {given:g} 1/m is not what the mesh has: {fit.mean_curvature:.4g} 1/m fits best",)
+            return (
+                Message(
+                    "curvature_given",
+                    f"mean_curvature = {given:g} 1/m is not what the mesh has: {fit.mean_curvature:.4g} 1/m fits best",
+                ),
+            )
         return ()
     doubts = []
     if not mean_curvature and abs(nearest) > TOLD * fit.scale:
         doubts.append(
-            f"mean_curvature is taken as 0: the surface nearest to the mesh has {nearest:.4g} 1/m, "
-            f"{abs(nearest) / fit.scale:.1g} of the curvature scale (0 up to {MINIMAL:g}); write mean_curvature = "
-            f"{nearest:.6g} to keep it"
+            Message(
+                "curvature_zero",
+                f"mean_curvature is taken as 0: the surface nearest to the mesh has {nearest:.4g} 1/m, "
+                f"{abs(nearest) / fit.scale:.1g} of the curvature scale (0 up to {MINIMAL:g}); write mean_curvature = "
+                f"{nearest:.6g} to keep it",
+            )
         )
     if not exact and abs(nearest - fit.mean_curvature) > 0.05 * fit.scale:
         doubts.append(
-            f"the surface nearest to the mesh has H = {nearest:.5g} 1/m, but the curvature at the vertices is "
-            f"{fit.mean_curvature:.5g} 1/m: the mesh is rough, or not of constant mean curvature"
+            Message(
+                "mesh_rough",
+                f"the surface nearest to the mesh has H = {nearest:.5g} 1/m, but the curvature at the vertices is "
+                f"{fit.mean_curvature:.5g} 1/m: the mesh is rough, or not of constant mean curvature",
+            )
         )
     return tuple(doubts)
 

@@ -21,6 +21,7 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.progress import Progress, Report
 from lamella.files.read.raw_mesh import Integers
 from lamella.surface.boundary import Loop, check_loops
@@ -324,7 +325,7 @@ def kept_surface(
     loops: tuple[Loop, ...],
     table: MeshTable,
     source: str,
-    notes: tuple[str, ...],
+    notes: tuple[Message, ...],
     progress: Progress,
 ) -> VaryingSurface:
     """The mesh's own surface as later stages see it.
@@ -369,12 +370,15 @@ def kept_surface(
     if smoothed is not None and np.median(errors) > OPEN * scale:
         raise _too_scattered(smoothed, mesh.faces, flat.mesh.loop >= 0, float(np.median(errors)) / scale, scale)
     distance = distances(film, given)
-    doubts: tuple[str, ...] = ()
+    doubts: tuple[Message, ...] = ()
     if typical > table.tolerance:
         doubts = (
-            f"the mesh tells its curvature to {typical:.2g} of the curvature scale only (surface.tolerance = "
-            f"{table.tolerance:g}): by so much the surfaces around neighbouring vertices differ; a smoother or a finer "
-            "mesh tells more",
+            Message(
+                "mesh_rough",
+                f"the mesh tells its curvature to {typical:.2g} of the curvature scale only (surface.tolerance = "
+                f"{table.tolerance:g}): by so much the surfaces around neighbouring vertices differ; a smoother or "
+                "a finer mesh tells more",
+            ),
         )
     rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
     figures = {
@@ -398,14 +402,15 @@ def kept_surface(
     )
 
 
-def _moved(smoothed: Smoothed, given: Floats, border: Booleans) -> str:
+def _moved(smoothed: Smoothed, given: Floats, border: Booleans) -> Message:
     """What was done to vertices that scatter."""
     move = 1000 * np.linalg.norm(smoothed.points - given, axis=1)
     rim = float(move[border].max(initial=0))
-    return (
+    return Message(
+        "mesh_scatter",
         f"its vertices scatter by {1000 * smoothed.scatter:.2g} mm (standard deviation) about a smooth surface; that "
         f"was taken, which moves vertices by up to {move.max():.2g} mm ({np.sqrt((move**2).mean()):.2g} mm root mean "
-        f"square), " + (f"those of the border by up to {rim:.2g} mm" if rim else "none of the border")
+        f"square), " + (f"those of the border by up to {rim:.2g} mm" if rim else "none of the border"),
     )
 
 

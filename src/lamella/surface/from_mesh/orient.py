@@ -6,6 +6,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from lamella.base.message import Message
 from lamella.files.read.raw_mesh import Floats, Integers, mesh_error
 from lamella.surface.from_mesh.edges import Edges, face_normals
 
@@ -13,7 +14,7 @@ LEVEL = 1e-3
 """Below this part of the flux of a sphere of the same area, a surface has no side that is "outwards"."""
 
 
-def orient(points: Floats, faces: Integers, edges: Edges) -> tuple[Integers, str]:
+def orient(points: Floats, faces: Integers, edges: Edges) -> tuple[Integers, Message]:
     """Turn faces so that neighbours agree.
 
     Every face stands twice in a graph, as it is and turned; edges join the copies that agree. If a face is connected
@@ -29,7 +30,7 @@ def orient(points: Floats, faces: Integers, edges: Edges) -> tuple[Integers, str
     Returns
     -------
     faces : (m, 3) int
-    note : str
+    note : Message
         The file's own orientation if all faces agreed; otherwise the normal away from the centroid, or that of most
         of the file's faces where the surface has no outside.
     """
@@ -48,7 +49,7 @@ def orient(points: Floats, faces: Integers, edges: Edges) -> tuple[Integers, str
             "cut it open, or look for a face that is twisted against its neighbours",
         )
     if agree.all():
-        return faces, "normals: the file's own orientation"
+        return faces, Message("normals_kept", "normals: the file's own orientation")
     turned = label[:count] != label[0]
     number = int(min(np.count_nonzero(turned), np.count_nonzero(~turned)))
     faces = np.where(turned[:, None], faces[:, ::-1], faces)
@@ -56,11 +57,16 @@ def orient(points: Floats, faces: Integers, edges: Edges) -> tuple[Integers, str
     if outwards == 0:
         most = 2 * np.count_nonzero(turned) > count
         faces = faces[:, ::-1] if most else faces
-        return faces, f"normals: {number} of {count} faces disagreed with the others and were turned"
+        return faces, Message(
+            "normals_most", f"normals: {number} of {count} faces disagreed with the others and were turned"
+        )
     faces = faces if outwards > 0 else faces[:, ::-1]
     return faces, (
-        f"normals: the faces did not agree ({number} of {count} against the others); "
-        "now all point away from the centroid"
+        Message(
+            "normals_outwards",
+            f"normals: the faces did not agree ({number} of {count} against the others); "
+            "now all point away from the centroid",
+        )
     )
 
 

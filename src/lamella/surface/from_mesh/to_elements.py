@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from lamella.base.errors import InputError
+from lamella.base.message import Message
 from lamella.base.wording import loop_names
 from lamella.files.read.raw_mesh import Floats
 from lamella.surface.boundary import Loop, make_loop
@@ -23,7 +24,7 @@ SAMPLES = 24
 FOOT_STEPS = 6
 
 
-def border_loops(mesh: CleanMesh, corner_angle: float) -> tuple[tuple[Loop, ...], tuple[str, ...]]:
+def border_loops(mesh: CleanMesh, corner_angle: float) -> tuple[tuple[Loop, ...], tuple[Message, ...]]:
     """Smooth loops through the borders of a mesh, with their corners, and what was done to them."""
     curves = border_curves(mesh, corner_angle, MOST_BORDER_POINTS)
     loops = tuple(_loop(curve, name) for curve, name in zip(curves, loop_names(len(mesh.borders)), strict=True))
