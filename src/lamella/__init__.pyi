@@ -24,9 +24,9 @@ from lamella.projection.quad_mesh import QuadMesh as QuadMesh
 from lamella.projection.quad_mesh import quad_mesh as quad_mesh
 from lamella.stages.pipeline import Results as Results
 from lamella.stages.pipeline import compute as compute
-from lamella.stages.pipeline import make_surface as make_surface
 from lamella.stages.pipeline import run as run
 from lamella.stages.pipeline import write as write
+from lamella.stages.surface_of_table import make_surface as make_surface
 from lamella.strip.lamellas import Lamellas as Lamellas
 from lamella.strip.lamellas import Section as Section
 from lamella.strip.lamellas import make_lamellas as make_lamellas

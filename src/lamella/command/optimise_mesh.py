@@ -316,7 +316,7 @@ def _require_near(mesh: QuadMesh, surface: Surface[Any], wishes: Wishes) -> None
 def _surface(given: QuadFile, wishes: Wishes, progress: Progress) -> Surface[Any]:
     """That of a project, or the surface of constant mean curvature the mesh itself means."""
     from lamella.project.read import located, parse_project, read_project
-    from lamella.stages.pipeline import make_surface
+    from lamella.stages.surface_of_table import make_surface
 
     if wishes.surface is not None:
         project = read_project(wishes.surface)

@@ -29,10 +29,10 @@ from lamella.stages import summary
 from lamella.stages import warnings as cautions
 from lamella.stages.clock import Clock
 from lamella.stages.other_cells import OtherCells
+from lamella.stages.surface_of_table import make_surface
 from lamella.strip.lamellas import Lamellas, Section, make_lamellas
 from lamella.strip.layer_curves import check_layer_curves
 from lamella.surface.closed_forms.closed_form import ClosedForm
-from lamella.surface.closed_forms.kinds import CLOSED_FORMS
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
@@ -90,44 +90,6 @@ class Results:
 
 Planned = tuple[Surface[Any], "Density | None", "Adjusted | None"]
 """The surface, the density of the net where that is arithmetic, and the boundary where it was adjusted."""
-
-
-def make_surface(project: Project, folder: str | Path = Path(), progress: Progress = silent) -> Surface[Any]:
-    """The surface a project describes.
-
-    Parameters
-    ----------
-    project : Project
-    folder : str or Path
-        Where the files a project names are looked for: the folder of the project file.
-    progress : callable
-        Is told of the steps where a surface has to be found.
-
-    Raises
-    ------
-    InputError
-        No such surface.
-    """
-    table, folder = project.surface, Path(folder)
-    if table.kind not in ("form-found", "mesh"):
-        return CLOSED_FORMS[table.kind](**table.model_dump(exclude={"kind"}))
-    too_low = cautions.order_caution(table.order, table.tolerance, table.most_nodes)
-    if too_low:
-        progress(Report.step(too_low))
-    try:
-        if table.kind == "form-found":
-            from lamella.surface.form_finding.find import surface_of_table as find
-
-            progress(Report.step("finding the surface between its curves"))
-            return find(table, folder, progress)
-        from lamella.surface.from_mesh.fit_cmc import surface_of_table as adopt
-
-        progress(Report.step("reading the mesh"))
-        return adopt(table, folder, progress)
-    except InputError as error:
-        if too_low and error.where == "surface.tolerance":
-            raise InputError(error.message, f"write order = 3 or 4, or {error.remedy}", error.where) from None
-        raise
 
 
 def plan(
@@ -510,4 +472,4 @@ def write(results: Results, target: str | Path, *, progress: Progress = silent) 
         write_summary(folder, results.summary | {"seconds": seconds})
 
 
-__all__ = ["STAGES", "Results", "compute", "make_surface", "plan", "run", "write"]
+__all__ = ["STAGES", "Results", "compute", "plan", "run", "write"]
