@@ -11,10 +11,11 @@ import pytest
 
 from conftest import KINDS, draw_surface
 from lamella import Catenoid, Cylinder, Enneper, InputError, Scherk, Unduloid
+from lamella.base.arrays import Floats
 from lamella.stages.summary import surface_summary
 from lamella.surface.closed_forms.kinds import CLOSED_FORMS
 from lamella.surface.mesh import SurfaceMesh
-from lamella.surface.points import Floats, SurfacePoints
+from lamella.surface.points import SurfacePoints
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import refuse_umbilic, umbilic_reason
 

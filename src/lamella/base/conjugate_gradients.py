@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from lamella.surface.points import Floats
+from lamella.base.arrays import Floats
 
 
 def conjugate_gradients(

@@ -14,9 +14,10 @@ from contextvars import ContextVar
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Floats = NDArray[np.float64]
+from lamella.base.arrays import Floats
+
 Origin = tuple[float, float, float]
 
 FAR = 1000.0

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Integers = NDArray[np.int64]
+from lamella.base.arrays import Integers
 
 
 def ragged_ranges(counts: Integers) -> Integers:

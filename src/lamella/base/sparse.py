@@ -14,9 +14,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-AnyIntegers = NDArray[np.int32] | NDArray[np.int64]
+from lamella.base.arrays import Floats, Integers
+
+AnyIntegers = NDArray[np.int32] | Integers
 Backend = Literal["rslab", "splu"]
 
 # minimum degree orders small systems faster, nested dissection larger ones better

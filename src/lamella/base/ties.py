@@ -11,9 +11,8 @@ with a margin.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lamella.surface.points import Floats
+from lamella.base.arrays import Floats, Integers
 
 # differences of angles (rad), and of shapes and lengths in parts of themselves, that decide nothing
 MARGIN = 1e-6
@@ -46,6 +45,6 @@ def nearest_whole(values: Floats) -> Floats:
     return np.asarray(np.floor(values + (0.5 + MARGIN)))
 
 
-def least_axis(vectors: Floats) -> NDArray[np.int64]:
+def least_axis(vectors: Floats) -> Integers:
     """Coordinate in which unit vectors (..., 3) are smallest, the first of equal ones, (...)."""
     return np.asarray(np.rint(np.abs(vectors) / MARGIN).argmin(-1))

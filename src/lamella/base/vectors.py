@@ -6,9 +6,8 @@ Symmetric matrices are rows of six entries: xx, xy, xz, yy, yz, zz.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from lamella.base.arrays import Floats
 
 
 def dots(one: Floats, other: Floats) -> Floats:

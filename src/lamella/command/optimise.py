@@ -17,12 +17,12 @@ from lamella.command.screen import Screen
 from lamella.files.ours import is_ours
 
 if TYPE_CHECKING:
+    from lamella.base.arrays import Floats
     from lamella.command.optimise_mesh import Optimised
     from lamella.files.quad_mesh_files import QuadFile
     from lamella.projection.mesh_figures import MeshFigures
     from lamella.projection.quad_mesh import QuadMesh
     from lamella.projection.report import Solution
-    from lamella.projection.unknowns import Floats
 
 DRIVEN = "#d60000"
 # iterations to judge progress by, and what of the remainder a hopeful run leaves in them

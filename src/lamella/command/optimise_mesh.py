@@ -10,6 +10,7 @@ from typing import Any, cast, get_args
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
@@ -25,7 +26,6 @@ from lamella.projection.problems.sphere_stars import sphere_stars
 from lamella.projection.problems.straighten import straighten
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 from lamella.projection.report import Iteration, Solution
-from lamella.projection.unknowns import Floats
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import refuse_umbilic

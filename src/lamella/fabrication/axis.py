@@ -10,10 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+from lamella.base.arrays import Complexes, Floats, Integers
 
 # Newton's steps for the station of a point of an edge
 STEPS = 4
@@ -45,7 +44,7 @@ class Axis:
 
     knots: Floats
     curvatures: Floats
-    places: NDArray[np.complex128]
+    places: Complexes
     headings: Floats
     references: Floats
 
@@ -94,7 +93,7 @@ class Axis:
         piece = self.piece(stations)
         return np.asarray(self.headings[piece] + self.curvatures[piece] * (stations - self.references[piece]))
 
-    def _points(self, stations: Floats, heights: Floats) -> NDArray[np.complex128]:
+    def _points(self, stations: Floats, heights: Floats) -> Complexes:
         piece = self.piece(stations)
         ahead, begin = stations - self.references[piece], self.headings[piece]
         half = 0.5 * self.curvatures[piece] * ahead

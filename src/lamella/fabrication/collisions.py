@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats
 from lamella.network.network import BOUNDARY, Network
-
-Floats = NDArray[np.float64]
 
 
 def end_collisions(network: Network, before: Floats, after: Floats, spread: float) -> tuple[list[str], float]:

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.fabrication.part import Part
 from lamella.fabrication.stroke_font import text_strokes, text_width
-
-Floats = NDArray[np.float64]
 
 # a line this near to an end (m) would burn along the cut
 NEAR_END = 1e-6

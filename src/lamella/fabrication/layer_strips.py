@@ -9,16 +9,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.fabrication.axis import Axis
 from lamella.fabrication.oblique import Askew
 from lamella.fabrication.rules import clear_hub
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas, crossings
 from lamella.strip.layers import SIDES
-
-Floats = NDArray[np.float64]
 
 # samples a piece of centre line that is cut as one arc: its direction is off by d tg'' s^2 / 8, next to nothing
 STRIDE = 4
@@ -167,7 +165,7 @@ class LayerStrips:
             most = max(most, float(np.abs(off).max()))
         return most
 
-    def first_slot(self, crossing: NDArray[np.bool_]) -> float:
+    def first_slot(self, crossing: Booleans) -> float:
         """Least distance along a strip from a singular node to the next slot's axis, m; infinite if there is none."""
         network = self.network
         same = network.stop_owner[1:] == network.stop_owner[:-1]

@@ -14,11 +14,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.network.network import Network
-
-Floats = NDArray[np.float64]
 
 # deg: a net whose angles are nowhere farther off is one of right angles, its layers are cut alike
 RIGHT = 0.5

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.base.message import Message
 from lamella.fabrication.axis import Axis
 from lamella.fabrication.flat import extents
-
-Floats = NDArray[np.float64]
 
 # points an arc whose bounds and distances are taken from them
 BOUND_POINTS = 33

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.fabrication.axis import Axis, outline
 from lamella.fabrication.collisions import end_collisions
 from lamella.fabrication.flat import outline_area
@@ -17,8 +17,6 @@ from lamella.fabrication.splitting import cut_stations
 from lamella.fabrication.warnings import Notes
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas, crossings
-
-Floats = NDArray[np.float64]
 
 
 def make_parts(
@@ -152,8 +150,8 @@ def _lamella_parts(
     strip: LayerStrip,
     family: str,
     closed: bool,
-    crossing: NDArray[np.bool_],
-    hub: NDArray[np.bool_],
+    crossing: Booleans,
+    hub: Booleans,
     rules: Rules,
     longest: float,
     notes: Notes,

@@ -8,12 +8,10 @@ from pathlib import Path
 
 import ezdxf
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.fabrication.axis import Axis
 from lamella.files.write.dxf_text import APPLICATION
-
-Floats = NDArray[np.float64]
 
 # sine of the turn at a corner: edges that go over into each other do not turn at all
 SHARP = 0.5

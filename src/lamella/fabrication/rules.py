@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lamella.base.errors import InputError
 from lamella.base.wording import rounded
 from lamella.fabrication.flat import longest_fitting
-
-Floats = NDArray[np.float64]
 
 # a flat ring closer to a full turn than this would leave its ends no room
 LARGEST_TURN = 1.9 * np.pi

@@ -6,15 +6,13 @@ import csv
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.fabrication.part import Part, Parts
 from lamella.fabrication.sheet import Nesting
 from lamella.files.write.text import csv_comment
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
-
-Floats = NDArray[np.float64]
 
 # parts that differ by less (m) can stand for each other
 CONGRUENT = 1e-5
@@ -149,7 +147,7 @@ def _net_section(part: Part, network: Network, lamellas: Lamellas) -> float:
     return float(lamellas.net_utilisation[stops][on].max(initial=0.0))
 
 
-def _samples(part: Part, network: Network, lamellas: Lamellas) -> NDArray[np.int64]:
+def _samples(part: Part, network: Network, lamellas: Lamellas) -> Integers:
     """Indices of the network's samples that lie on a part; a part has a node, so there is one at least."""
     stops = slice(int(network.stop_offsets[part.lamella]), int(network.stop_offsets[part.lamella + 1]))
     first, last = int(network.sample_offsets[part.lamella]), int(network.sample_offsets[part.lamella + 1])

@@ -8,12 +8,9 @@ from dataclasses import dataclass
 from math import cos, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.fabrication.part import Part, Parts
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

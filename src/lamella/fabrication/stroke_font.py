@@ -7,9 +7,8 @@ grid points "xy"; no segment is drawn twice, so that a laser does not burn it de
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from lamella.base.arrays import Floats
 
 WIDTH, HEIGHT, ADVANCE = 4, 6, 6
 

@@ -14,11 +14,11 @@ import numpy as np
 import orjson
 
 from lamella import __version__
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.wording import cut, shown
 from lamella.files.read.raw_mesh import Polygons
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
-from lamella.projection.unknowns import Floats
 
 DTYPE = "compas.datastructures/Mesh"
 WRITE = "write it with mesh.to_json(...) of COMPAS"

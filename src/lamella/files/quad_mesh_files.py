@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.plausible_size import SMALLEST
@@ -24,7 +25,6 @@ from lamella.files.read.raw_mesh import Polygons
 from lamella.files.write.text import dumped, require_finite, rows
 from lamella.projection.mesh_figures import MeshFigures
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
-from lamella.projection.unknowns import Floats
 
 READERS = {".obj": read_obj, ".ply": read_ply, ".3dm": read_3dm}
 FORMATS = (*READERS, ".json")

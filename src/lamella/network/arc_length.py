@@ -5,12 +5,9 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 # Gauss-Legendre points a cell to begin with, and at most
 POINTS, MOST_POINTS = 12, 768

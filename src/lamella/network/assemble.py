@@ -8,15 +8,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.network.faces import Faces, trace_faces
 from lamella.network.network import FAMILIES, Network, Period
 from lamella.network.pattern import Pattern
 from lamella.network.sampling import Division
 from lamella.surface.darboux import Darboux
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Booleans = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

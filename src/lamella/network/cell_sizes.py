@@ -7,11 +7,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.network.network import Network
-
-Floats = NDArray[np.float64]
 
 # a cell edge this many times as long as the median one of its family is told of
 MOST_RATIO = 4.0
@@ -90,13 +88,13 @@ def small_cells(network: Network, least: float) -> tuple[int, tuple[SmallCell, .
     return len(small), tuple(SmallCell(middle[k], float(edges[k])) for k in _apart(middle, order, apart))
 
 
-def _middles(network: Network, first: NDArray[np.int64]) -> Floats:
+def _middles(network: Network, first: Integers) -> Floats:
     """Middle of the chord of each cell edge, m, by the stops where these begin."""
     begin, end = (network.node_points[network.stop_nodes[first + k]] for k in (0, 1))
     return np.asarray((begin + end) / 2)
 
 
-def _apart(middle: Floats, order: NDArray[np.int64], apart: Floats) -> list[int]:
+def _apart(middle: Floats, order: Integers, apart: Floats) -> list[int]:
     """The first edges of an order, each further from those before it than `apart` of them."""
     places: list[int] = []
     for number in order.tolist():

@@ -5,12 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 # corners of a face that is written, and of one that is left out
 MOST_SIDES, MOST_CORNERS = 6, 12
@@ -43,7 +40,7 @@ def trace_faces(
     directions: Floats,
     rim: list[Integers],
     rim_directions: Floats,
-    seam: NDArray[np.bool_] | None = None,
+    seam: Booleans | None = None,
 ) -> Faces:
     """Walk around the faces of a net embedded in a surface.
 

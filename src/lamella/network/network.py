@@ -8,11 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.darboux import Darboux
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 A, B = range(2)
 FAMILIES = ("A", "B")
@@ -102,7 +100,7 @@ class Network:
     node_kinds: Integers
     ids: tuple[str, ...]
     families: NDArray[np.str_]
-    closed: NDArray[np.bool_]
+    closed: Booleans
     sample_offsets: Integers
     sample_points: Floats
     sample_normals: Floats

@@ -17,11 +17,10 @@ from math import lcm
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes
 from lamella.base.errors import InputError
 
-Complexes = NDArray[np.complex128]
 # share of a period beyond which the curves of a family count as crossed by its loop
 CROSSED = 1e-3
 # curves around a hole

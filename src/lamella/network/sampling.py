@@ -11,13 +11,10 @@ from functools import cached_property
 from typing import Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ragged import ragged_ranges
 from lamella.base.vectors import crosses, dots, lengths
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 # samples a cell (docs/files.md): of nets of up to so many nodes, and of larger ones
 SAMPLES_PER_CELL, SAMPLES_PER_CELL_LARGE, LARGE_NET_NODES = 16, 8, 20_000
@@ -52,7 +49,7 @@ class Division:
     """
 
     counts: Integers
-    last: NDArray[np.bool_]
+    last: Booleans
 
     @cached_property
     def given(self) -> Integers:

@@ -5,13 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.vectors import dots
 from lamella.surface.darboux import Darboux
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # samples to either side over which a lamella turns by its geodesic curvature: the kinks at elements average out
 WIDE = 3
@@ -19,9 +16,7 @@ WIDE = 3
 EVEN = 0.1
 
 
-def turning(
-    tangents: Floats, sideways: Floats, arclengths: Floats, offsets: Integers, closed: NDArray[np.bool_]
-) -> Floats:
+def turning(tangents: Floats, sideways: Floats, arclengths: Floats, offsets: Integers, closed: Booleans) -> Floats:
     """kg = t' . u at the samples of curves, 1/m, (k,): of second order in their distance, at a curve's ends too.
 
     Parameters
@@ -34,7 +29,7 @@ def turning(
     return np.asarray(dots(derivative(tangents, arclengths, offsets, closed), sideways))
 
 
-def derivative(values: Floats, arclengths: Floats, offsets: Integers, closed: NDArray[np.bool_]) -> Floats:
+def derivative(values: Floats, arclengths: Floats, offsets: Integers, closed: Booleans) -> Floats:
     """Derivatives by the arc length of values along curves, (k, c): of second order in the samples' distance.
 
     That of the parabola through three samples: this one and those about `WIDE` to either side of it; next to an end the
@@ -71,7 +66,7 @@ def derivative(values: Floats, arclengths: Floats, offsets: Integers, closed: ND
 
 
 def sideways_slopes(
-    darboux: Darboux, mean_curvature: Floats | float, arclengths: Floats, offsets: Integers, closed: NDArray[np.bool_]
+    darboux: Darboux, mean_curvature: Floats | float, arclengths: Floats, offsets: Integers, closed: Booleans
 ) -> Floats:
     """d kn / d u towards u = n x t, 1/m^2, (k,): tg' + 2 kg (kn - H), see `lamella.surface.darboux.sideways_slope`.
 
@@ -95,7 +90,7 @@ class _Three(NamedTuple):
     places: Floats
 
 
-def _three(arclengths: Floats, offsets: Integers, some: Integers, curve: Integers, around: NDArray[np.bool_]) -> _Three:
+def _three(arclengths: Floats, offsets: Integers, some: Integers, curve: Integers, around: Booleans) -> _Three:
     """Samples for the parabolas of some samples (n,) of curves (n,), by arc length."""
     all_lengths = arclengths[offsets[1:] - 1]
     stride = 2 * float(all_lengths.max())

@@ -11,14 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.blocks import blocks
 from lamella.base.vectors import dots, lengths
 from lamella.network.network import Network
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # samples to either side of one through which a polynomial is laid, and its degree
 BESIDE, DEGREE = 3, 4

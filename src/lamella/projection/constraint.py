@@ -13,7 +13,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from lamella.projection.unknowns import Floats, Slot, Values
+from lamella.base.arrays import Floats
+from lamella.projection.unknowns import Slot, Values
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
-from lamella.projection.unknowns import Floats, dot
+from lamella.base.arrays import Floats
+from lamella.projection.unknowns import dot
 from lamella.surface.boundary.curve import Loop
 
 # samples along a curve among which the search starts; Newton's steps, the longest and the last, in loops

@@ -8,13 +8,13 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.base.errors import InputError
-from lamella.projection.unknowns import Floats, Integers
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.points import Complexes, SurfacePoints
+from lamella.surface.points import SurfacePoints
 
 # places along each parameter among which the search on a closed form starts; Newton's steps
 SAMPLES, MOST_STEPS, FINE = 120, 30, 1e-14

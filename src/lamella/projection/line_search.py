@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from lamella.projection.unknowns import Floats
+from lamella.base.arrays import Floats
 
 # longest step over Gauss-Newton's; a full step is kept unless another is better by this share of the decrease
 LONGEST, WORTH = 2.0, 1e-2

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.star_measures import circle_angles, star_spheres
-from lamella.projection.unknowns import Floats
 from lamella.strip.planarity import planarity_score
 
 # stars whose sphere is larger than this many mean edges are planes as far as double precision can tell

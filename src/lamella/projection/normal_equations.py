@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.sparse import Backend, SymmetricPattern
 from lamella.projection.constraint import Constraint
-from lamella.projection.unknowns import Floats, Integers, Layout
+from lamella.projection.unknowns import Layout
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Integers
 from lamella.base.errors import InputError
 from lamella.projection.quad_mesh import QuadMesh
-from lamella.projection.unknowns import Integers
 
 
 def polylines(mesh: QuadMesh) -> tuple[Integers, ...]:

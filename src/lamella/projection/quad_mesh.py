@@ -14,14 +14,11 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse.csgraph import connected_components
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
-from lamella.projection.unknowns import Floats, Integers
-
-Booleans = NDArray[np.bool_]
-
 
 # an edge of this share of its length is none any more
 COLLAPSED = 1e-3

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from lamella.projection.unknowns import Floats
+from lamella.base.arrays import Floats
 
 Verdict = Literal["solved", "settled", "stagnated", "iterations used up", "broken off", "collapsed", "left the surface"]
 """How it ended.

@@ -14,13 +14,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.sparse import Backend, Factor, SingularError
 from lamella.projection.constraint import Constraint
 from lamella.projection.line_search import best_length
 from lamella.projection.normal_equations import NormalEquations
 from lamella.projection.report import Iteration, Solution, Verdict
-from lamella.projection.unknowns import Block, Floats, Layout
+from lamella.projection.unknowns import Block, Layout
 
 DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-6, 1e-10, 1e6
 # line search lengths that tell a good linearisation from a bad one, and what follows for the damping

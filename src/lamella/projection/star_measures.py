@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.projection.quad_mesh import QuadMesh
-from lamella.projection.unknowns import Floats, Integers, dot
+from lamella.projection.unknowns import dot
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Values = Mapping[str, Floats]
 """Values of all blocks by name, each (n, d)."""
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 from lamella.projection.quad_mesh import QuadMesh
-from lamella.projection.unknowns import Floats, Integers
 
 
 def smoothed_normals(mesh: QuadMesh, rounds: int = 1) -> Floats:

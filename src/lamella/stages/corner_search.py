@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import rounded
@@ -20,7 +21,6 @@ from lamella.project.tables import FormFoundTable, Project
 from lamella.stages.weaving import lay, weave
 from lamella.strip.lamellas import Section, make_lamellas
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.points import Floats
 from lamella.surface.surface import Surface
 
 COARSE = 2e-2

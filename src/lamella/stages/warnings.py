@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.base.drawing_origin import coordinates
 from lamella.base.message import Message
 from lamella.base.wording import counted, rounded
@@ -204,7 +204,7 @@ def lamella_cautions(
     material: Material,
     known: Mapping[str, Material],
     used: Used,
-    at_corner: Callable[[NDArray[np.float64]], str] | None = None,
+    at_corner: Callable[[Floats], str] | None = None,
 ) -> Iterator[Message]:
     """Overstress, strips too high for the surface's curvature, layers that differ by more than their slots allow.
 

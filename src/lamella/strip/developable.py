@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.strip.darboux_of_polyline import polyline_darboux
-
-Floats = NDArray[np.float64]
 
 # share of a curve's largest curvature below which kg and tg are rounding: along a helix on a cylinder kg is 0
 NEGLIGIBLE = 1e-5

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.base.errors import InputError, require_positive
 from lamella.base.wording import rounded
 from lamella.network.network import SINGULAR, Network
@@ -18,7 +18,6 @@ from lamella.strip.planarity import planarity_score
 from lamella.strip.stress import shortening, stresses
 from lamella.surface.surface import Surface
 
-Floats = NDArray[np.float64]
 Marks = Literal["arc-length", "relaxed"]
 LayerLengths = Literal["alike", "own"]
 
@@ -244,7 +243,7 @@ def _layers(network: Network, section: Section, lengthening: Floats, surface: Su
     return parallel_layers(network, offsets, lengthening, own_lengths=section.own_parts, cut=cut)
 
 
-def crossings(network: Network) -> NDArray[np.bool_]:
+def crossings(network: Network) -> Booleans:
     """Nodes where strips are slotted into each other: an A meets a B, and no rays, (n,)."""
     degree_a, degree_b = network.node_degrees()
     return np.asarray((degree_a > 0) & (degree_b > 0) & (network.node_kinds != SINGULAR))

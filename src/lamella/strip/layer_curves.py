@@ -12,8 +12,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 from lamella.network.network import SINGULAR, Network
 from lamella.network.pattern import Pattern
@@ -23,9 +23,6 @@ from lamella.strip.layers import Layers, at_stops, running
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.places import Places
 from lamella.surface.surface import Surface
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 # Runge-Kutta steps from one layer to the next
 STEPS = 2

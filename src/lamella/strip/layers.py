@@ -18,11 +18,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.network.network import Network
 
-Floats = NDArray[np.float64]
 LayerCurves = Literal["offset", "cut", "lamella"]
 
 # names of the layers from the right one to the left one, by how many there are
@@ -62,7 +61,7 @@ class Layers:
     slot_shifts: Floats | None
     points: Floats
     normals: Floats
-    followed: NDArray[np.bool_]
+    followed: Booleans
 
 
 def running(network: Network, strain: Floats) -> Floats:

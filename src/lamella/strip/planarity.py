@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from lamella.base.arrays import Floats
 
 
 def planarity_score(v1: Floats, v2: Floats, v3: Floats, v4: Floats) -> Floats:

@@ -24,11 +24,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.strip.material import Material
-
-Floats = NDArray[np.float64]
 
 # of x = beta h / 2: below it the strip stays flat across within rounding
 FLAT = 1e-3

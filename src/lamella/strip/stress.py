@@ -8,12 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.strip.material import Material
 from lamella.strip.plate import across, mean_tension, poisson_ratio
-
-Floats = NDArray[np.float64]
 
 # above the centre line, over h / 2: where stresses are compared; the worst is at the edge or on the centre line
 HEIGHTS = (0.0, 0.5, 1.0)

@@ -8,11 +8,8 @@ numerically, from written points alone, to check exactly that.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
-Integers = NDArray[np.int64]
+from lamella.base.arrays import Complexes, Floats, Integers
 
 # points of the finite-difference formula: error O(h^4) inside, O(h^3) at the ends
 STENCIL = 5

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lamella.surface.points import Floats, SurfacePoints
+from lamella.base.arrays import Complexes, Floats
+from lamella.surface.points import SurfacePoints
 
 
 class Darboux(NamedTuple):
@@ -18,7 +18,7 @@ class Darboux(NamedTuple):
     tg: Floats
 
 
-def lamella_darboux(points: SurfacePoints, heading: NDArray[np.complex128]) -> Darboux:
+def lamella_darboux(points: SurfacePoints, heading: Complexes) -> Darboux:
     """Darboux curvatures of the lamellas through points, exact where the surface is.
 
     Parameters
@@ -40,7 +40,7 @@ def lamella_darboux(points: SurfacePoints, heading: NDArray[np.complex128]) -> D
     return Darboux(points.mean_curvature + turned.real, kg, -turned.imag)
 
 
-def sideways_slope(points: SurfacePoints, heading: NDArray[np.complex128]) -> Floats:
+def sideways_slope(points: SurfacePoints, heading: Complexes) -> Floats:
     r"""Change of the normal curvature from a curve to the parallel curves beside it, d kn / d u, 1/m^2, (n,).
 
     The equation of Codazzi, :math:`(\nabla_u h)(t, t) = (\nabla_t h)(t, u)`, in geodesic parallel coordinates about a

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from lamella.base.arrays import Floats, Integers
 
 
 @dataclass(frozen=True)
@@ -26,7 +25,7 @@ class SurfaceMesh:
 
     points: Floats
     normals: Floats
-    faces: NDArray[np.int64]
+    faces: Integers
     mean_curvature: Floats
     gaussian_curvature: Floats
     k1: Floats

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from typing import Any, Protocol, TypeVar
 
+from lamella.base.arrays import Floats
 from lamella.base.message import Message
 from lamella.surface.mesh import SurfaceMesh
-from lamella.surface.points import Floats, SurfacePoints
+from lamella.surface.points import SurfacePoints
 
 Where = TypeVar("Where")
 """Places on a surface in bulk; only the surface that gave them knows what is inside."""

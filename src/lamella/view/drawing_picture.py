@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lamella.base.errors import InputError
 
@@ -16,10 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+from lamella.base.arrays import Floats
 from lamella.view.figure import INK, LAYER_COLOURS, frame, new_figure, require_matplotlib, save
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 # mm
 FLATNESS = 0.05

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.files.whole import write_whole
 
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 FAMILIES = {"A": "#c8452d", "B": "#1f66b1"}
 LAYER_COLOURS = {"CUT": "#111111", "MARK": "#1f66b1", "TEXT": "#1c8a43", "SHEET": "#9a9a9a"}

@@ -8,12 +8,11 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.projection.mesh_figures import MeshFigures
 from lamella.projection.problems.planar_strips import RED
 from lamella.projection.quad_mesh import QuadMesh
-
-Floats = NDArray[np.float64]
 
 NetColour = Literal["planarity", "sphericity", "radius", "angle"]
 """What a net is coloured by.

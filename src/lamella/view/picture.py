@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.network.network import SINGULAR, Network
 from lamella.surface.mesh import SurfaceMesh
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from lamella.stages.pipeline import Results
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Colour = Literal["utilisation", "torsion", "curvature", "planarity", "family", "none"]
 
 # what a colour shows: label of the colour bar
@@ -221,7 +219,7 @@ def _paint(network: Network, values: Floats | None, first: Integers, colour: str
     return np.asarray(scale.to_rgba(values[first]), np.float64), scale
 
 
-def _put_quads(axes: Axes, corners: Floats, colours: Floats, smooth: NDArray[np.bool_]) -> None:
+def _put_quads(axes: Axes, corners: Floats, colours: Floats, smooth: Booleans) -> None:
     """Quads from back to front; the veil without edges, which would show as lines where two faces meet."""
     from matplotlib.collections import PolyCollection
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.surface.mesh import SurfaceMesh
-
-Floats = NDArray[np.float64]
 
 # dark where the surface is curved most
 SEQUENTIAL = ("#26456e", "#3f7fa0", "#7fb5a5", "#d5d49a", "#f3efd0")

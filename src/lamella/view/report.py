@@ -15,14 +15,13 @@ import numpy as np
 import orjson
 from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.wording import one_line
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.quantity import Quantity, surface_quantities
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Spec = dict[str, Any]
 
 SAMPLE_LIMIT = 100_000

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 from lamella.surface.element.lagrange import EDGES
 from lamella.surface.element.surface import MOST_PARTS, ElementSurface
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
     from lamella.stages.pipeline import Results
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Panel = Literal["shade", "deviation", "K", "ratio", "k1", "k2"]
 
 # sRGB of the two sides: the one the normal points out of, and the other

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 import pytest
 import rhino3dm
-from numpy.typing import NDArray
 
 import lamella
+from lamella.base.arrays import Floats
 from lamella.files.write import surface_3dm
 from lamella.files.write.surface_3dm import sag, surface_3dm_bytes, write_surface_3dm
 from lamella.stages.output import write_files
@@ -25,7 +25,6 @@ from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
 from surface.element.exact_elements import catenoid_patch, sphere_cap, whole_catenoid
 
-Floats = NDArray[np.float64]
 TESTS = Path(__file__).parents[2]
 SURFACES = {"patch": catenoid_patch, "cap": sphere_cap, "rings": whole_catenoid}
 CORNERS = np.array([[0.0, 0], [1, 0], [0, 1]])

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from lamella import InputError, compute, parse_project
+from lamella.base.arrays import Floats
 from lamella.stages.check import check_project
 
-Floats = NDArray[np.float64]
 Faces = list[tuple[int, ...]]
 
 

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
+from lamella.base.arrays import Floats, Integers
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.surface import ElementSurface
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 def catenoid_map(uv: Floats) -> Floats:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.surface.element.surface import RIM_SHARE, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from surface.element.exact_elements import catenoid_patch, on_map, sphere_cap, whole_catenoid
-
-Floats = NDArray[np.float64]
 
 
 def flat_map(uv: Floats) -> Floats:

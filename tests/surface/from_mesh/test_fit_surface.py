@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
 from lamella import parse_project
+from lamella.base.arrays import Floats
 from lamella.surface.element.varying import VaryingSurface
 from lamella.surface.from_mesh.fit_cmc import surface_of_table
 
-Floats = NDArray[np.float64]
 Graph = Callable[[Floats, Floats], Floats]
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
 from lamella import InputError, compute, parse_project
+from lamella.base.arrays import Floats, Integers
 from lamella.surface.element.varying import VaryingSurface
 from lamella.surface.from_mesh.edges import find_edges
 from lamella.surface.from_mesh.fit_cmc import surface_of_table
@@ -19,8 +20,6 @@ from lamella.surface.from_mesh.vertex_noise import without_scatter
 from network.streamlines.test_streamline_network import lamellas
 from surface.from_mesh.test_fit_surface import errors, true_form
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Graph = Callable[[Floats, Floats], Floats]
 
 

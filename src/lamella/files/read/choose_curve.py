@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.wording import counted, cut
@@ -15,7 +16,7 @@ from lamella.files.read.tidy_curves import without_doubles, without_short
 from lamella.surface.boundary.arc_length import Course
 from lamella.surface.boundary.curve import place
 from lamella.surface.boundary.joining import GAP_LIMIT, crowded_end, find_chains, nearly_closed
-from lamella.surface.boundary.pieces import Floats, Pieces
+from lamella.surface.boundary.pieces import Pieces
 
 DRAWN = 1e-4
 """m. Ends of a drawing that are nearer than this are meant as one point: CAD works within 0.01 to 0.1 mm."""

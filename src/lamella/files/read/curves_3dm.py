@@ -8,12 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.files.read.file_curves import MOST_NESTED, CurveFile, FileCurve, Gathering
 from lamella.files.read.rhino_model import RhinoCurve, RhinoModel, RhinoObject, read_rhino
 from lamella.surface.boundary.arc_length import Course
 from lamella.surface.boundary.joining import find_chains
-from lamella.surface.boundary.pieces import Floats, Pieces
+from lamella.surface.boundary.pieces import Pieces
 from lamella.surface.boundary.splines import bezier
 
 _METRES = {

@@ -11,12 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.wording import cut
 from lamella.files.read.dxf_document import dxf_damage, open_dxf
 from lamella.files.read.file_curves import MOST_NESTED, CurveFile, FileCurve, Gathering
 from lamella.surface.boundary.arcs import bulge_arc, ellipse_arc
-from lamella.surface.boundary.pieces import Floats, Pieces, lines, stack
+from lamella.surface.boundary.pieces import Pieces, lines, stack
 from lamella.surface.boundary.splines import bezier, closed_spline, open_spline
 
 # $INSUNITS; inch, foot, mile, mm, cm, m, km, mil, yard, micron, dm, dam, hm, US survey foot

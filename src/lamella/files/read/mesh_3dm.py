@@ -9,9 +9,10 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.message import Message
 from lamella.base.wording import cut
-from lamella.files.read.raw_mesh import FILE_KEY, Floats, Integers, Polygons, mesh_error
+from lamella.files.read.raw_mesh import FILE_KEY, Polygons, mesh_error
 from lamella.files.read.rhino_model import MAGIC, RhinoLayer, RhinoModel, RhinoObject, read_rhino
 
 MESH_IT = "mesh it in Rhino (command Mesh), save the mesh alone, or hide everything else"

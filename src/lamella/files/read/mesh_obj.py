@@ -7,7 +7,8 @@ from itertools import chain
 
 import numpy as np
 
-from lamella.files.read.raw_mesh import MAXIMUM_FACES, Floats, Integers, Polygons, blocks, mesh_error
+from lamella.base.arrays import Floats, Integers
+from lamella.files.read.raw_mesh import MAXIMUM_FACES, Polygons, blocks, mesh_error
 
 FREE_FORM = (b"curv", b"surf", b"curv2", b"bzp", b"bsp", b"cstype")
 

@@ -6,7 +6,8 @@ import re
 
 import numpy as np
 
-from lamella.files.read.raw_mesh import Integers, Polygons, mesh_error
+from lamella.base.arrays import Integers
+from lamella.files.read.raw_mesh import Polygons, mesh_error
 
 AGAIN = "is the file cut off or damaged? Export it again"
 

@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lamella.files.read.raw_mesh import MAXIMUM_FACES, Floats, Integers, Polygons, blocks, mesh_error
+from lamella.base.arrays import Floats, Integers
+from lamella.files.read.raw_mesh import MAXIMUM_FACES, Polygons, blocks, mesh_error
 
 TYPES = {
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -51,10 +51,10 @@ class Lists:
     """One list property of all rows: sizes (rows,) and their values one after the other."""
 
     sizes: Integers
-    values: NDArray[np.float64] | Integers
+    values: Floats | Integers
 
 
-Column = NDArray[np.float64] | Lists
+Column = Floats | Lists
 
 
 def read_ply(data: bytes) -> Polygons:
@@ -155,7 +155,7 @@ class Body:
         """The list count at `position`."""
         raise NotImplementedError
 
-    def take(self, positions: Integers, kind: str) -> NDArray[np.float64] | Integers:
+    def take(self, positions: Integers, kind: str) -> Floats | Integers:
         """Numbers of type `kind` at `positions`."""
         raise NotImplementedError
 
@@ -264,12 +264,12 @@ class Text(Body):
         number = float(self.numbers[position])
         return int(number) if number.is_integer() else int(self._whole(self.numbers[position : position + 1])[0])
 
-    def take(self, positions: Integers, kind: str) -> NDArray[np.float64] | Integers:
+    def take(self, positions: Integers, kind: str) -> Floats | Integers:
         found = self.numbers[positions]
         return found if kind[0] == "f" else self._whole(found)
 
     @staticmethod
-    def _whole(numbers: NDArray[np.float64]) -> Integers:
+    def _whole(numbers: Floats) -> Integers:
         if not (np.abs(numbers) < 2.0**53).all() or (numbers != np.floor(numbers)).any():
             raise mesh_error("the .ply has a number that should be a whole one and is not", BROKEN)
         return numbers.astype(np.int64)
@@ -290,7 +290,7 @@ class Binary(Body):
         chunk = self.data[position : position + int(kind[1])]
         return int.from_bytes(chunk, "little" if self.order == "<" else "big", signed=kind[0] == "i")
 
-    def take(self, positions: Integers, kind: str) -> NDArray[np.float64] | Integers:
+    def take(self, positions: Integers, kind: str) -> Floats | Integers:
         raw = self.bytes[positions[:, None] + np.arange(int(kind[1]))]
         found = np.ascontiguousarray(raw).view(self.order + kind)[:, 0]
         # bytes that are no numbers are found out later

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.ties import MARGIN
-from lamella.files.read.raw_mesh import Floats, Integers, mesh_error
+from lamella.files.read.raw_mesh import mesh_error
 
 MAXIMUM_CORNERS = 256
 """A face with more corners says nothing about the surface inside it."""

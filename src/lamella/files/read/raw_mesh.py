@@ -6,14 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.drawing_origin import NOWHERE, Origin, coordinates
 from lamella.base.errors import InputError
 from lamella.base.message import Message
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 FILE_KEY = "surface.file"
 """Key of the project file that errors about a mesh are about."""

@@ -9,13 +9,11 @@ from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 from lamella.files.read.bounded import BrokeDown, Limits, TookTooLong, has_processes, limits_for, run_bounded
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Wanted = Literal["curves", "meshes"]
 
 CHILD = "lamella.files.read.rhino_child"

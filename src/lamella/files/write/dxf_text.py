@@ -17,11 +17,9 @@ import ezdxf
 import numpy as np
 import orjson
 from ezdxf import units
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.base.wording import one_line
-
-Floats = NDArray[np.float64]
 
 APPLICATION = "LAMELLA"
 LAYERS = {"CUT": 1, "MARK": 5, "TEXT": 3, "SHEET": 8}

@@ -5,15 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Integers
 from lamella.base.wording import one_line
 from lamella.files.whole import write_whole
 from lamella.files.write.text import dumped, require_finite, rows
 from lamella.network.network import Network
 from lamella.surface.mesh import SurfaceMesh
-
-Integers = NDArray[np.int64]
 
 VERTEX_PROPERTIES = ("x", "y", "z", "nx", "ny", "nz", "H", "K", "k1", "k2")
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import rhino3dm
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile, nurbs_curve
 from lamella.files.write.splines import RELATIVE_TOLERANCE, fit_spline
 from lamella.files.write.text import require_finite
@@ -14,8 +14,6 @@ from lamella.network.turning import derivative
 from lamella.strip.lamellas import Lamellas, Section, twisted_strip
 from lamella.strip.layers import SIDES
 from lamella.surface.mesh import SurfaceMesh
-
-Floats = NDArray[np.float64]
 
 COLOURS = {
     "surface": (200, 200, 200),

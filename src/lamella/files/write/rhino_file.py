@@ -9,14 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import rhino3dm
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.base.drawing_origin import NOWHERE, Origin
 from lamella.base.wording import one_line
 from lamella.project.values import METRES
 from lamella.surface.mesh import SurfaceMesh
-
-Floats = NDArray[np.float64]
 
 TOLERANCE = 1e-5
 """m; what Rhino joins within: far above rounding, far below what can be built."""

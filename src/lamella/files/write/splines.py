@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-Floats = NDArray[np.float64]
+from lamella.base.arrays import Floats
 
 DEGREE = 3
 RELATIVE_TOLERANCE = 1e-7

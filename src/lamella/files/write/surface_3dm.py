@@ -14,16 +14,13 @@ from pathlib import Path
 
 import numpy as np
 import rhino3dm
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.files.whole import write_whole
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile
 from lamella.files.write.text import require_finite
 from lamella.surface.element.lagrange import lagrange, subdivision
 from lamella.surface.element.surface import MOST_PARTS, ElementSurface
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 MOST_PATCHES = 20_000
 """Surfaces of more patches (about 1 kB each, and slow in Rhino) are written as one mesh."""

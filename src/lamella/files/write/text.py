@@ -6,6 +6,7 @@ import numpy as np
 import orjson
 from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.base.wording import one_line
 
 
@@ -17,7 +18,7 @@ def csv_comment(text: str) -> str:
     return one_line("".join(" " if c in ',;|"' else c for c in one_line(text)))
 
 
-def require_finite(*arrays: NDArray[np.float64]) -> None:
+def require_finite(*arrays: Floats) -> None:
     """Raise ValueError where a number to be written is not finite: no format here can hold it."""
     for array in arrays:
         if not np.isfinite(array).all():

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.base.drawing_origin import NOWHERE, measured_from, told_from
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, patient
@@ -33,7 +34,6 @@ from lamella.surface.boundary.curve import Loop, farthest_move
 from lamella.surface.boundary.freedom import Freedom, refuse_held
 from lamella.surface.boundary.tables import boundary_loops, with_origin
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.points import Complexes, Floats
 
 if TYPE_CHECKING:
     from lamella.project.tables import FormFoundTable

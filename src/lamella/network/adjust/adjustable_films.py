@@ -8,6 +8,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.base.drawing_origin import origin_figure
 from lamella.base.progress import Progress, as_details, silent
 from lamella.network.adjust.film_net import FilmNet
@@ -27,7 +28,6 @@ from lamella.surface.form_finding.boundary_homotopy import BreakError, along_loo
 from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.find import find_film, notes_on, remarks_on
 from lamella.surface.form_finding.newton import Equilibrium
-from lamella.surface.points import Complexes, Floats
 from lamella.surface.umbilic import refuse_umbilic
 
 if TYPE_CHECKING:

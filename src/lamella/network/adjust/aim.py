@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Complexes
 from lamella.network.adjust.film_net import FilmNet
-from lamella.surface.points import Complexes
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.elements.lattice_origin import lattice_origin
 from lamella.network.isothermic.holonomy import fixed_point_factors
@@ -17,7 +18,6 @@ from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.pattern import Pattern
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.newton import Equilibrium
-from lamella.surface.points import Complexes, Floats
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,11 +9,10 @@ distance, solved by non-negative least squares (Lawson and Hanson, Solving Least
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
-from lamella.surface.points import Floats
+from lamella.base.arrays import Booleans, Floats
 
 # of a limit, or in the unit of x: solutions beyond it by less are brought back by a common factor
 BEYOND = 1e-6
@@ -59,7 +58,7 @@ def least_squares_within(
     return np.asarray(x / max(1.0, float(np.linalg.norm(limits @ x, axis=1).max(initial=0.0))))
 
 
-def _behind_planes(triangle: Floats, right: Floats, planes: Floats, bounds: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+def _behind_planes(triangle: Floats, right: Floats, planes: Floats, bounds: Floats) -> tuple[Floats, Booleans]:
     """The least |triangle x - right| with planes (n, p) x <= bounds (n,), and which of these hold it, (n,)."""
     # y = triangle x - right is the shortest vector with normals y >= heights
     normals = -solve_triangular(triangle, planes.T, trans="T").T

@@ -7,16 +7,13 @@ pieces that end there as well as at stops need few points of a series each.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.blocks import blocks
 from lamella.base.vectors import lengths
 from lamella.network.arc_length import ArcLengths
 from lamella.network.elements.segments import ElementSegments
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # points of a part's series to begin with and to settle for, and the share that its last two terms may have
 POINTS, SETTLE, TAIL = 6, 24, 1e-5

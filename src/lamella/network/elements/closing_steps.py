@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.network.isothermic.holonomy import fixed_point_factors
 from lamella.network.isothermic.integer_transitions import WholeShifts
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.pattern import Pattern
-from lamella.surface.points import Complexes, Floats
 
 # of a cell: a shift nearer to whole numbers closes the net (docs/files.md)
 CLOSES = 1e-3

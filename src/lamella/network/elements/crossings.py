@@ -5,14 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ragged import ragged_ranges
 from lamella.network.elements.level_curves import Tracks
 from lamella.network.network import A
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 
 class Crossings(NamedTuple):
@@ -29,11 +26,11 @@ class Crossings(NamedTuple):
     chain: Integers
     tau: Floats
 
-    def take(self, some: NDArray[np.bool_]) -> Crossings:
+    def take(self, some: Booleans) -> Crossings:
         """Some of them."""
         return Crossings(self.chain[:, some], self.tau[:, some])
 
-    def of(self, chains: NDArray[np.bool_]) -> Crossings:
+    def of(self, chains: Booleans) -> Crossings:
         """Those of some of the chains (c,)."""
         a, b = self.chain
         return self.take(chains[a] & chains[b])

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lamella.network.isothermic.isothermic import Integers, Isothermic
+from lamella.base.arrays import Floats, Integers
+from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.pattern import Pattern
 from lamella.surface.element.quadrature import triangle_rule
-from lamella.surface.points import Floats
 
 # parts of an edge in which a curve may end at the rim, all alike
 PARTS = (np.arange(8) + 0.5) / 8

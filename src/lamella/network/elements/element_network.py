@@ -8,8 +8,8 @@ from functools import cached_property, partial
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.base.message import Message
@@ -33,7 +33,6 @@ from lamella.network.streamlines.applicability import is_traced
 from lamella.network.written_lines import WrittenLines, angle_figures
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
-from lamella.surface.points import Floats
 from lamella.surface.umbilic import refuse_umbilic
 
 Closing = Literal["open", "round"]
@@ -78,7 +77,7 @@ class ElementNetwork:
 
     network: Network
     umbilics: Umbilics
-    on_rim: NDArray[np.bool_]
+    on_rim: Booleans
     lattice: Lattice
     residual: float
     joints: tuple[Joint, ...]

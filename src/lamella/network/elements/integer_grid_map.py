@@ -11,17 +11,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.network.elements.inverse_map import find_places
 from lamella.network.isothermic.integration_mesh import NetMesh
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.element.places import Places
 from lamella.surface.element.polynomials import Polynomials
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 # of an element: nodes on the rim may lie this far beyond, within the surface's error
 BEYOND_RIM = 0.25
@@ -105,7 +102,7 @@ class CellMap:
         position, first, second = self.jet_and_tangents(where)[1]
         return position, first, second
 
-    def invert(self, start: Places, target: Floats) -> tuple[Places, Floats, NDArray[np.bool_]]:
+    def invert(self, start: Places, target: Floats) -> tuple[Places, Floats, Booleans]:
         """Places of given chi near given ones.
 
         Parameters

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
 
-Integers = NDArray[np.int64]
 Jet = Callable[[Places], Floats]
 # Is told which targets go over which edges of which elements, and may change these targets.
 Cross = Callable[[Integers, Integers, Integers], None]
@@ -29,7 +27,7 @@ NEAR = 1e-9
 
 def find_places(
     connectivity: Connectivity, jet: Jet, start: Places, target: Floats, cross: Cross, beyond_rim: float = ON_EDGE
-) -> tuple[Places, NDArray[np.bool_]]:
+) -> tuple[Places, Booleans]:
     """Places near given ones where the polynomials have their targets.
 
     Parameters

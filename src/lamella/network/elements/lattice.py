@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from lamella.base.arrays import Integers
 from lamella.network.density_request import CELLS_MIN, NODES_MAX, DensityRequest
 from lamella.network.elements.cell_count import CellCount
 from lamella.network.elements.choose_step import Better, better_density, near_step
@@ -14,7 +15,7 @@ from lamella.network.elements.edge_sizes import EdgeSizes
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.elements.lattice_origin import lattice_origin
 from lamella.network.isothermic.holonomy import Holonomy
-from lamella.network.isothermic.isothermic import Integers, Isothermic
+from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 
 # share of a spacing; moved by more for a net that closes, the new one is reported

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.network.isothermic.holonomy import fixed_point_factors, holonomies
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.pattern import Pattern
@@ -19,7 +20,6 @@ from lamella.surface.element.edge_basis import edge_values
 from lamella.surface.element.geometry import normal_and_area, tangents
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import nearest_on_edges
-from lamella.surface.points import Complexes, Floats
 
 # cells; where w turns around what is no umbilic of the net: no lamella ends there
 MIDDLE = 0.5 + 0.5j

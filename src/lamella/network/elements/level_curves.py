@@ -8,13 +8,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.elements.level_lines import CLOSED, SINGULAR_END, Chains, SmallTriangles
 from lamella.network.network import A, B
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # Newton steps to a place on an element's edge, and of the edge: the step after one as small as this is rounding
 EDGE_STEPS, EDGE_FINE = 8, 1e-7
@@ -52,7 +50,7 @@ class Tracks:
         """Number of links of each chain."""
         return self.last - self.first + 1
 
-    def arranged(self, chains: Integers, backward: NDArray[np.bool_], rolled: Integers) -> Tracks:
+    def arranged(self, chains: Integers, backward: Booleans, rolled: Integers) -> Tracks:
         """Some of the chains in another order.
 
         Parameters

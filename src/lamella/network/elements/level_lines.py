@@ -10,19 +10,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components, depth_first_order
 
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.isothermic.isothermic import sectors
 from lamella.network.network import A, B
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.lagrange import local_faces
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 # small triangles reach over at most this many cells; parts of an element's edge at least and at most
 REACH, FEWEST, MOST = 0.4, 3, 24
@@ -56,7 +53,7 @@ class SmallTriangles:
     corners: Integers
     local: Floats
     chi: Complexes
-    singular: NDArray[np.bool_]
+    singular: Booleans
     cut_left: Integers
     cut_right: Integers
     cut_piece: Integers
@@ -97,7 +94,7 @@ class Chains:
         return np.repeat(np.arange(len(self.offsets) - 1), np.diff(self.offsets))
 
 
-def small_triangles(cells: CellMap, cut: NDArray[np.bool_], umbilics: Integers) -> SmallTriangles:
+def small_triangles(cells: CellMap, cut: Booleans, umbilics: Integers) -> SmallTriangles:
     """Cut the elements of a cell map.
 
     Parameters
@@ -352,7 +349,7 @@ def _jumps(
     level = first[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
     there = cells.signs[piece[edge]] * level + whole[piece[edge]].astype(np.int64)
 
-    def crossing(pair: Integers, at: Integers) -> tuple[Integers, NDArray[np.bool_]]:
+    def crossing(pair: Integers, at: Integers) -> tuple[Integers, Booleans]:
         name = _edge_keys(pair.T, len(small.chi)) * width + at - base
         index = np.minimum(np.searchsorted(names, name), len(names) - 1)
         return index, (at - base >= 0) & (at - base < width) & (names[index] == name)

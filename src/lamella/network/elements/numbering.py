@@ -8,8 +8,8 @@ then along the holes. What has no end on a rim follows in the order in which it 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.network.elements.crossings import Crossings
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.elements.level_curves import Tracks, rim_tips
@@ -17,9 +17,6 @@ from lamella.network.elements.level_lines import CLOSED, RIM, SINGULAR_END
 from lamella.network.network import A, B
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import ElementRim
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # of a loop: an end this near before its start is met last of all, or first: first
 AT_START = 1e-3
@@ -103,9 +100,9 @@ def _rank_inner(
     tracks: Tracks,
     crossings: Crossings,
     rank: Floats,
-    backward: NDArray[np.bool_],
+    backward: Booleans,
     rolled: Integers,
-    inner: NDArray[np.bool_],
+    inner: Booleans,
 ) -> None:
     """Rank chains without an end on a rim by the first ranked chain that they cross, and then by where along it."""
     whole = np.bincount(tracks.owner, tracks.span, len(rank))

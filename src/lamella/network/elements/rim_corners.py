@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.vectors import crosses, diagonal, dots, lengths
 from lamella.base.wording import rounded
 from lamella.network.network import REGULAR, Network
@@ -26,7 +26,6 @@ from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.geometry import tangents
 from lamella.surface.element.rim import CORNER_CORE, CORNER_PART, SHARP_TURN, element_rims
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.points import Floats
 
 # of the size: points nearer to each other are one
 SAME = 1e-6
@@ -59,8 +58,8 @@ class RimCorners:
     radii: Floats
     cores: Floats
     fillets: Floats
-    loops: NDArray[np.int64]
-    sliding: NDArray[np.bool_]
+    loops: Integers
+    sliding: Booleans
 
     @classmethod
     def of(cls, surface: ElementSurface) -> RimCorners:
@@ -102,7 +101,7 @@ class RimCorners:
         """A `corner_radius` that spreads a corner over a cell with edges of a length, m, where the loop has room."""
         return rounded(min(edge, float(self.fillets[corner])), up=False, digits=2)
 
-    def within(self, points: Floats, radii: Floats) -> NDArray[np.int64]:
+    def within(self, points: Floats, radii: Floats) -> Integers:
         """The corner within whose radius, (c,) m, each point (n, 3) is; -1: of none."""
         result = np.full(len(points), -1)
         for corner, (place, radius) in enumerate(zip(self.points, radii, strict=True)):
@@ -144,11 +143,11 @@ class RimCorners:
         ]
 
 
-def _worst(values: Floats, there: NDArray[np.bool_]) -> float | None:
+def _worst(values: Floats, there: Booleans) -> float | None:
     return float(values[there].max()) if there.any() else None
 
 
-def _least(values: Floats, there: NDArray[np.bool_]) -> float | None:
+def _least(values: Floats, there: Booleans) -> float | None:
     return float(values[there].min()) if there.any() else None
 
 
@@ -160,7 +159,7 @@ def _largest_fillet(turns: Floats, gaps: Floats) -> float:
     return float(((1 - LEFT) * gaps / (reach + np.roll(reach, -1))).min())
 
 
-def _angles(connectivity: Connectivity, nodes: Floats, vertices: Sequence[int] | NDArray[np.int64]) -> Floats:
+def _angles(connectivity: Connectivity, nodes: Floats, vertices: Sequence[int] | Integers) -> Floats:
     """Angle of the surface around vertices of its rim, radians, (c,)."""
     basis = connectivity.basis
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])

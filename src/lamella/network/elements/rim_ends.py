@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.vectors import crosses, dots, lengths
 from lamella.network.elements.crossings import Crossings
 from lamella.network.elements.integer_grid_map import CellMap
@@ -21,10 +21,6 @@ from lamella.network.elements.level_lines import RIM, SINGULAR_END
 from lamella.network.network import A, B
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import ElementRim
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 # cells: a line that keeps as near to the rim all along is the rim, and what is left of a line behind a boundary node
 ALONG = 0.05
@@ -54,7 +50,7 @@ class Ends(NamedTuple):
     tips: Floats
     node: Integers
     shared: int
-    boundary: Flags
+    boundary: Booleans
     places: Places
 
 
@@ -66,7 +62,7 @@ def _to_ends(tracks: Tracks, tips: Floats, crossings: Crossings) -> Floats:
 
 def along_rim(
     cells: CellMap, rims: tuple[ElementRim, ...], tracks: Tracks, tips: Floats, crossings: Crossings
-) -> Flags:
+) -> Booleans:
     """Chains (c,) that are the rim: all that crosses them ends within `ALONG` from there, or they lie as near to it.
 
     Rays of a singular node are none: the node lies inside, however near to the rim, and cells next to it are large.
@@ -104,7 +100,7 @@ def _from_rims(rims: tuple[ElementRim, ...], points: Floats) -> Floats:
     return apart
 
 
-def within_tips(tracks: Tracks, tips: Floats, crossings: Crossings) -> Flags:
+def within_tips(tracks: Tracks, tips: Floats, crossings: Crossings) -> Booleans:
     """Crossings (n,) between the exact ends of their chains: others are there on flat triangles alone."""
     low, high = tips[crossings.chain].transpose(2, 0, 1)
     open_ = tracks.ends[crossings.chain] == RIM

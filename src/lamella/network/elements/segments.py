@@ -11,18 +11,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import beta, betainc, betaincinv
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.blocks import blocks
 from lamella.base.vectors import lengths
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.elements.level_curves import Tracks, passages
 from lamella.network.network import A
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # of a ray's first cell: a place taken for the singular node's own direction
 BESIDE = 1e-3

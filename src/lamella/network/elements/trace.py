@@ -8,8 +8,8 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.blocks import blocks
 from lamella.base.errors import InputError
 from lamella.base.sparse import counted
@@ -37,9 +37,7 @@ from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
 from lamella.surface.element.polynomials import Polynomials
 from lamella.surface.element.rim import ElementRim, element_rims
-from lamella.surface.points import Floats
 
-Integers = NDArray[np.int64]
 Onto = Callable[[Integers, Floats], Floats]
 
 
@@ -91,7 +89,7 @@ def _stops(tracks: Tracks, crossings: Crossings, singular: Integers, ends: Ends)
 
 def trace_elements(
     cells: CellMap,
-    cut: NDArray[np.bool_],
+    cut: Booleans,
     orders: Integers,
     *,
     onto: Onto,
@@ -157,7 +155,7 @@ def trace_elements(
 
 
 def _none_cross(
-    found: Tracks, count: int, edges: Floats, short: NDArray[np.bool_], minimum_length: float, median: float
+    found: Tracks, count: int, edges: Floats, short: Booleans, minimum_length: float, median: float
 ) -> InputError:
     """Why no two of the chains cross that are `edges` median cell edges (c,) long, and with what they do."""
     if short.any():
@@ -314,9 +312,7 @@ def _lengths(cells: CellMap, tracks: Tracks) -> tuple[Floats, float]:
     return np.asarray(np.bincount(tracks.owner, rough, len(tracks.family)), np.float64), median
 
 
-def _kept(
-    cells: CellMap, rims: tuple[ElementRim, ...], tracks: Tracks, long: NDArray[np.bool_]
-) -> tuple[Tracks, NDArray[np.bool_]]:
+def _kept(cells: CellMap, rims: tuple[ElementRim, ...], tracks: Tracks, long: Booleans) -> tuple[Tracks, Booleans]:
     """The chains that are lamellas, in order; and which of all are the rim, (c,)."""
     crossings = find_crossings(tracks)
     crossings = crossings.of(long)

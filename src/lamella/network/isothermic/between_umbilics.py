@@ -10,15 +10,12 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.network.isothermic.holonomy import around_vertex
 from lamella.network.isothermic.isothermic import Isothermic
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 # cells: nearer to each other than that, whole shifts may ask two umbilics to meet
 NEAR = 1.0

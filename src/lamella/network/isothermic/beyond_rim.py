@@ -11,10 +11,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats
 from lamella.base.vectors import lengths
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.points import Floats
 
 # a zero nearer to a place of the rim than this many longest edges of the element there
 NEAR = 1.5

@@ -7,21 +7,19 @@ umbilics; what is left is a disc without any of them.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Booleans, Integers
 from lamella.base.ties import shortened
 from lamella.network.isothermic.integration_mesh import NetMesh
-
-Integers = NDArray[np.int64]
 
 # how much longer an edge counts than it is, times the rosette's radius over its distance to the nearest umbilic
 CLEAR = 3.0
 
 
-def cut_edges(mesh: NetMesh, odd: Integers) -> NDArray[np.bool_]:
+def cut_edges(mesh: NetMesh, odd: Integers) -> Booleans:
     """Local edges (m, 3) to cut along, alike from both sides.
 
     Parameters

@@ -5,17 +5,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.network.isothermic.integration_mesh import NetMesh
 from lamella.network.isothermic.isothermic import Isothermic, Transition
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.rim import element_rims
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 
 class Holonomy(NamedTuple):

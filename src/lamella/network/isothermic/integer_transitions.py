@@ -11,14 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.network.elements.lattice_origin import MIDDLE
 from lamella.network.isothermic.holonomy import around_vertex, fixed_point_factors, vertex_relations
 from lamella.network.isothermic.isothermic import Isothermic
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 # of the sum of all squared rates: what is reached more slowly is not
 UNREACHED = 1e-9

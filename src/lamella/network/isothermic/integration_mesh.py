@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pythoncdt
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.vectors import diagonal, lengths
 from lamella.network.elements.inverse_map import find_places
 from lamella.network.isothermic.beyond_rim import zeros_beyond_rim
@@ -29,10 +29,7 @@ from lamella.surface.element.placing import edge_blends
 from lamella.surface.element.rim import ElementRim, element_rims
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import SURE, Umbilics, deviator_error
-from lamella.surface.points import Complexes, Floats, SurfacePoints, shape_entries
-
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from lamella.surface.points import SurfacePoints, shape_entries
 
 # of the elements
 ORDER = 4
@@ -95,7 +92,7 @@ class NetMesh:
     rim_starts: Floats
     corners: Integers
 
-    def at_corner(self, points: Floats) -> Flags:
+    def at_corner(self, points: Floats) -> Booleans:
         """Whether points (n, 3) are next to a sharp corner of the rim."""
         return _near(points, self.nodes[self.corners], AT_CORNER * diagonal(self.nodes))
 
@@ -162,7 +159,7 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     beyond = zeros_beyond_rim(surface, ON_RIM * size)
     centres, least = np.concatenate([zeros, beyond]), np.append(radii, np.full(len(beyond), ON_RIM * size))
 
-    def too_large(corners: Floats, longest: Floats) -> Flags:
+    def too_large(corners: Floats, longest: Floats) -> Booleans:
         result = np.zeros(len(longest), bool)
         for zero, radius in zip(centres, least, strict=True):
             distance = lengths(corners - zero).min(1)
@@ -240,7 +237,7 @@ def _corners(rims: tuple[ElementRim, ...]) -> Integers:
     return np.concatenate([rim.vertices[rim.turns > SHARP] for rim in rims])
 
 
-def _near(points: Floats, others: Floats, reach: float) -> Flags:
+def _near(points: Floats, others: Floats, reach: float) -> Booleans:
     """Which points (n, 3) are nearer than a reach, m, to any of others (k, 3)."""
     if not len(points) or not len(others):
         return np.zeros(len(points), bool)
@@ -306,7 +303,7 @@ def _without_noise(
     return np.asarray(share * of + (1 - share) * leading * z**order)
 
 
-def _hole(parts: Parts, nodes: Floats, centre: Floats, radius: float) -> Flags:
+def _hole(parts: Parts, nodes: Floats, centre: Floats, radius: float) -> Booleans:
     """Parts that reach nearer to a place of the surface than a radius, as one piece without holes."""
     near = lengths(nodes - centre).min(1)
     hole = near < radius

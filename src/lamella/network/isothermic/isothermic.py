@@ -13,19 +13,16 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.ties import MARGIN
 from lamella.network.isothermic.integration_mesh import NetMesh
 from lamella.network.isothermic.poisson import Poisson, deviator_root
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.edge_basis import edge_values
 from lamella.surface.element.quadrature import triangle_rule
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -89,7 +86,7 @@ class Isothermic:
     mesh: NetMesh
     odd: Integers
     sign: Integers
-    cut: NDArray[np.bool_]
+    cut: Booleans
     value: Complexes
     transitions: tuple[Transition, ...]
     across: Integers
@@ -137,7 +134,7 @@ _MIDDLES = np.array([[0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 _DIRECTIONS = np.array([[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]])
 
 
-def root_signs(mesh: NetMesh, cut: NDArray[np.bool_]) -> tuple[Integers, NDArray[np.bool_], Integers]:
+def root_signs(mesh: NetMesh, cut: Booleans) -> tuple[Integers, Booleans, Integers]:
     """Sign of each element's root, (m,), alike across what is not cut; the cut; and what signs do over edges, (m, 3).
 
     Where an umbilic next to the rim was not cut to, the signs still disagree across some edges: these are cut as well.
@@ -174,7 +171,7 @@ def root_signs(mesh: NetMesh, cut: NDArray[np.bool_]) -> tuple[Integers, NDArray
     return sign, cut, turns
 
 
-def sectors(connectivity: Connectivity, cut: NDArray[np.bool_]) -> Integers:
+def sectors(connectivity: Connectivity, cut: Booleans) -> Integers:
     """Number of the unknown of each element's own nodes, (m, k): nodes are shared across edges that are not cut."""
     m, k = connectivity.elements.shape
     element, edge = np.nonzero((connectivity.neighbours >= 0) & ~cut)
@@ -186,9 +183,7 @@ def sectors(connectivity: Connectivity, cut: NDArray[np.bool_]) -> Integers:
     return np.asarray(group.reshape(m, k), np.int64)
 
 
-def cut_pieces(
-    mesh: NetMesh, cut: NDArray[np.bool_], turns: Integers, odd: Integers
-) -> tuple[tuple[Transition, ...], Integers]:
+def cut_pieces(mesh: NetMesh, cut: Booleans, turns: Integers, odd: Integers) -> tuple[tuple[Transition, ...], Integers]:
     """The pieces of the cut, their shifts still 0, and the transition through each local edge (m, 3).
 
     Parameters

@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.network.isothermic.integer_transitions import WholeShifts
 from lamella.network.isothermic.isothermic import Isothermic
-from lamella.surface.points import Complexes, Floats
 
 _MIDDLE = np.array([[1 / 3, 1 / 3]])
 # of a whole number: what is farther from the next one is not told apart

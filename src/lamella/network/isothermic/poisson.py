@@ -6,16 +6,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.sparse import SymmetricPattern, packed
 from lamella.network.isothermic.integration_mesh import NetMesh
 from lamella.surface.element.geometry import tangents, weighted_dirichlet_blocks
 from lamella.surface.element.quadrature import triangle_rule
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
-
 
 # of the mean |D|: where it is less the weight does not grow any more. Its square over the rounding of 1e-16 is what
 # remains of elements' stiffness against the sum of their rows, which has to be 0
@@ -145,7 +141,7 @@ class Poisson:
             np.einsum("tek,ek->t", moves, self.pull) - np.einsum("tek,ek->t", stiff, base)
         )
 
-    def folds(self, value: Complexes) -> NDArray[np.bool_]:
+    def folds(self, value: Complexes) -> Booleans:
         """Elements (m,) on which coordinates turn over anywhere."""
         w_x, w_y = value @ self.x.T, value @ self.y.T
         return np.asarray((w_x.real * w_y.imag <= w_x.imag * w_y.real).any(1))

@@ -8,10 +8,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.network.isothermic.holonomy import vertex_relations
 from lamella.network.isothermic.isothermic import Isothermic, cut_pieces, root_signs
 from lamella.network.isothermic.poisson import Poisson
@@ -20,9 +20,6 @@ from lamella.network.isothermic.straight_cuts import CrossedError, straight_cuts
 from lamella.network.isothermic.straight_walk import FlatTriangles
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 # of the longest principal line: what coordinates jump by across an edge that is not cut
 JUMP = 1e-6
@@ -105,7 +102,7 @@ def _through(iso: Isothermic, across: int) -> tuple[int, Floats]:
     return sign, row
 
 
-def _regions(split: Split, cut: NDArray[np.bool_], across: Integers) -> tuple[Integers, int]:
+def _regions(split: Split, cut: Booleans, across: Integers) -> tuple[Integers, int]:
     """Number of the region of each element, (m,), between what was cut and what is, and how many there are."""
     connectivity = split.mesh.connectivity
     element, edge = np.nonzero((connectivity.neighbours >= 0) & ~cut & (across == 0))
@@ -117,7 +114,7 @@ def _regions(split: Split, cut: NDArray[np.bool_], across: Integers) -> tuple[In
 
 
 def _offsets(
-    iso: Isothermic, split: Split, cut: NDArray[np.bool_], across: Integers, region: Integers, count: int, way: Integers
+    iso: Isothermic, split: Split, cut: Booleans, across: Integers, region: Integers, count: int, way: Integers
 ) -> Floats:
     """What is added to w in each region, times the shifts, (r, t), so that it goes on where nothing is cut any more."""
     connectivity = split.mesh.connectivity
@@ -151,7 +148,7 @@ def _inverse(iso: Isothermic, rows: Floats) -> Floats:
     return np.asarray(free @ np.linalg.pinv(rows @ free))
 
 
-def _check(connectivity: Connectivity, cut: NDArray[np.bool_], value: Complexes, longest: float) -> None:
+def _check(connectivity: Connectivity, cut: Booleans, value: Complexes, longest: float) -> None:
     """Refuse coordinates that jump where nothing is cut."""
     element, edge = np.nonzero((connectivity.neighbours >= 0) & ~cut)
     neighbour, back = connectivity.neighbours[element, edge], connectivity.neighbour_edges[element, edge]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Complexes, Floats
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.network.elements.integer_grid_map import CellMap
@@ -15,7 +15,6 @@ from lamella.network.isothermic.integer_transitions import WholeShifts
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.isothermic.seamless_transitions import FoldedError, with_shifts
 from lamella.network.pattern import Pattern
-from lamella.surface.points import Complexes, Floats
 
 # the nearest whole numbers may put two umbilics on one node; then the next ones are tried
 MOST_WAYS = 8
@@ -100,7 +99,7 @@ def largest_part(shifts: Complexes) -> Floats:
     return np.maximum(np.abs(shifts.real), np.abs(shifts.imag))
 
 
-def stubs(iso: Isothermic) -> NDArray[np.bool_]:
+def stubs(iso: Isothermic) -> Booleans:
     """Which pieces of the cut are no joints, (t,)."""
     return np.array([piece.stub for piece in iso.transitions], bool)
 

@@ -9,16 +9,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.network.isothermic.cut import cut_edges
 from lamella.network.isothermic.holonomy import vertex_relations
 from lamella.network.isothermic.integration_mesh import NetMesh
 from lamella.network.isothermic.isothermic import Isothermic, Transition, cut_pieces, root_signs, sectors
 from lamella.network.isothermic.poisson import Poisson
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 # w + a constant is as good as w: it changes the shifts of pieces where w comes back as -w, and costs nothing. A change
 # that costs less than this part of the dearest one is that, and rounding: it stays as small as it can. Between two

@@ -11,6 +11,7 @@ import numpy as np
 import pythoncdt
 from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.network.isothermic.integration_mesh import NetMesh
 from lamella.network.isothermic.straight_cuts import CrossedError
 from lamella.network.isothermic.straight_walk import FlatTriangles, share_of_edge
@@ -18,9 +19,6 @@ from lamella.network.isothermic.tight_lines import Course
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.lagrange import EDGES
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 _CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 # a place of a line inside an element is one of its vertices where it is as far as this from the edges
@@ -45,7 +43,7 @@ class Split:
     mesh: NetMesh
     parent: Integers
     corners: Floats
-    cut: NDArray[np.bool_]
+    cut: Booleans
 
     def restricted(self, values: NDArray[np.inexact]) -> NDArray[np.inexact]:
         """Values (..., m, k) at the nodes of the parts, of polynomials with values (..., m', k) on whole elements."""

@@ -12,14 +12,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.network.isothermic.straight_walk import PARTS, FlatTriangles, Heads
 from lamella.network.isothermic.tight_lines import CLEAR, Course, Passed, tightened
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 # directions out of each small triangle at an umbilic; from a place on a rim, within WIDE of its normal, rad
 FAN, RIM_FAN, WIDE = 12, 9, 1.0
@@ -104,7 +100,7 @@ def straight_cuts(flat: FlatTriangles) -> list[Course]:
     return courses
 
 
-def _between_loops(flat: FlatTriangles, taken: Flags) -> list[_Sight]:
+def _between_loops(flat: FlatTriangles, taken: Booleans) -> list[_Sight]:
     """Straight lines from each hole to each other loop, through no triangle that is taken."""
     result = []
     for hole in range(1, int(flat.loop.max()) + 1):
@@ -113,7 +109,7 @@ def _between_loops(flat: FlatTriangles, taken: Flags) -> list[_Sight]:
     return result
 
 
-def _feet(flat: FlatTriangles, taken: Flags, hole: int) -> Floats:
+def _feet(flat: FlatTriangles, taken: Booleans, hole: int) -> Floats:
     """Where umbilics are nearest to a hole, as sorted shares of its length from its start on."""
     begin, span = flat.rim_places
     places = []
@@ -126,7 +122,7 @@ def _feet(flat: FlatTriangles, taken: Flags, hole: int) -> Floats:
     return np.sort(np.array(places))
 
 
-def _between_feet(flat: FlatTriangles, taken: Flags, hole: int, feet: Floats) -> list[_Sight]:
+def _between_feet(flat: FlatTriangles, taken: Booleans, hole: int, feet: Floats) -> list[_Sight]:
     """Lines at right angles to a hole, halfway between the places where umbilics are nearest to it.
 
     A shortest line from a hole to the next loop passes through an umbilic as a rule, which has more than a full angle
@@ -193,7 +189,7 @@ class _Hits:
         return _Sight(float(self.distance[index]), start, end, foot, seen)
 
 
-def _shoot(flat: FlatTriangles, taken: Flags, heads: Heads, origins: Complexes, itself: int) -> _Hits:
+def _shoot(flat: FlatTriangles, taken: Booleans, heads: Heads, origins: Complexes, itself: int) -> _Hits:
     """Lines followed to a rim other than the one where they begin; those that come to what is taken are given up."""
     begin, span = flat.rim_places
     none = np.zeros(0, np.int64)
@@ -227,7 +223,7 @@ def _foot(origin: Complexes, first: Complexes, last: Complexes) -> Floats:
     return np.asarray(np.clip(share, CLEAR, 1 - CLEAR))
 
 
-def _from_umbilic(flat: FlatTriangles, taken: Flags, vertex: int) -> list[_Sight]:
+def _from_umbilic(flat: FlatTriangles, taken: Booleans, vertex: int) -> list[_Sight]:
     """The shortest straight line from an umbilic to each loop."""
     triangle, corner = np.nonzero(flat.grid.faces == vertex)
     triangle, corner = np.repeat(triangle, FAN), np.repeat(corner, FAN)
@@ -246,7 +242,7 @@ def _from_umbilic(flat: FlatTriangles, taken: Flags, vertex: int) -> list[_Sight
     return result
 
 
-def _from_loop(flat: FlatTriangles, taken: Flags, hole: int) -> list[_Sight]:
+def _from_loop(flat: FlatTriangles, taken: Booleans, hole: int) -> list[_Sight]:
     """The shortest straight lines from a hole to each other loop."""
     triangle, edge = flat.rim_chain(hole)
     # from the middle of every element's edge
@@ -272,7 +268,7 @@ def _from_loop(flat: FlatTriangles, taken: Flags, hole: int) -> list[_Sight]:
     return result
 
 
-def _from_place(flat: FlatTriangles, taken: Flags, start: _Start, end: int) -> _Sight | None:
+def _from_place(flat: FlatTriangles, taken: Booleans, start: _Start, end: int) -> _Sight | None:
     """The shortest straight line from a place on a rim to a loop."""
     at = np.array([start.triangle]), np.array([start.edge]), np.array([start.share])
     hits, _ = _fan(flat, taken, -1 - start.begin, *at, 8 * RIM_FAN)
@@ -280,7 +276,7 @@ def _from_place(flat: FlatTriangles, taken: Flags, start: _Start, end: int) -> _
 
 
 def _fan(
-    flat: FlatTriangles, taken: Flags, hole: int, triangle: Integers, edge: Integers, share: Floats, count: int
+    flat: FlatTriangles, taken: Booleans, hole: int, triangle: Integers, edge: Integers, share: Floats, count: int
 ) -> tuple[_Hits, Integers]:
     """What lines from places on a rim meet, so many from each; and from which place (n,) each line begins."""
     start = np.repeat(np.arange(len(triangle)), count)
@@ -309,7 +305,7 @@ def _least_of_parabola(values: Floats, index: int) -> float:
     return index + float(np.clip((before - after) / (2 * bend), -1, 1))
 
 
-def _drawn(flat: FlatTriangles, taken: Flags, sight: _Sight) -> Course | None:
+def _drawn(flat: FlatTriangles, taken: Booleans, sight: _Sight) -> Course | None:
     """A line drawn straight, its ends where they are nearest to each other; None: something is in its way."""
     course = sight.course or _at_right_angles(flat, taken, sight)
     if course is None:
@@ -320,7 +316,7 @@ def _drawn(flat: FlatTriangles, taken: Flags, sight: _Sight) -> Course | None:
     return None if taken[course.triangle[1:]].any() else course
 
 
-def _at_right_angles(flat: FlatTriangles, taken: Flags, sight: _Sight) -> Course | None:
+def _at_right_angles(flat: FlatTriangles, taken: Booleans, sight: _Sight) -> Course | None:
     """A line at right angles to the rims on which it ends, or to a corner of them."""
     now: _Sight | None = sight
     for _ in range(MOST_MOVES):
@@ -334,7 +330,7 @@ def _at_right_angles(flat: FlatTriangles, taken: Flags, sight: _Sight) -> Course
     return None
 
 
-def _to_nearest(flat: FlatTriangles, taken: Flags, sight: _Sight) -> tuple[Course, float] | None:
+def _to_nearest(flat: FlatTriangles, taken: Booleans, sight: _Sight) -> tuple[Course, float] | None:
     """A line to the nearest place of a loop, and where its start belongs on its element's edge."""
     start, goal = sight.start, sight.foot
     for _ in range(MOST_MOVES):
@@ -365,7 +361,7 @@ def _next_element(flat: FlatTriangles, start: _Start, share: float) -> _Start:
     return _Start(start.begin, int(triangle[index]), int(edge[index]), CLEAR if share > 1 else 1 - CLEAR)
 
 
-def _followed(flat: FlatTriangles, taken: Flags, start: _Start, end: int, goal: complex) -> Passed | None:
+def _followed(flat: FlatTriangles, taken: Booleans, start: _Start, end: int, goal: complex) -> Passed | None:
     """A line to a goal, from small edge to small edge; None: it comes to what is taken, or to another loop."""
     if start.begin >= 0:
         start, goal = _wedge_of(flat, start, goal)

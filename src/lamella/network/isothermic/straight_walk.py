@@ -10,14 +10,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.lagrange import EDGES, lagrange, local_faces
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 # small triangles along the edge of an element
 PARTS = 3
@@ -54,7 +51,7 @@ class FlatTriangles:
     sign: Floats
     shift: Complexes
     loop: Integers
-    at_umbilic: NDArray[np.bool_]
+    at_umbilic: Booleans
 
     @classmethod
     def of(cls, iso: Isothermic) -> FlatTriangles:
@@ -166,7 +163,7 @@ class Heads:
         count = len(triangle)
         return cls(np.arange(count), triangle, edge, place, heading, np.ones(count), np.zeros(count, complex))
 
-    def __getitem__(self, index: NDArray[np.bool_] | Integers) -> Heads:
+    def __getitem__(self, index: Booleans | Integers) -> Heads:
         return Heads(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
 
     @property

@@ -9,13 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.network.isothermic.straight_walk import PARTS, FlatTriangles, cross, edges_of_element, share_of_edge
 from lamella.surface.element.lagrange import EDGES, lagrange, local_faces
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 _CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 _AXES = np.array([_CORNERS[b] - _CORNERS[a] for a, b in EDGES])

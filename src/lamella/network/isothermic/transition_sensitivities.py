@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.base.progress import Progress, Report, silent
 from lamella.network.isothermic.holonomy import vertex_relations
 from lamella.network.isothermic.isothermic import Isothermic, sectors
@@ -21,7 +22,6 @@ from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.variation import Variation
-from lamella.surface.points import Complexes, Floats
 
 # of the film's size: how far it is moved for a difference quotient
 STEP = 1e-4

@@ -9,13 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import deviator_error
-from lamella.surface.points import Complexes, Floats
 
 # of an element: over which D is differentiated
 BESIDE = 1e-3
@@ -42,7 +41,7 @@ class UmbilicDepths:
     places: Places
     depth: Floats
     by_deviator: Floats
-    rim_node: NDArray[np.int64]
+    rim_node: Integers
     inwards: Floats
 
     @classmethod

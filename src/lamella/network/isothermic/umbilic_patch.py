@@ -11,12 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes, Integers
 from lamella.surface.element.lagrange import lagrange, subdivision
-from lamella.surface.points import Complexes
-
-Integers = NDArray[np.int64]
 
 # triangles along a ray from the umbilic to the rosette's rim
 RINGS = 3

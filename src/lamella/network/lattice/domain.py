@@ -16,17 +16,13 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.network.network import A, B, Period
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.outline import Disc, Rectangle, Ring
 from lamella.surface.closed_forms.scherk import Scherk, asymptotic_to_conformal
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
-Integers = NDArray[np.int64]
 
 # places along a loop start a little before 0, so that rounding does not send its first node to the end
 FIRST = 1e-9
@@ -59,8 +55,8 @@ class Lines:
     direction: Complexes
     start: Floats
     end: Floats
-    singular: NDArray[np.bool_]
-    closed: NDArray[np.bool_]
+    singular: Booleans
+    closed: Booleans
 
     @property
     def level(self) -> Integers:
@@ -71,7 +67,7 @@ class Lines:
         """Those a pattern keeps."""
         return self.take(self.level % np.array(pattern.every)[self.family] == 0)
 
-    def take(self, keep: NDArray[np.bool_] | Integers) -> Lines:
+    def take(self, keep: Booleans | Integers) -> Lines:
         """Some of the lines, by mask or by index."""
         return Lines(*(getattr(self, name)[keep] for name in self.__dataclass_fields__))
 

@@ -5,15 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.ragged import ragged_ranges
 from lamella.network.lattice.domain import RIM_TOLERANCE, Domain, Lines, Rim
 from lamella.network.network import BOUNDARY, REGULAR, SINGULAR, A
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
-Integers = NDArray[np.int64]
 
 # cells; how far from its end a line may meet the rim tolerance: lines that graze the rim do so at a small angle
 NEAR_END = 0.02

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from lamella.network.lattice.domain import Complexes, Floats, RectangleDomain, ScherkDomain, centred
+from lamella.base.arrays import Complexes, Floats
+from lamella.network.lattice.domain import RectangleDomain, ScherkDomain, centred
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.closed_forms.closed_form import ClosedForm
 

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.network.lattice.domain import Domain
 from lamella.network.lattice.lattice import Lattice
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
-Integers = NDArray[np.int64]
 
 
 class Segments:

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.polynomial import Chebyshev
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.wording import rounded
 from lamella.network.lattice.domain import Band, Rim
@@ -25,9 +25,6 @@ from lamella.surface.closed_forms.outline import Ring
 from lamella.surface.closed_forms.revolution import SurfaceOfRevolution
 from lamella.surface.darboux import Darboux, lamella_darboux
 from lamella.surface.points import SurfacePoints
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 # degrees; families that cross at less make no net
 LEAST_ANGLE = 20.0
@@ -107,11 +104,11 @@ class LeaningBand(Band):
                 break
         return np.asarray(u + (p - inside) / self._rate(u))
 
-    def place(self, sheet: NDArray[np.int64], point: Complexes) -> Complexes:
+    def place(self, sheet: Integers, point: Complexes) -> Complexes:
         plane = super().place(sheet, point)
         return np.asarray(self._u(plane.real) + 1j * plane.imag, np.complex128)
 
-    def velocity(self, sheet: NDArray[np.int64], point: Complexes, direction: Complexes) -> Complexes:
+    def velocity(self, sheet: Integers, point: Complexes, direction: Complexes) -> Complexes:
         plane = self.slope * direction
         return np.asarray(plane.real / self._rate(self.place(sheet, point).real) + 1j * plane.imag, np.complex128)
 

@@ -6,8 +6,8 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.base.blocks import blocks
 from lamella.base.errors import InputError
 from lamella.network.arc_length import ArcLengths, Stretched
@@ -24,10 +24,6 @@ from lamella.network.pattern import Pattern
 from lamella.network.sampling import Division, divide, parts_of
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.darboux import Darboux, lamella_darboux, sideways_slope
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
-Integers = NDArray[np.int64]
 
 # of a ray's first cell: where a limit at the singular node is taken
 BESIDE_ZERO = 1e-6

@@ -9,13 +9,8 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.surface.element.places import Places
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 
 class Look(NamedTuple):
@@ -41,7 +36,7 @@ class Look(NamedTuple):
     deviator: Complexes
     to_local: Floats
 
-    def take(self, some: NDArray[np.bool_] | Integers) -> Look:
+    def take(self, some: Booleans | Integers) -> Look:
         """Some of the places."""
         return Look(
             self.position[some],

@@ -17,11 +17,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
+from lamella.base.arrays import Booleans, Complexes, Floats
 
 # degrees; where families cross at less the net ends
 LEAST_ANGLE = 20.0
@@ -44,7 +41,7 @@ class LineField:
     normal_curvature: float | None
     scale: float
 
-    def heading(self, mean: Floats, deviator: Complexes, is_a: NDArray[np.bool_]) -> Complexes:
+    def heading(self, mean: Floats, deviator: Complexes, is_a: Booleans) -> Complexes:
         """Unit tangents as complex components, (n,), up to their sign; where there are none, of the nearest kn."""
         size = np.abs(deviator)
         sense = np.where(is_a, 1.0, -1.0)
@@ -65,7 +62,7 @@ class LineField:
         wide = size * np.cos(np.radians(LEAST_ANGLE)) - np.abs(self.normal_curvature - mean)
         return np.asarray(np.minimum(wide, bent))
 
-    def is_real(self, mean: Floats, deviator: Complexes) -> NDArray[np.bool_]:
+    def is_real(self, mean: Floats, deviator: Complexes) -> Booleans:
         """Where there are such directions at all, (n,)."""
         if self.normal_curvature is None:
             return np.ones(len(mean), bool)

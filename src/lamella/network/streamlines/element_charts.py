@@ -5,16 +5,13 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.network.streamlines.charts import Look, RimPlaces
 from lamella.surface.element.places import Places
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 # elements a step may pass, Newton's steps to a place seen from the next element, and what counts as outside of one
 MOST_HOPS, NEWTON_STEPS, OUTSIDE = 8, 4, 1e-12

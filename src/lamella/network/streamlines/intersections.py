@@ -5,13 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats, Integers
 from lamella.network.streamlines.streamlines import Flow
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # of a chord: how far beyond its ends a crossing may seem to be at first
 SLACK = 0.6

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.network.streamlines.charts import Look, RimPlaces
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.outline import Disc, Rectangle
 from lamella.surface.closed_forms.scherk import Scherk, asymptotic_to_conformal
 from lamella.surface.element.places import Places
-from lamella.surface.points import Complexes, Floats
-
-Integers = NDArray[np.int64]
 
 # parts of the longest way across a closed form's parameters in a step, and samples along either parameter
 PARTS, SAMPLES = 80, 60

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans
 from lamella.network.streamlines.charts import Ground, Look
 from lamella.network.streamlines.direction_field import LineField
 from lamella.network.streamlines.streamlines import Flow, trace
@@ -18,9 +18,7 @@ BESIDE = 0.25
 STEPS, LONGEST = 3, 12.0
 
 
-def wound(
-    ground: Ground, field: LineField, seeds: Places, is_a: NDArray[np.bool_], *, spacing: float, size: float
-) -> Flow:
+def wound(ground: Ground, field: LineField, seeds: Places, is_a: Booleans, *, spacing: float, size: float) -> Flow:
     """Streamlines from seeds; those that come back to their seed are given up there."""
     return trace(ground, field, seeds, is_a, step=spacing / STEPS, longest=LONGEST * size, beside=BESIDE * spacing)
 

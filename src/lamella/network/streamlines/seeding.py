@@ -11,9 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.ragged import ragged_ranges
 from lamella.base.ties import MARGIN, nearest_whole
@@ -22,10 +22,6 @@ from lamella.network.streamlines.direction_field import LineField
 from lamella.network.streamlines.probing import LONGEST, wound
 from lamella.network.streamlines.streamlines import Flow, finished, joined, trace
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
-Booleans = NDArray[np.bool_]
 
 # share of the seeds around a hole that must have directions, and sine of the angle to the rim they must have
 AROUND, ACROSS = 0.98, 0.17

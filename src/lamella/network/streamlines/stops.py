@@ -5,23 +5,20 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.network.assemble import RimNodes
 from lamella.network.network import BOUNDARY, REGULAR
 from lamella.network.streamlines.charts import Ground
 from lamella.network.streamlines.intersections import Crossings
 from lamella.network.streamlines.streamlines import RIM, Flow
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
 
 # of the edge of whole cells: ends and crossings this near to each other are one node (docs/files.md)
 SAME_NODE = 1e-6
-Integers = NDArray[np.int64]
-Booleans = NDArray[np.bool_]
 
 
 class Stops(NamedTuple):

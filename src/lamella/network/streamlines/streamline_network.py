@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
@@ -44,10 +44,6 @@ from lamella.network.turning import sideways_slopes, turning
 from lamella.network.written_lines import WrittenLines, angle_figures
 from lamella.surface.darboux import Darboux
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
-Booleans = NDArray[np.bool_]
 
 # how far the median cell edge may be from the spacing asked for, and how often seeds are spaced anew for it
 OFF_SPACING, MOST_TRIES = 0.1, 3

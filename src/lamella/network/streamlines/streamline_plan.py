@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.base.errors import InputError
 from lamella.base.vectors import dots, lengths
 from lamella.base.wording import rounded
@@ -18,9 +18,6 @@ from lamella.network.streamlines.direction_field import LEAST_ANGLE, LineField
 from lamella.network.streamlines.probing import probes
 from lamella.network.streamlines.seeding import RIM_POINTS, Guide, choose_guide
 from lamella.network.streamlines.winding import refuse_winding
-from lamella.surface.points import Floats
-
-Booleans = NDArray[np.bool_]
 
 # share of the surface that has lines, at least, of the normal curvatures that are offered
 OFFERED = 0.1

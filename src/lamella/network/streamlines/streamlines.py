@@ -10,15 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.network.streamlines.charts import Ground, Look
 from lamella.network.streamlines.direction_field import LineField
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
-Booleans = NDArray[np.bool_]
 
 RIM, UNREAL, ENDLESS = range(3)
 """How a half ends: on the rim, where its direction stops being real, or not: it comes back, or gets too long."""

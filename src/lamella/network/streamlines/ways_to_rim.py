@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats
 from lamella.base.ties import MARGIN
 from lamella.network.streamlines.charts import Ground
 from lamella.network.streamlines.direction_field import LineField
 from lamella.network.streamlines.probing import LONGEST, STEPS, probes, wound
 from lamella.network.streamlines.streamlines import RIM, UNREAL, Flow, finished, joined, trace
-from lamella.surface.points import Floats
 
 # normal curvatures that are looked at: so many between the principal curvatures; those lines are offered that cross at
 # no less than these degrees on all but this share of the area

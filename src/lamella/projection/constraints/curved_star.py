@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.projection.constraint import Constraint
-from lamella.projection.unknowns import Floats, Integers, Slot, dot
+from lamella.projection.unknowns import Slot, dot
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.projection.constraint import Constraint
 from lamella.projection.quad_mesh import QuadMesh
-from lamella.projection.unknowns import Floats, Integers, Slot
+from lamella.projection.unknowns import Slot
 
 SECOND, THIRD = np.array([1.0, -2.0, 1.0]), np.array([-1.0, 3.0, -3.0, 1.0])
 
@@ -78,7 +78,7 @@ def fairness(
         See `Constraint`.
     boundary : bool
     """
-    rim: NDArray[np.bool_] = mesh.on_boundary
+    rim: Booleans = mesh.on_boundary
     runs = mesh.runs(order + 1)
     along_rim = rim[runs[:, 1:-1]].all(1)
     name = "second differences" if order == 2 else "third differences"

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.right_angle import chords
-from lamella.projection.unknowns import Floats, Integers, Slot, dot
+from lamella.projection.unknowns import Slot, dot
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from lamella.base.arrays import Floats, Integers
 from lamella.projection.constraint import Constraint
-from lamella.projection.unknowns import Floats, Integers, Slot, dot
+from lamella.projection.unknowns import Slot, dot
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,8 +7,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.projection.constraint import Constraint
-from lamella.projection.unknowns import Floats, Integers, Slot
+from lamella.projection.unknowns import Slot
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,9 +7,10 @@ from typing import Self
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.projection.constraint import Constraint
 from lamella.projection.foot_points import FootSurface
-from lamella.projection.unknowns import Floats, Integers, Slot, Values, dot
+from lamella.projection.unknowns import Slot, Values, dot
 
 
 @dataclass(frozen=True, kw_only=True)

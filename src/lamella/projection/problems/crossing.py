@@ -6,13 +6,14 @@ from typing import Literal
 
 import numpy as np
 
+from lamella.base.arrays import Integers
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.equal_diagonals import EqualDiagonals
 from lamella.projection.constraints.inverted_edge import InvertedEdge, inverses
 from lamella.projection.constraints.node_angle import NodeAngle
 from lamella.projection.constraints.right_angle import RightAngle, chords
 from lamella.projection.quad_mesh import QuadMesh
-from lamella.projection.unknowns import Block, Integers, dot
+from lamella.projection.unknowns import Block, dot
 
 AngleForm = Literal["circles", "chords", "faces"]
 """Where the angle between polylines is measured: three answers that differ by O(e^2).

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.sparse import Backend
 from lamella.projection.constraint import Constraint
@@ -20,7 +21,7 @@ from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.solve import solve
 from lamella.projection.star_measures import circle_angles, star_spheres
-from lamella.projection.unknowns import Block, Floats, Integers
+from lamella.projection.unknowns import Block
 from lamella.projection.vertex_normals import smoothed_normals
 
 # change of the ring's size from one state to the next

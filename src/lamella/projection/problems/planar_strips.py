@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError, require_positive
 from lamella.base.sparse import Backend
 from lamella.projection.constraint import Constraint
@@ -21,7 +22,7 @@ from lamella.projection.constraints.upright import Upright
 from lamella.projection.foot_points import FootSurface
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.solve import solve
-from lamella.projection.unknowns import Block, Floats
+from lamella.projection.unknowns import Block
 from lamella.strip.developable import buildable_height
 from lamella.strip.planarity import planarity_score
 

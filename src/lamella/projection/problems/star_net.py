@@ -8,6 +8,7 @@ from typing import get_args
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.sparse import Backend
 from lamella.projection.constraints.curved_star import CurvedStar
@@ -18,7 +19,7 @@ from lamella.projection.quad_mesh import QuadMesh, collapsed
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.smoothing import smoothed
 from lamella.projection.solve import solve
-from lamella.projection.unknowns import Block, Floats
+from lamella.projection.unknowns import Block
 from lamella.projection.vertex_normals import smoothed_normals
 
 # a radius known worse than this share of itself is ill-determined

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.sparse import Backend
 from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.fixed import Fixed
@@ -16,7 +17,7 @@ from lamella.projection.problems.crossing import AngleForm, crossing
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.report import Iteration
 from lamella.projection.solve import solve
-from lamella.projection.unknowns import Block, Floats, Integers, dot
+from lamella.projection.unknowns import Block, dot
 from lamella.projection.vertex_normals import smoothed_normals
 
 # weight of the given vertices and its fade: while it lasts the radius follows the whole net; a heavier one pulls the

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.sparse import Backend
 from lamella.projection.constraint import Constraint
@@ -18,7 +19,7 @@ from lamella.projection.foot_points import DirectedSurface
 from lamella.projection.quad_mesh import QuadMesh, collapsed, quad_mesh
 from lamella.projection.report import Iteration, Solution
 from lamella.projection.solve import solve
-from lamella.projection.unknowns import Block, Floats
+from lamella.projection.unknowns import Block
 
 # of the mean edge: a vertex farther from its foot point is beyond the surface's border
 BEYOND = 0.1

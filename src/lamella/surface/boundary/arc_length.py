@@ -6,7 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from lamella.surface.boundary.pieces import Floats, Integers, Pieces
+from lamella.base.arrays import Floats, Integers
+from lamella.surface.boundary.pieces import Pieces
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 _NODES, _WEIGHTS = (1 + _NODES) / 2, _WEIGHTS / 2

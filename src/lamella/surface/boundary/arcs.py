@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from lamella.surface.boundary.pieces import Floats, Pieces, lines
+from lamella.base.arrays import Floats
+from lamella.surface.boundary.pieces import Pieces, lines
 
 _WIDEST = math.pi / 2
 """A piece of more than half a turn has no rational quadratic of positive weights; quarters are well conditioned."""

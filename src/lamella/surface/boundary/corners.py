@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lamella.surface.boundary.pieces import Floats
+from lamella.base.arrays import Booleans, Floats
 
 CORNER_ANGLE = 40.0
 """Degrees."""
@@ -30,7 +29,7 @@ def turning_angles(points: Floats) -> Floats:
     return np.asarray(np.arctan2(sine, np.einsum("ij,ij->i", before, after)))
 
 
-def find_corners(points: Floats, corner_angle: float = CORNER_ANGLE) -> NDArray[np.bool_]:
+def find_corners(points: Floats, corner_angle: float = CORNER_ANGLE) -> Booleans:
     """Corners of the curve that a closed polyline (k, 3) means, bool (k,).
 
     A corner turns by more than `corner_angle`, degrees, and by more than twice what the curvature on both sides of it
@@ -55,7 +54,7 @@ def find_corners(points: Floats, corner_angle: float = CORNER_ANGLE) -> NDArray[
     return np.asarray(corner)
 
 
-def thinned(rows: Floats, fixed: NDArray[np.bool_], limit: float) -> Floats:
+def thinned(rows: Floats, fixed: Booleans, limit: float) -> Floats:
     """Drop vertices until none is nearer than `limit` to the next: of two, the one that bends the curve less.
 
     Parameters
@@ -85,7 +84,7 @@ def thinned(rows: Floats, fixed: NDArray[np.bool_], limit: float) -> Floats:
     return rows
 
 
-def _first_of_ties(rank: Floats) -> NDArray[np.bool_]:
+def _first_of_ties(rank: Floats) -> Booleans:
     """Every other one of a run of equal ranks, so that neighbours do not wait for one another."""
     same = rank == np.roll(rank, 1)
     same[0] = False

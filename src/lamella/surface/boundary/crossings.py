@@ -13,12 +13,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.surface.boundary.curve import Loop, angle_between
-from lamella.surface.boundary.pieces import Floats, Integers, Pieces, stack
-
-Bools = NDArray[np.bool_]
+from lamella.surface.boundary.pieces import Pieces, stack
 
 # radians an arc may turn
 _LITTLE = 0.3
@@ -69,7 +67,7 @@ class _Arcs:
     turn: Floats
     turned: Floats  # (n, 2)
 
-    def take(self, which: Integers | Bools) -> _Arcs:
+    def take(self, which: Integers | Booleans) -> _Arcs:
         return _Arcs(*(getattr(self, name)[which] for name in _ARC_FIELDS))
 
     @property
@@ -167,7 +165,7 @@ class _Curves:
         turned = np.stack([before - offset, before - offset + turn], axis=1)
         return _Arcs(loop, piece, start, stop, np.stack([x0, x1], 1), turn, turned)
 
-    def adjacent(self, a: _Arcs, b: _Arcs) -> Bools:
+    def adjacent(self, a: _Arcs, b: _Arcs) -> Booleans:
         """Whether b begins where a ends, on one loop."""
         same = (a.piece == b.piece) & (a.stop == b.start)
         return np.asarray(same | ((a.stop == 1) & (b.start == 0) & (self.next[a.piece] == b.piece)))
@@ -228,7 +226,7 @@ def _touch(curves: _Curves, a: _Arcs, b: _Arcs, u: float, v: float) -> Touch:
     return Touch((int(a.loop[0]), int(b.loop[0])), points, (lengths[0], lengths[1]), apart)
 
 
-def _cannot_meet(curves: _Curves, a: _Arcs, b: _Arcs) -> Bools:
+def _cannot_meet(curves: _Curves, a: _Arcs, b: _Arcs) -> Booleans:
     """Whether the stretch from one arc to the other, on one loop, turns too little to come back."""
     swap = (a.turned[:, 0] > b.turned[:, 0])[:, None]
     low, high = np.where(swap, b.turned, a.turned), np.where(swap, a.turned, b.turned)

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.surface.boundary.arc_length import Course
-from lamella.surface.boundary.pieces import Floats, Integers, Pieces
+from lamella.surface.boundary.pieces import Pieces
 
 CORNER_ANGLE = 1e-6
 """Radians. A larger jump of the tangent is a corner.
@@ -87,7 +88,7 @@ class Loop:
     course: Course = field(repr=False)
     corners: Floats
     turns: Floats
-    smooth: NDArray[np.bool_]
+    smooth: Booleans
     slides: tuple[Slide, ...] = ()
     remarks: tuple[Message, ...] = ()
 
@@ -191,8 +192,8 @@ def make_loop(
     sliding: Sequence[Sliding] = (),
     *,
     remarks: tuple[Message, ...] = (),
-    drawn: NDArray[np.bool_] | None = None,
-    kept: NDArray[np.bool_] | None = None,
+    drawn: Booleans | None = None,
+    kept: Booleans | None = None,
     where: str = "",
 ) -> Loop:
     """A loop from pieces that join end to end, the last one with the first.

@@ -20,11 +20,12 @@ from math import comb, cos, pi, sin, sqrt
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.wording import rounded
 from lamella.surface.boundary.curve import Loop, Sliding, make_loop, place
-from lamella.surface.boundary.pieces import Floats, Integers, Pieces, stack
+from lamella.surface.boundary.pieces import Pieces, stack
 
 DEGREE = 7
 FLAT_SPEED = 6 / 7

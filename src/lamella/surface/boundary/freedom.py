@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.wording import rounded
 from lamella.project.boundary_tables import MOST_WAVES, AdjustTable, PlaceTable
-from lamella.surface.boundary.pieces import Floats
 from lamella.surface.boundary.waves import wave_rows
 
 if TYPE_CHECKING:

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.surface.boundary.curve import place
-from lamella.surface.boundary.pieces import Floats, Pieces, stack
+from lamella.surface.boundary.pieces import Pieces, stack
 
 GAP_LIMIT = 1e-6
 """Of the size of all curves together: ends nearer than this are one point."""

@@ -13,10 +13,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.surface.boundary.curve import Loop
-from lamella.surface.boundary.pieces import Floats
 
 SAMPLES = 600
 """Points of the curve, besides its corners: more than any boundary's knot needs, whose strands keep apart."""
@@ -50,7 +49,7 @@ class Crossings(NamedTuple):
 
     over: Floats
     under: Floats
-    from_left: NDArray[np.bool_]
+    from_left: Booleans
 
 
 def is_knotted(loop: Loop) -> bool:
@@ -88,7 +87,7 @@ def alexander(crossings: Crossings) -> int:
     return _determinant(matrix[:-1, :-1] % PRIME)
 
 
-def _determinant(matrix: NDArray[np.int64]) -> int:
+def _determinant(matrix: Integers) -> int:
     """Determinant of a matrix (n, n) modulo `PRIME`, by elimination; the matrix is overwritten."""
     value = 1
     for k in range(len(matrix)):
@@ -126,9 +125,7 @@ def find_crossings(points: Floats) -> Crossings:
     return Crossings(np.where(first_above, one, other), np.where(first_above, other, one), from_left)
 
 
-def _meetings(
-    plan: Floats, step: Floats, first: int
-) -> tuple[NDArray[np.int64], NDArray[np.int64], *tuple[Floats, ...]]:
+def _meetings(plan: Floats, step: Floats, first: int) -> tuple[Integers, Integers, *tuple[Floats, ...]]:
     """Edges i of a block and later ones j that meet in plan, shares of them, and the product of their directions."""
     n = len(plan)
     i, j = np.triu_indices(min(BLOCK, n - first), first + 2, n)

@@ -12,10 +12,8 @@ from functools import cached_property
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+from lamella.base.arrays import Floats, Integers
 
 _ROUNDING = 1e-9
 """Of a curve's size: ends further apart have a gap."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.surface.boundary.curve import place
-from lamella.surface.boundary.pieces import Floats
 
 _SAME = 1e-6
 """Of the size of the list: points nearer than this are one, as two curves that near would touch."""

@@ -10,9 +10,8 @@ from itertools import pairwise
 from math import factorial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lamella.surface.boundary.pieces import Floats
+from lamella.base.arrays import Booleans, Floats
 
 FEWEST = 12
 """A stretch with fewer vertices says too little of what is scatter and what is meant."""
@@ -33,7 +32,7 @@ ORDER = 3
 """Of the differences that are made small; those of second order would pull circles inwards."""
 
 
-def smooth_scatter(points: Floats, corner: NDArray[np.bool_]) -> tuple[Floats, float, float]:
+def smooth_scatter(points: Floats, corner: Booleans) -> tuple[Floats, float, float]:
     """Lay a smooth curve through the scattered vertices of a closed border; corners stay where they are.
 
     The curve has the least sum of (third differences)^2 that leaves the scatter, which is known from what local

@@ -6,14 +6,14 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.wording import counted
 from lamella.surface.boundary.corners import CORNER_ANGLE, edge_lengths, find_corners, thinned, turning_angles
-from lamella.surface.boundary.pieces import Floats, Pieces, lines, stack
+from lamella.surface.boundary.pieces import Pieces, lines, stack
 from lamella.surface.boundary.scatter import smooth_scatter
 from lamella.surface.boundary.splines import closed_spline, open_spline
 
@@ -74,7 +74,7 @@ def smooth_curve(
     return pieces, Message("polyline_smooth", told)
 
 
-def _curve(points: Floats, corner: NDArray[np.bool_], where: str) -> tuple[Pieces, float]:
+def _curve(points: Floats, corner: Booleans, where: str) -> tuple[Pieces, float]:
     """A smooth curve through vertices, with corners, and how far it passes them, m."""
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
     most = MOST_POINTS
@@ -92,14 +92,14 @@ def _curve(points: Floats, corner: NDArray[np.bool_], where: str) -> tuple[Piece
         most *= 2
 
 
-def _side_ends(points: Floats) -> NDArray[np.bool_]:
+def _side_ends(points: Floats) -> Booleans:
     """Ends of straight sides among the steps of a curve."""
     step = edge_lengths(points)
     long = (step > LONG * np.roll(step, 1)) & (step > LONG * np.roll(step, -1))
     return np.asarray(long | np.roll(long, 1))
 
 
-def through_points(points: Floats, corner: NDArray[np.bool_], where: str) -> Pieces:
+def through_points(points: Floats, corner: Booleans, where: str) -> Pieces:
     """Splines through the points of a closed polyline (k, 3), from corner to corner (k,).
 
     Raises

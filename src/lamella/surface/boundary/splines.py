@@ -8,9 +8,10 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.linalg import LinAlgError, LinAlgWarning
 
+from lamella.base.arrays import Floats
 from lamella.base.drawing_origin import origin_of
 from lamella.base.errors import InputError
-from lamella.surface.boundary.pieces import Floats, Pieces, lines
+from lamella.surface.boundary.pieces import Pieces, lines
 
 QUINTIC_FROM = 7
 """Points. From here on splines are quintic, below they are cubic.

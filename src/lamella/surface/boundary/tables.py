@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from lamella.base.arrays import Floats
 from lamella.base.drawing_origin import NOWHERE, Origin, origin_of
 from lamella.base.errors import InputError
 from lamella.base.message import Message
@@ -22,7 +23,7 @@ from lamella.surface.boundary.checks import check_corner_count, check_loops
 from lamella.surface.boundary.curve import Loop, Sliding, make_loop
 from lamella.surface.boundary.fillets import rounded_loop
 from lamella.surface.boundary.joining import join_in_order
-from lamella.surface.boundary.pieces import Floats, Pieces, lines
+from lamella.surface.boundary.pieces import Pieces, lines
 from lamella.surface.boundary.point_list import clean_points
 from lamella.surface.boundary.smooth_polyline import smooth_curve, vertices
 from lamella.surface.boundary.splines import closed_spline, open_spline

@@ -13,10 +13,10 @@ order in the length of the pieces (4e-9 of the amplitude for four waves).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.surface.boundary.curve import Loop
-from lamella.surface.boundary.pieces import Floats, Pieces
+from lamella.surface.boundary.pieces import Pieces
 
 PARTS = 128
 """Least number of pieces a waved curve has."""
@@ -29,7 +29,7 @@ def wave_rows(t: Floats, waves: int) -> Floats:
     return np.vstack([np.ones(len(t)), both])
 
 
-def waved(loop: Loop, shifts: Floats) -> tuple[Pieces, NDArray[np.bool_]]:
+def waved(loop: Loop, shifts: Floats) -> tuple[Pieces, Booleans]:
     """The pieces of a loop shifted by waves.
 
     Parameters

@@ -13,11 +13,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.base.message import Message
 from lamella.surface.closed_forms import sampling
 from lamella.surface.closed_forms.outline import Outline
 from lamella.surface.mesh import SurfaceMesh
-from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.points import SurfacePoints
 
 
 class ClosedForm(ABC):
@@ -74,7 +75,7 @@ class ClosedForm(ABC):
         Once around the axis; on a simply connected surface, along its longest principal line.
         """
 
-    def places(self, rows: int, columns: int) -> tuple[Complexes, sampling.Integers]:
+    def places(self, rows: int, columns: int) -> tuple[Complexes, Integers]:
         """A grid of places over the outline and its faces, see `lamella.surface.closed_forms.sampling.grid`."""
         return sampling.grid(self.outline, rows, columns)
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import require_positive
 from lamella.surface.closed_forms.revolution import Profile, SurfaceOfRevolution
-from lamella.surface.points import Floats
 
 
 class Cylinder(SurfaceOfRevolution):

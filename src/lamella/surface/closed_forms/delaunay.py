@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError, require_positive
 from lamella.base.wording import rounded
 from lamella.surface.closed_forms.elliptic import epsilon, first_kind, jacobi, quarter_period
 from lamella.surface.closed_forms.revolution import Profile, SurfaceOfRevolution
-from lamella.surface.points import Floats
 
 # below this ratio of radii the elliptic functions, whose parameter 1 - ratio^2 is rounded, lose too many digits
 LEAST_RATIO = 1e-4

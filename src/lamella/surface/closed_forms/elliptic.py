@@ -10,10 +10,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ellipe, ellipj, ellipkm1, elliprd, elliprf
 
-Floats = NDArray[np.float64]
+from lamella.base.arrays import Floats
 
 
 class Jacobi(NamedTuple):

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.base.errors import InputError, require_positive
 from lamella.base.message import Message
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.outline import Disc
-from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.points import SurfacePoints
 
 
 class Enneper(ClosedForm):

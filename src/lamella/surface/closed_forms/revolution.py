@@ -8,10 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.base.errors import InputError
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.outline import Ring
-from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.points import SurfacePoints
 
 
 class Profile(NamedTuple):

@@ -6,16 +6,15 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.surface.closed_forms.outline import Disc, Outline, Rectangle, Ring
 from lamella.surface.mesh import SurfaceMesh
-from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.points import SurfacePoints
 
 if TYPE_CHECKING:
     from lamella.surface.closed_forms.closed_form import ClosedForm
 
-Integers = NDArray[np.int64]
 
 # most vertices of a mesh along either parameter
 MOST_LINES = 1000

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.base.errors import InputError, require_positive
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.elliptic import first_kind, jacobi
 from lamella.surface.closed_forms.outline import Square
-from lamella.surface.closed_forms.sampling import Integers, grid_faces, quadrature
-from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.closed_forms.sampling import grid_faces, quadrature
+from lamella.surface.points import SurfacePoints
 
 
 def asymptotic_to_conformal(p: Floats) -> Floats:

@@ -11,16 +11,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ties import shortened
 from lamella.base.vectors import lengths
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 # rounds of cuts; each halves the longest edges of what is too large
 MOST_ROUNDS = 60
@@ -67,7 +63,7 @@ def whole(connectivity: Connectivity, nodes: Floats, rim_loop: Integers) -> Part
 
 
 def bisect(
-    parts: Parts, connectivity: Connectivity, nodes: Floats, too_large: Callable[[Floats, Floats], Flags]
+    parts: Parts, connectivity: Connectivity, nodes: Floats, too_large: Callable[[Floats, Floats], Booleans]
 ) -> Parts:
     """Cut parts until none is too large.
 
@@ -89,7 +85,7 @@ def bisect(
     raise ValueError(f"elements are still too large after {MOST_ROUNDS} rounds of cuts")
 
 
-def _cut(parts: Parts, connectivity: Connectivity, nodes: Floats, long: Floats, marked: Flags) -> Parts:
+def _cut(parts: Parts, connectivity: Connectivity, nodes: Floats, long: Floats, marked: Booleans) -> Parts:
     """Cut the longest edges of marked triangles, and what that asks of their neighbours."""
     faces, vertices = parts.faces, len(parts.points)
     ends = np.stack([faces, np.roll(faces, -1, 1)], 2)

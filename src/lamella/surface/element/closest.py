@@ -5,15 +5,12 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats, Integers
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # samples of each element among which the search starts: this many to an edge
 SAMPLES = 5

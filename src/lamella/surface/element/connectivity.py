@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Integers
 from lamella.base.sparse import SymmetricPattern
 from lamella.surface.element.lagrange import EDGES, Lagrange, lagrange
-
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Complexes, Floats
 from lamella.base.vectors import crosses, dots, lengths
 from lamella.surface.element.connectivity import Connectivity
-from lamella.surface.points import Complexes, Floats
 
 
 @dataclass(frozen=True)

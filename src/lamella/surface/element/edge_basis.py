@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from lamella.surface.points import Floats
+from lamella.base.arrays import Floats
 
 
 @lru_cache

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.sparse import packed
 from lamella.base.vectors import dots, lengths
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.geometry import dirichlet_blocks, smooth_normals, tangents
 from lamella.surface.element.quadrature import triangle_rule
-from lamella.surface.points import Floats
 
 # |A|^2 is that of the pass before
 PASSES = 2

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csc_matrix
 
+from lamella.base.arrays import Floats
 from lamella.base.conjugate_gradients import conjugate_gradients
 from lamella.base.vectors import crosses, dots, lengths
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.quadrature import triangle_rule
-from lamella.surface.points import Floats
 
 
 def tangents(basis_x: Floats, basis_y: Floats, corners: Floats) -> tuple[Floats, Floats]:

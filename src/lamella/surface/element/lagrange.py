@@ -11,9 +11,8 @@ from functools import cached_property, lru_cache
 from math import perm
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lamella.surface.points import Floats
+from lamella.base.arrays import Floats, Integers
 
 EDGES = ((0, 1), (1, 2), (2, 0))
 """Corners of the local edges."""
@@ -34,10 +33,10 @@ class Lagrange:
 
     order: int
     nodes: Floats
-    edge_nodes: NDArray[np.int64]
+    edge_nodes: Integers
 
     @cached_property
-    def _exponents(self) -> NDArray[np.int64]:
+    def _exponents(self) -> Integers:
         return np.array([(i, j) for j in range(self.order + 1) for i in range(self.order + 1 - j)])
 
     @cached_property
@@ -107,7 +106,7 @@ def lagrange(order: int) -> Lagrange:
 
 
 @lru_cache
-def subdivision(parts: int) -> tuple[Floats, NDArray[np.int64]]:
+def subdivision(parts: int) -> tuple[Floats, Integers]:
     """Local coordinates of a regular subdivision into `parts`^2 triangles, and their corners, counter-clockwise."""
     index: dict[tuple[int, int], int] = {}
     for j in range(parts + 1):
@@ -123,7 +122,7 @@ def subdivision(parts: int) -> tuple[Floats, NDArray[np.int64]]:
 
 
 @lru_cache
-def local_faces(parts: int) -> NDArray[np.int64]:
+def local_faces(parts: int) -> Integers:
     """Small triangles of a subdivided triangle, by the numbers of the nodes of ``lagrange(parts)``, (parts^2, 3)."""
     local, faces = subdivision(parts)
     nodes = np.rint(lagrange(parts).nodes * parts).astype(int)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lamella.surface.points import Floats
+from lamella.base.arrays import Booleans, Floats, Integers
 
 
 @dataclass(frozen=True)
@@ -21,13 +20,13 @@ class Places:
         Local coordinates (x, y) in the triangle x, y >= 0, x + y <= 1.
     """
 
-    element: NDArray[np.int64]
+    element: Integers
     local: Floats
 
     def __len__(self) -> int:
         return len(self.element)
 
-    def __getitem__(self, index: NDArray[np.int64] | NDArray[np.bool_] | slice) -> Places:
+    def __getitem__(self, index: Integers | Booleans | slice) -> Places:
         return Places(self.element[index], self.local[index])
 
     @classmethod

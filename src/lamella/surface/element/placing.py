@@ -13,13 +13,10 @@ from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.lagrange import EDGES, lagrange
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 
 class Rim(Protocol):

@@ -10,14 +10,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.blocks import blocks
 from lamella.surface.element.lagrange import Lagrange
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # places of an element in one product: more gain nothing, and the last group of each element is filled up to as many
 MOST_TOGETHER = 16

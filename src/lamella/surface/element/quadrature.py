@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from lamella.surface.points import Floats
+from lamella.base.arrays import Floats
 
 # weight (of area 1), barycentric coordinates a, b of one point of the orbit; c = 1 - a - b
 _ORBITS = {

@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.edge_basis import edge_rule, edge_slopes, edge_values
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # a turn between neighbouring edges above this is a corner of the boundary, rad
 CORNER = 0.02

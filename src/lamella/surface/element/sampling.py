@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.lagrange import local_faces
 from lamella.surface.element.places import Places
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # most parts that a piece of the rim, between two of the element's own, is cut into
 MOST_PIECES = 256

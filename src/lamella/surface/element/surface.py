@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.base.drawing_origin import NOWHERE, Origin
 from lamella.base.message import Message
 from lamella.base.vectors import dots, images, lengths, symmetric
@@ -24,10 +24,8 @@ from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.sampling import sampled_places
 from lamella.surface.element.umbilics import Umbilics, find_umbilics
 from lamella.surface.mesh import SurfaceMesh
-from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.points import SurfacePoints
 from lamella.surface.umbilic import umbilic_reason
-
-Integers = NDArray[np.int64]
 
 # order of continuous fields from second derivatives of positions, by that of the elements
 SMOOTHED_ORDER = {2: 1, 3: 2, 4: 3}

@@ -6,22 +6,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.vectors import diagonal, dots, lengths
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import rim_marks
-from lamella.surface.points import Complexes, Floats, SurfacePoints
+from lamella.surface.points import SurfacePoints
 
 if TYPE_CHECKING:
     from lamella.surface.element.surface import ElementSurface
 
-Integers = NDArray[np.int64]
 
 # small triangles along an element's edge in which a zero is looked for
 PARTS = 4
@@ -221,7 +220,7 @@ def _turned(at: SurfacePoints, axes: Floats) -> Complexes:
     return np.asarray(at.deviator * (turn / np.abs(turn)) ** 2)
 
 
-def _newton(surface: ElementSurface, start: Places, axes: Floats) -> tuple[Places, NDArray[np.bool_]]:
+def _newton(surface: ElementSurface, start: Places, axes: Floats) -> tuple[Places, Booleans]:
     """Zeros from starting places, by the deviator in frames along axes (n, 3); which ended inside their element."""
     element, local = start.element, start.local.copy()
 

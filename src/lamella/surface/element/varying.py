@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.geometry import smooth_normals
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.points import Floats
 
 # of a triangle of the mesh
 CORNERS = 3

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.surface.element.curvature import element_points
 from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import CORNER_CORE, CORNER_PART, SHARP_TURN
 from lamella.surface.form_finding.film import Film, Loop
-from lamella.surface.points import Floats
 from lamella.surface.remesh.size_field import SizeField
 
 # elements at a corner, over the size of its core
@@ -152,7 +151,7 @@ def _turns(loop: Loop, corners: Floats) -> Floats:
     return np.asarray(np.arctan2(np.linalg.norm(np.cross(before, after), axis=1), np.einsum("ij,ij->i", before, after)))
 
 
-def _within(points: Floats, centres: Floats, radii: Floats) -> NDArray[np.bool_]:
+def _within(points: Floats, centres: Floats, radii: Floats) -> Booleans:
     """Which points (n, 3) are within radii (c,) of any of centres (c, 3)."""
     result = np.zeros(len(points), bool)
     for centre, radius in zip(centres, radii, strict=True):
@@ -160,7 +159,7 @@ def _within(points: Floats, centres: Floats, radii: Floats) -> NDArray[np.bool_]
     return result
 
 
-def away_from_corners(film: Film, points: Floats) -> NDArray[np.bool_]:
+def away_from_corners(film: Film, points: Floats) -> Booleans:
     """Which points (n, 3) are not next to a corner of the boundary."""
     zones = CornerZones.of(film)
     return ~_within(points, zones.points, zones.radius)
@@ -210,7 +209,7 @@ def refined_sizes(
     return field.scaled(float(np.sqrt(nodes / most_nodes) * 1.02)), False
 
 
-def _near_knots(film: Film, points: Floats, sizes: Floats) -> NDArray[np.bool_]:
+def _near_knots(film: Film, points: Floats, sizes: Floats) -> Booleans:
     """Which elements, by their middles (n, 3) and sizes (n,), are next to a smooth corner of a loop."""
     result = np.zeros(len(points), bool)
     for loop in film.loops:
@@ -219,7 +218,7 @@ def _near_knots(film: Film, points: Floats, sizes: Floats) -> NDArray[np.bool_]:
     return result
 
 
-def _is_off(film: Film, deviation: Deviation, tolerance: float, zones: CornerZones) -> NDArray[np.bool_]:
+def _is_off(film: Film, deviation: Deviation, tolerance: float, zones: CornerZones) -> Booleans:
     """Next to which corners an element is off by more than a tolerance, (c,)."""
     vertices = film.nodes[film.connectivity.faces[deviation.of_element > tolerance]].reshape(-1, 3)
     return np.array(

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.base.progress import Progress, Report
 from lamella.surface.form_finding.chart import Chart, vector_area
 from lamella.surface.form_finding.continuation import Reached
@@ -22,7 +22,6 @@ from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.film import Film, Loop, Slide, moved_with_rim
 from lamella.surface.form_finding.meshing import SAMPLES_OF_A_LOOP, is_worn, on_surface, renewed
 from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, find_equilibrium
-from lamella.surface.points import Floats
 from lamella.surface.remesh.remesh import TriangleMesh
 
 # of the whole way: first step, and the least one; Newton steps of a film, and after which a path that fails ends
@@ -89,7 +88,7 @@ class Moving:
         return self.loop.corners
 
     @property
-    def smooth(self) -> NDArray[np.bool_]:
+    def smooth(self) -> Booleans:
         """Which corners are none to the eye, see `lamella.surface.boundary.curve.Loop`."""
         return self.loop.smooth
 

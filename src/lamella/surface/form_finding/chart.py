@@ -15,14 +15,11 @@ from typing import Protocol
 
 import numpy as np
 import pythoncdt
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.ties import MARGIN, grid_of, least_axis, nearest_whole, rounded
-from lamella.surface.points import Complexes, Floats
 from lamella.surface.remesh.topology import scattered
-
-Integers = NDArray[np.int64]
 
 # smallest angle of the chart's triangles, deg; Ruppert's refinement ends for certain below about 20.7
 LEAST_ANGLE = 20.0
@@ -146,7 +143,7 @@ def _plan(loops: Sequence[Curve], parameters: Sequence[Floats]) -> list[Complexe
     return result
 
 
-def _inside(polygon: Complexes, points: Complexes) -> NDArray[np.bool_]:
+def _inside(polygon: Complexes, points: Complexes) -> Booleans:
     """Which points are inside a polygon: the winding number."""
     to = polygon[None, :] - points[:, None]
     turn = np.angle(np.roll(to, -1, 1) * to.conj()).sum(1)

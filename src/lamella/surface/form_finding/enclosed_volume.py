@@ -18,12 +18,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.surface.element.geometry import tangents
 from lamella.surface.element.placing import rim_parameters
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.form_finding.film import Film, Loop, Slide
 from lamella.surface.form_finding.free_boundary import SlidRim, within
-from lamella.surface.points import Floats
 
 # pieces of a drawn loop between two corners at least, and points of each
 PIECES, POINTS = 64, 8

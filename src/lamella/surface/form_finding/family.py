@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.progress import Progress, Report
 from lamella.base.sparse import SingularError
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
@@ -22,7 +23,6 @@ from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.meshing import is_worn, renewed
 from lamella.surface.form_finding.newton import NoFilmError, Way, find_equilibrium
 from lamella.surface.form_finding.variation import Variation
-from lamella.surface.points import Floats
 
 # largest shift of a first step and of any, over the film's size; a path that needs smaller ones than the last ends
 FIRST_STEP, LARGEST_STEP, LEAST_STEP = 0.05, 0.2, 1e-4

@@ -8,18 +8,15 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.sparse import SingularError, SymmetricPattern, packed
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.geometry import dirichlet_blocks, smooth_normals, tangents
 from lamella.surface.element.placing import place_nodes, rim_parameters
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.form_finding.no_film import NoFilmError
-from lamella.surface.points import Floats
 from lamella.surface.remesh.remesh import TriangleMesh
-
-Integers = NDArray[np.int64]
 
 
 class Slide(Protocol):
@@ -58,7 +55,7 @@ class Loop(Protocol):
         """Parameters of the corners, sorted."""
 
     @property
-    def smooth(self) -> NDArray[np.bool_]:
+    def smooth(self) -> Booleans:
         """Which corners are none to the eye, see `lamella.surface.boundary.curve.Loop`."""
 
     @property

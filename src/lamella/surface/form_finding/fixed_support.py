@@ -11,11 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Complexes, Floats
 from lamella.surface.form_finding.film import Loop, Slide
 from lamella.surface.form_finding.free_boundary import within
-from lamella.surface.points import Complexes, Floats
 
 # samples of a part; degree of the polynomials less 2; Fourier modes; samples of a loop for its length
 SAMPLES, DEGREE, MODES, LENGTH_SAMPLES = 200, 3, 3, 2000
@@ -40,7 +39,7 @@ class HeldLoop:
     loop: Loop
     length: float
     corners: Floats
-    smooth: NDArray[np.bool_]
+    smooth: Booleans
     _parts: tuple[tuple[Slide, Complexes], ...]
     slides: Sequence[Slide] = ()
 

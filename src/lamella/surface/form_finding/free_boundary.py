@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.surface.element.placing import rim_parameters
 from lamella.surface.form_finding.film import Film, Loop, Slide
 from lamella.surface.form_finding.no_film import NoFilmError
-from lamella.surface.points import Floats
 
 # points of an edge at which its arc length is taken, and Gauss points between two of them
 PIECES, GAUSS = 8, 6
@@ -52,7 +51,7 @@ class SlidRim:
         return self.loop.corners
 
     @property
-    def smooth(self) -> NDArray[np.bool_]:
+    def smooth(self) -> Booleans:
         """Which corners are none to the eye, see `lamella.surface.boundary.curve.Loop`."""
         return self.loop.smooth
 
@@ -76,7 +75,7 @@ class SlidRim:
         return points
 
 
-def within(t: Floats, start: float, end: float) -> NDArray[np.bool_]:
+def within(t: Floats, start: float, end: float) -> Booleans:
     """Which parameters (n,) are inside a part of a loop, its ends left out unless it is the whole loop."""
     along, span = (t - start) % 1, end - start
     return np.asarray((along > 1e-9) & (along < span - 1e-9)) if span < 1 else np.ones(len(t), bool)

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.geometry import smooth_normals
@@ -18,7 +18,6 @@ from lamella.surface.form_finding.film import Film, Loop
 from lamella.surface.form_finding.free_boundary import settled_rims
 from lamella.surface.form_finding.harmonic import harmonic_surface
 from lamella.surface.form_finding.newton import NoFilmError
-from lamella.surface.points import Floats
 from lamella.surface.remesh.remesh import Rim, TriangleMesh, remesh
 from lamella.surface.remesh.size_field import SizeField
 from lamella.surface.remesh.tangent_planes import TangentPlanes
@@ -179,7 +178,7 @@ def straightened(film: Film) -> Film:
     return flat.at(flat.nodes + shift[:, None] * normals)
 
 
-def least_angle(film: Film) -> NDArray[np.float64]:
+def least_angle(film: Film) -> Floats:
     """Smallest angle of the triangles of each element's corners, deg, (m,)."""
     corners = film.nodes[film.connectivity.faces]
     sides = np.roll(corners, -1, 1) - corners

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.ties import least_axis
 from lamella.surface.form_finding.chart import Curve, samples_of, vector_area
 from lamella.surface.form_finding.film import Loop
-from lamella.surface.points import Floats
 
 # two equal coaxial rings: largest distance over their radius, the maximum of 2 acosh(x) / x
 RINGS = 1.3254868387

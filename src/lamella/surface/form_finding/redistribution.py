@@ -15,6 +15,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.sparse import csc_matrix
 
+from lamella.base.arrays import Floats
 from lamella.base.blocks import blocks
 from lamella.base.conjugate_gradients import conjugate_gradients
 from lamella.base.ties import least_axis
@@ -24,7 +25,6 @@ from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.form_finding.adaptivity import away_from_corners
 from lamella.surface.form_finding.film import Film
-from lamella.surface.points import Floats
 
 # of the diagonal of the least squares, so that shifts that change next to nothing stay small
 DAMPING = 0.01

@@ -7,6 +7,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report
@@ -17,7 +18,6 @@ from lamella.surface.form_finding.meshing import is_worn, renewed, straightened,
 from lamella.surface.form_finding.newton import Equilibrium, NoFilmError
 from lamella.surface.form_finding.redistribution import redistributed
 from lamella.surface.form_finding.stability import stability_of
-from lamella.surface.points import Floats
 
 MOST_ROUNDS = 12
 # at the limit of nodes another round is worth its time while it lowers the deviation by more than this

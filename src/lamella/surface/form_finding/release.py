@@ -13,13 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.progress import Progress, Report
 from lamella.surface.form_finding.continuation import Reached
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.film import Film, Loop
 from lamella.surface.form_finding.meshing import is_worn, renewed
 from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, find_equilibrium
-from lamella.surface.points import Floats
 
 # stiffness of the first springs times the film's size, how it falls and rises, and the most and least of it
 FIRST, FALL, RISE, MOST, LEAST = 10.0, 4.0, 8.0, 1e6, 1e-3

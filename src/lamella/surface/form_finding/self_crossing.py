@@ -8,13 +8,10 @@ edges and facets are found by two trees of boxes, gone down side by side a level
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Floats, Integers
 from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.meshing import facets
-from lamella.surface.points import Floats
-
-Integers = NDArray[np.int64]
 
 # facets along the edge of an element
 PARTS = 2

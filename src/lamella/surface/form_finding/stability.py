@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
+from lamella.base.arrays import Floats
 from lamella.base.sparse import Factor, SingularError
 from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.variation import Variation
-from lamella.surface.points import Floats
 
 # of 1 / area: below it the lowest eigenvalue is nought for all purposes, the film is at the fold
 FOLD = 0.05

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.progress import silent
 from lamella.surface.form_finding.boundary_homotopy import BreakError, Moving, along_loops, are_apart
@@ -22,7 +23,6 @@ from lamella.surface.form_finding.film import Loop
 from lamella.surface.form_finding.first_film import FirstFilm
 from lamella.surface.form_finding.newton import NoFilmError
 from lamella.surface.form_finding.no_film import SearchError
-from lamella.surface.points import Floats
 
 SAMPLES = 400
 # of the first size: as far as a family is followed for where it gets stable or unstable

@@ -16,11 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.blocks import blocks
 from lamella.base.sparse import packed
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.quadrature import triangle_rule
-from lamella.surface.points import Floats
 
 # worked on at a time: their tables stay in the processor's cache
 ELEMENTS = 192

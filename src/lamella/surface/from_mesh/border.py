@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats
 from lamella.base.message import Message
 from lamella.base.wording import loop_names
-from lamella.files.read.raw_mesh import Floats
 from lamella.surface.boundary.corners import CORNER_ANGLE, edge_lengths, find_corners, thinned
 from lamella.surface.boundary.scatter import smooth_scatter
 from lamella.surface.from_mesh.border_zigzag import is_zigzag, smooth_zigzag
@@ -35,7 +34,7 @@ class BorderCurve:
     """
 
     points: Floats
-    corner: NDArray[np.bool_]
+    corner: Booleans
     notes: tuple[Message, ...] = ()
 
 

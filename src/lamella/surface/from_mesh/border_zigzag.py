@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import BSpline
 
-from lamella.files.read.raw_mesh import Floats
+from lamella.base.arrays import Floats
 
 MEAN_TURN = np.radians(20.0)
 TURN = np.radians(10.0)

@@ -9,9 +9,10 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.message import Message
 from lamella.base.wording import counted
-from lamella.files.read.raw_mesh import Floats, Integers, RawMesh, mesh_error, place
+from lamella.files.read.raw_mesh import RawMesh, mesh_error, place
 from lamella.surface.from_mesh.cracks import NEAR_EDGE, close_t_junctions, near_border
 from lamella.surface.from_mesh.edges import Edges, face_normals, find_edges
 from lamella.surface.from_mesh.merge import drop_collapsed, drop_repeated, drop_unused, merge_vertices

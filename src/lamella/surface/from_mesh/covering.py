@@ -5,16 +5,15 @@ from __future__ import annotations
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lamella.files.read.raw_mesh import Floats, Integers
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.surface.from_mesh.edges import find_edges
 
 LARGEST = 8
 """Corners of a face whose triangles are looked for: larger ones are outlines rather than faces."""
 
 
-def covered_faces(points: Floats, sizes: Integers, corners: Integers) -> NDArray[np.bool_]:
+def covered_faces(points: Floats, sizes: Integers, corners: Integers) -> Booleans:
     """Which triangles lie on a larger face, all of their corners being corners of it, (f,).
 
     Parameters
@@ -44,7 +43,7 @@ def covered_faces(points: Floats, sizes: Integers, corners: Integers) -> NDArray
     return covered
 
 
-def second_diagonals(faces: Integers) -> NDArray[np.bool_]:
+def second_diagonals(faces: Integers) -> Booleans:
     """Which triangles (m,) split a square along its other diagonal, both of its first halves standing earlier."""
     pairs = find_edges(faces).inner_pairs
     if not len(pairs):

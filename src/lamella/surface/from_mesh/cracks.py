@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from lamella.files.read.raw_mesh import Floats, Integers
+from lamella.base.arrays import Floats, Integers
 from lamella.surface.from_mesh.edges import find_edges
 from lamella.surface.from_mesh.merge import drop_collapsed
 

@@ -8,11 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lamella.files.read.raw_mesh import Floats, Integers
-
-Booleans = NDArray[np.bool_]
+from lamella.base.arrays import Booleans, Floats, Integers
 
 
 @dataclass(frozen=True)

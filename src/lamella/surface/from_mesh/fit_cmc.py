@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.drawing_origin import measured_from, origin_figure, told_from
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
 from lamella.files.read.mesh import read_mesh
-from lamella.files.read.raw_mesh import Floats, RawMesh
+from lamella.files.read.raw_mesh import RawMesh
 from lamella.surface.boundary import Loop, check_loops
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.film import Film, harmonic_over_itself

@@ -20,10 +20,10 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report
-from lamella.files.read.raw_mesh import Integers
 from lamella.surface.boundary import Loop, check_loops
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.curvature import element_points, frames
@@ -34,11 +34,10 @@ from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.meshing import start_sizes, with_sizes
 from lamella.surface.form_finding.no_film import NoFilmError
 from lamella.surface.from_mesh.clean import CleanMesh
-from lamella.surface.from_mesh.edges import Booleans, vertex_areas, vertex_normals
+from lamella.surface.from_mesh.edges import vertex_areas, vertex_normals
 from lamella.surface.from_mesh.to_elements import as_film, border_loops
 from lamella.surface.from_mesh.vertex_fits import VertexFits, disagreement, fit_vertices, through_vertices
 from lamella.surface.from_mesh.vertex_noise import READING, Smoothed, without_scatter
-from lamella.surface.points import Floats
 from lamella.surface.remesh.size_field import SizeField
 
 if TYPE_CHECKING:

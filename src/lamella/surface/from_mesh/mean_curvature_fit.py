@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array, eye_array
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ties import least_axis
-from lamella.files.read.raw_mesh import Floats, Integers, mesh_error
-from lamella.surface.from_mesh.edges import Booleans, find_edges, vertex_areas, vertex_normals
+from lamella.files.read.raw_mesh import mesh_error
+from lamella.surface.from_mesh.edges import find_edges, vertex_areas, vertex_normals
 
 NEIGHBOURS = 30
 """Fewest neighbours a quartic with its 15 coefficients should have: three rings around a regular inner vertex."""

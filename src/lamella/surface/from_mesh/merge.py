@@ -9,7 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from lamella.files.read.raw_mesh import Floats, Integers
+from lamella.base.arrays import Floats, Integers
 from lamella.surface.from_mesh.edges import find_edges
 
 OF_SIZE = 1e-4

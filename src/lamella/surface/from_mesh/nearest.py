@@ -16,13 +16,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.progress import Progress, Report
 from lamella.base.sparse import SingularError
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, find_equilibrium
 from lamella.surface.form_finding.variation import Variation
-from lamella.surface.points import Floats
 
 MOST_STEPS = 12
 # a step that moves no vertex by more than this part of the size changes H by less than the elements' error

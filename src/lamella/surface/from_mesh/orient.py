@@ -6,8 +6,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.message import Message
-from lamella.files.read.raw_mesh import Floats, Integers, mesh_error
+from lamella.files.read.raw_mesh import mesh_error
 from lamella.surface.from_mesh.edges import Edges, face_normals
 
 LEVEL = 1e-3

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_array
 
-from lamella.files.read.raw_mesh import Floats, Integers
-from lamella.surface.from_mesh.edges import Booleans, Edges, face_normals, find_edges
+from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.surface.from_mesh.edges import Edges, face_normals, find_edges
 from lamella.surface.from_mesh.merge import drop_collapsed
 
 OF_EDGE = 1e-4

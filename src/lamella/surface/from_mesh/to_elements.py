@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.wording import loop_names
-from lamella.files.read.raw_mesh import Floats
 from lamella.surface.boundary import Loop, make_loop
 from lamella.surface.boundary.smooth_polyline import through_points
 from lamella.surface.form_finding.film import Film

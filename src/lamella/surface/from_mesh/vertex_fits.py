@@ -15,11 +15,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lamella.files.read.raw_mesh import Floats, Integers
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.surface.boundary import Loop
 from lamella.surface.element.placing import edge_blends
 from lamella.surface.form_finding.film import Film
-from lamella.surface.from_mesh.edges import Booleans, find_edges, vertex_normals
+from lamella.surface.from_mesh.edges import find_edges, vertex_normals
 from lamella.surface.from_mesh.mean_curvature_fit import SAME_SIDE, stencils, tangents
 
 EXPONENTS = np.array([(i, n - i) for n in range(1, 5) for i in range(n, -1, -1)])

@@ -22,8 +22,8 @@ import numpy as np
 from scipy.sparse import coo_array, csc_array, eye_array
 from scipy.sparse.linalg import SuperLU, splu
 
-from lamella.files.read.raw_mesh import Floats, Integers
-from lamella.surface.from_mesh.edges import Booleans, vertex_areas, vertex_normals
+from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.surface.from_mesh.edges import vertex_areas, vertex_normals
 from lamella.surface.from_mesh.vertex_fits import EXPONENTS, TERMS, local_heights
 
 FEWEST, MOST = 30, 5_000

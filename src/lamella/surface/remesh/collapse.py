@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ties import MARGIN, nearest_whole
 from lamella.base.vectors import lengths
 from lamella.surface.remesh.draft import GOOD, LONGEST, SHORTEST, Draft, edge_lengths, narrow
-from lamella.surface.remesh.topology import Flags, Floats, Integers, Topology, area_vectors, ragged, shape
+from lamella.surface.remesh.topology import Topology, area_vectors, ragged, shape
 
 
 def collapse_short(draft: Draft) -> int:
@@ -78,7 +79,7 @@ def collapse_thin(draft: Draft, limit: float) -> int:
     return int(chosen.sum())
 
 
-def link_condition(draft: Draft, topology: Topology, edges: Integers, removed: Integers, kept: Integers) -> Flags:
+def link_condition(draft: Draft, topology: Topology, edges: Integers, removed: Integers, kept: Integers) -> Booleans:
     """Whether a collapse keeps the surface a surface, and makes no long inner edge between boundary vertices."""
     owner, near = ragged(topology.neighbours, removed)
     other = near != kept[owner]
@@ -94,7 +95,7 @@ def link_condition(draft: Draft, topology: Topology, edges: Integers, removed: I
     # Each vertex opposite to a collapsed edge loses one of its edges.
     enough = ((topology.valence[apex] >= least) | (apex < 0)).all(axis=1)
     inner = topology.inner[edges]
-    allowed: Flags = (common == np.where(inner, 2, 1)) & (bridges == 0) & enough
+    allowed: Booleans = (common == np.where(inner, 2, 1)) & (bridges == 0) & enough
     return allowed
 
 
@@ -122,7 +123,7 @@ def star_after(
     return new, old, longest
 
 
-def apart(draft: Draft, topology: Topology, removed: Integers, kept: Integers, rank: Floats) -> Flags:
+def apart(draft: Draft, topology: Topology, removed: Integers, kept: Integers, rank: Floats) -> Booleans:
     """Collapses with no face in common, lower ranks first."""
     place = np.empty(rank.size, dtype=np.int64)
     place[np.lexsort((np.arange(rank.size) * 7919 % 104729, rank))] = np.arange(rank.size)

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ties import rounded
 from lamella.base.vectors import dots, lengths
-from lamella.surface.remesh.topology import Flags, Floats, Integers, Topology, area_vectors, connect, unit
+from lamella.surface.remesh.topology import Topology, area_vectors, connect, unit
 
 LONGEST, SHORTEST = 4.0 / 3.0, 4.0 / 5.0  # in units of the wanted length; the half of a split edge is not collapsed
 GOOD = 0.35  # shape above which an operation may make a triangle worse
@@ -46,7 +47,7 @@ class Draft:
     faces: Integers
     loop: Integers
     station: Floats
-    fixed: Flags
+    fixed: Booleans
     size: Floats
     size_at: Callable[[Floats], Floats]
     nearest: Callable[[Floats], Floats]
@@ -56,7 +57,7 @@ class Draft:
         return connect(self.faces, len(self.points))
 
     @property
-    def boundary(self) -> Flags:
+    def boundary(self) -> Booleans:
         return self.loop >= 0
 
     def project(self, points: Floats) -> Floats:
@@ -99,10 +100,10 @@ class Draft:
         return unit(np.column_stack(total))
 
 
-def narrow(draft: Draft, one: Integers, other: Integers) -> Flags:
+def narrow(draft: Draft, one: Integers, other: Integers) -> Booleans:
     """Pairs of boundary vertices so close that an edge between them is better than a vertex, (k,)."""
     across = draft.points[one] - draft.points[other]
-    near: Flags = lengths(across) < BRIDGE * 0.5 * (draft.size[one] + draft.size[other])
+    near: Booleans = lengths(across) < BRIDGE * 0.5 * (draft.size[one] + draft.size[other])
     return near
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.ties import VERTEX_BITS, grid_of, rounded
 from lamella.base.vectors import crosses, lengths
 from lamella.surface.remesh import rim
@@ -22,7 +23,7 @@ from lamella.surface.remesh.flip import flip
 from lamella.surface.remesh.rim import Plan, Rim
 from lamella.surface.remesh.smooth import round_off, smooth
 from lamella.surface.remesh.split import split_long
-from lamella.surface.remesh.topology import Floats, Integers, Topology, connect, shape
+from lamella.surface.remesh.topology import Topology, connect, shape
 
 __all__ = ["Rim", "TriangleMesh", "remesh"]
 

@@ -9,18 +9,12 @@ from typing import Protocol
 
 import numpy as np
 
+from lamella.base.arrays import Floats, Integers
 from lamella.base.ties import MARGIN, grid_of, nearest_whole, rounded
 from lamella.surface.remesh.collapse import apart, link_condition, star_after
 from lamella.surface.remesh.draft import Draft
 from lamella.surface.remesh.split import apply_splits
-from lamella.surface.remesh.topology import (
-    Floats,
-    Integers,
-    Topology,
-    area_vectors,
-    disjoint,
-    shape,
-)
+from lamella.surface.remesh.topology import Topology, area_vectors, disjoint, shape
 
 SAME = 1e-9  # difference of boundary parameters below which a vertex sits in a corner
 LEAST = 3  # edges of a loop

@@ -7,9 +7,9 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats
 from lamella.base.ties import SIZE_BITS, grid_of, rounded, shortened
 from lamella.base.vectors import diagonal
-from lamella.surface.points import Floats
 
 # growth of the wanted size with the distance; steeper grading costs the elements' shape
 GRADING = 0.3

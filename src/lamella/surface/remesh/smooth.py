@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.ties import MARGIN
 from lamella.base.vectors import crosses, dots, lengths
 from lamella.surface.remesh.draft import GOOD, Draft
-from lamella.surface.remesh.topology import Floats, area_vectors, shape
+from lamella.surface.remesh.topology import area_vectors, shape
 
 
 def smooth(draft: Draft, step: float = 0.8) -> None:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from lamella.base.arrays import Booleans, Integers
 from lamella.base.ties import nearest_whole
 from lamella.surface.remesh.draft import BRIDGE, EAR, LONGEST, Draft, edge_lengths
-from lamella.surface.remesh.topology import Flags, Integers, Topology, corner_angles, disjoint
+from lamella.surface.remesh.topology import Topology, corner_angles, disjoint
 
 
 def apply_splits(draft: Draft, topology: Topology, edges: Integers, first_new: int) -> None:
@@ -63,10 +64,10 @@ def split_long(draft: Draft, look_inside: bool, longest: float = LONGEST) -> int
     return int(edges.size)
 
 
-def _closes_ear(draft: Draft, topology: Topology) -> Flags:
+def _closes_ear(draft: Draft, topology: Topology) -> Booleans:
     """Inner edges opposite to a sharp boundary corner that has no other inner edge, (e,)."""
     apex = topology.apexes
     turn = np.bincount(draft.faces.ravel(), corner_angles(draft.points[draft.faces]).ravel(), len(draft.points))
     ear = draft.boundary & (topology.valence == 2) & (turn < EAR)
-    closes: Flags = (ear[apex] & (apex >= 0)).any(axis=1)
+    closes: Booleans = (ear[apex] & (apex >= 0)).any(axis=1)
     return closes

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lamella.base.arrays import Floats
 from lamella.base.ties import grid_of, rounded
 from lamella.base.vectors import diagonal, dots
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.geometry import normal_and_area, tangents
 from lamella.surface.element.lagrange import subdivision
-from lamella.surface.points import Floats
 
 # samples along an element's edge that the remesher's vertices are brought back to
 SAMPLES = 8

@@ -6,13 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.vectors import crosses, dots, lengths
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 NONE = -1
 
@@ -47,9 +43,9 @@ class Topology:
     edge_of_half: Integers
 
     @property
-    def inner(self) -> Flags:
+    def inner(self) -> Booleans:
         """Edges with a face on either side, (e,)."""
-        inner: Flags = self.halves[:, 1] >= 0
+        inner: Booleans = self.halves[:, 1] >= 0
         return inner
 
     @cached_property
@@ -136,7 +132,7 @@ def ragged(rows: tuple[Integers, Integers], which: Integers) -> tuple[Integers, 
     return owner, items[np.arange(owner.size) + start[owner]]
 
 
-def disjoint(touched: Integers, rank: Floats | Integers, items: int, passes: int = 4) -> Flags:
+def disjoint(touched: Integers, rank: Floats | Integers, items: int, passes: int = 4) -> Booleans:
     """Candidates no two of which touch the same item, the better (lower) rank first.
 
     Parameters
