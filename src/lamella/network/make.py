@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from lamella.base.errors import InputError
+from lamella.network.charts.ground_of import ground_of
 from lamella.network.density_request import DensityRequest
 from lamella.network.elements.element_network import Closing, element_network
 from lamella.network.lattice.density import choose_density
 from lamella.network.lattice.trace import trace_closed_form
 from lamella.network.network import Network
 from lamella.network.pattern import NetKind, Pattern
-from lamella.network.streamlines.applicability import check_traced, ground_of, is_traced, told_mean_curvature
+from lamella.network.streamlines.applicability import check_traced, is_traced, told_mean_curvature
 from lamella.network.streamlines.streamline_network import traced_network
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.surface import ElementSurface

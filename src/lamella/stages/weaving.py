@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from lamella.base.progress import Progress
+from lamella.network.charts.ground_of import ground_of
 from lamella.network.elements.element_network import Closing, ElementNetwork, LaidNet, lay_net
-from lamella.network.streamlines.applicability import ground_of, told_mean_curvature
+from lamella.network.streamlines.applicability import told_mean_curvature
 from lamella.network.streamlines.streamline_network import TracedNetwork, traced_network
 from lamella.network.streamlines.streamline_plan import LaidLines, lay_lines
 from lamella.project.tables import Project

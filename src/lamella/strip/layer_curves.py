@@ -15,10 +15,10 @@ import numpy as np
 
 from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
+from lamella.network.charts.charts import Ground, Look
+from lamella.network.charts.ground_of import ground_of
 from lamella.network.network import SINGULAR, Network
 from lamella.network.pattern import Pattern
-from lamella.network.streamlines.applicability import ground_of, is_traced
-from lamella.network.streamlines.charts import Ground, Look
 from lamella.strip.layers import Layers, at_stops, running
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.places import Places
@@ -39,7 +39,7 @@ def check_layer_curves(surface: Surface[Any], pattern: Pattern) -> None:
     ------
     InputError
     """
-    if pattern.normal_curvature not in (None, surface.mean_curvature) or is_traced(surface, pattern):
+    if pattern.normal_curvature not in (None, surface.mean_curvature) or not surface.has_lattice():
         raise InputError(
             'layer_curves = "lamella" shifts u + v by a constant, and lines of a given normal curvature have no such '
             "coordinates",

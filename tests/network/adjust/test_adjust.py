@@ -15,8 +15,8 @@ from conftest import EXAMPLES
 from lamella import InputError, compute, parse_project
 from lamella.network.adjust.adjust import Adjusted, adjust_boundary
 from lamella.network.adjust.adjustable_films import Films
+from lamella.network.adjust.transition_sensitivities import curvature_rates_of_volume
 from lamella.network.elements.element_network import ElementNetwork, element_network
-from lamella.network.isothermic.transition_sensitivities import curvature_rates_of_volume
 from lamella.network.network import SEAM, SINGULAR
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.project.read import read_project

@@ -12,7 +12,6 @@ import pytest
 from lamella import Enneper
 from lamella.network.elements.element_network import element_network
 from lamella.network.elements.integer_grid_map import CellMap
-from lamella.network.elements.lattice_origin import lattice_origin
 from lamella.network.isothermic import seamless_transitions
 from lamella.network.isothermic.between_umbilics import between_umbilics, keeps_apart
 from lamella.network.isothermic.cut import cut_edges
@@ -20,6 +19,7 @@ from lamella.network.isothermic.holonomy import around_vertex, holonomies, tip_v
 from lamella.network.isothermic.integer_transitions import WholeShifts, _closest, _even, _kernel, _reduced
 from lamella.network.isothermic.integration_mesh import NetMesh, make_net_mesh
 from lamella.network.isothermic.isothermic import Isothermic
+from lamella.network.isothermic.lattice_origin import lattice_origin
 from lamella.network.isothermic.match_transitions import Carrier
 from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.network import SEAM, SINGULAR

@@ -16,11 +16,11 @@ from conftest import run_of_example
 from lamella import Enneper, Helicoid, InputError, Scherk, make_network, parse_project
 from lamella.files.write.network_json import network_bytes
 from lamella.network.cell_sizes import large_cells
+from lamella.network.charts.element_charts import ElementGround
+from lamella.network.charts.plane_charts import PlaneGround
 from lamella.network.network import BOUNDARY, REGULAR, Network
 from lamella.network.pattern import Pattern
 from lamella.network.streamlines.direction_field import LEAST_ANGLE, LineField
-from lamella.network.streamlines.element_charts import ElementGround
-from lamella.network.streamlines.plane_charts import PlaneGround
 from lamella.network.streamlines.streamline_network import TracedNetwork, traced_network
 from lamella.network.streamlines.streamlines import finished, trace
 from lamella.stages.pipeline import compute

@@ -12,7 +12,7 @@ from lamella.base.arrays import Complexes, Floats
 from lamella.base.drawing_origin import origin_figure
 from lamella.base.progress import Progress, as_details, silent
 from lamella.network.adjust.film_net import FilmNet
-from lamella.network.isothermic.transition_sensitivities import (
+from lamella.network.adjust.transition_sensitivities import (
     Rates,
     curvature_rates_of_volume,
     jacobi_fields,

@@ -20,16 +20,15 @@ from lamella.network.elements.closing_steps import CLOSES
 from lamella.network.elements.integer_grid_map import CellMap
 from lamella.network.elements.lattice import Lattice, choose_lattice
 from lamella.network.elements.rim_corners import RimCorners
+from lamella.network.elements.rounding import largest_part, rounded_coordinates, stubs, turned
 from lamella.network.elements.trace import trace_elements
 from lamella.network.isothermic.holonomy import Holonomy, holonomies
 from lamella.network.isothermic.integration_mesh import NetMesh, make_net_mesh, onto_surface
 from lamella.network.isothermic.isothermic import Isothermic, Transition
 from lamella.network.isothermic.recut import straightened
-from lamella.network.isothermic.rounding import largest_part, rounded_coordinates, stubs, turned
 from lamella.network.isothermic.seamless_transitions import FoldedError, integrate, with_shifts
 from lamella.network.network import REGULAR, SINGULAR, Network, Period
 from lamella.network.pattern import LAMELLAS, Pattern
-from lamella.network.streamlines.applicability import is_traced
 from lamella.network.written_lines import WrittenLines, angle_figures
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
@@ -389,7 +388,7 @@ def lay_net(
     """
     request = DensityRequest.of(cells, spacing)
     refuse_umbilic(surface)
-    assert not is_traced(surface, pattern)
+    assert surface.has_lattice(pattern.normal_curvature)
     umbilics = surface.umbilics
     mesh = make_net_mesh(surface, umbilics)
     inner = umbilics.orders[mesh.umbilics >= 0].tolist()
@@ -468,8 +467,7 @@ def element_network(
     step : float, optional
         Spacing l0 of the lattice, sqrt(m), instead of the one that follows from cells or spacing.
     pattern : Pattern
-        Which curves of the isothermic lattice the net has (see `lamella.network.streamlines.applicability.is_traced`
-        for others).
+        Which curves of the isothermic lattice the net has (see `lamella.network.streamlines` for others).
     loop_names : tuple of str
         Of the boundary loops.
     progress : callable

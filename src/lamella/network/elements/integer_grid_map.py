@@ -13,10 +13,10 @@ from functools import cached_property
 import numpy as np
 
 from lamella.base.arrays import Booleans, Complexes, Floats, Integers
-from lamella.network.elements.inverse_map import find_places
 from lamella.network.isothermic.integration_mesh import NetMesh
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.pattern import LAMELLAS, Pattern
+from lamella.surface.element.inverse_map import find_places
 from lamella.surface.element.places import Places
 from lamella.surface.element.polynomials import Polynomials
 

@@ -13,9 +13,9 @@ from lamella.network.elements.choose_step import Better, better_density, near_st
 from lamella.network.elements.closing_steps import CLOSES, ClosingLengths
 from lamella.network.elements.edge_sizes import EdgeSizes
 from lamella.network.elements.integer_grid_map import CellMap
-from lamella.network.elements.lattice_origin import lattice_origin
 from lamella.network.isothermic.holonomy import Holonomy
 from lamella.network.isothermic.isothermic import Isothermic
+from lamella.network.isothermic.lattice_origin import lattice_origin
 from lamella.network.pattern import LAMELLAS, Pattern, fitting_cells
 
 # share of a spacing; moved by more for a net that closes, the new one is reported

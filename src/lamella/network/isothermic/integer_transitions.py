@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats, Integers
-from lamella.network.elements.lattice_origin import MIDDLE
 from lamella.network.isothermic.holonomy import around_vertex, fixed_point_factors, vertex_relations
 from lamella.network.isothermic.isothermic import Isothermic
+from lamella.network.isothermic.lattice_origin import MIDDLE
 
 # of the sum of all squared rates: what is reached more slowly is not
 UNREACHED = 1e-9

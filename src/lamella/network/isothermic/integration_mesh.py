@@ -17,12 +17,12 @@ from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.vectors import diagonal, lengths
-from lamella.network.elements.inverse_map import find_places
 from lamella.network.isothermic.beyond_rim import zeros_beyond_rim
 from lamella.network.isothermic.umbilic_depth import depth_errors
 from lamella.network.isothermic.umbilic_patch import RINGS, Rosette, rosette
 from lamella.surface.element.bisect import Parts, bisect, whole
 from lamella.surface.element.connectivity import Connectivity, connect
+from lamella.surface.element.inverse_map import find_places
 from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.places import Places
 from lamella.surface.element.placing import edge_blends

@@ -6,11 +6,6 @@ from typing import Any, Literal
 
 from lamella.base.errors import InputError
 from lamella.network.pattern import Pattern
-from lamella.network.streamlines.charts import Ground
-from lamella.network.streamlines.element_charts import ElementGround
-from lamella.network.streamlines.plane_charts import PlaneGround
-from lamella.surface.closed_forms.closed_form import ClosedForm
-from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 
 
@@ -27,14 +22,6 @@ def told_mean_curvature(surface: Surface[Any], pattern: Pattern) -> float:
     if not surface.has_lattice() and pattern.normal_curvature is not None:
         return pattern.normal_curvature
     return surface.mean_curvature
-
-
-def ground_of(surface: Surface[Any]) -> Ground:
-    """The surface as lines are traced on it."""
-    if isinstance(surface, ClosedForm):
-        return PlaneGround(surface)
-    assert isinstance(surface, ElementSurface)
-    return ElementGround(surface)
 
 
 def check_traced(surface: Surface[Any], pattern: Pattern, closing: Literal["open", "round", "adjust"] = "open") -> None:

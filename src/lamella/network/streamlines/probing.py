@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.base.arrays import Booleans
-from lamella.network.streamlines.charts import Ground, Look
+from lamella.network.charts.charts import Ground, Look
 from lamella.network.streamlines.direction_field import LineField
 from lamella.network.streamlines.streamlines import Flow, trace
 from lamella.surface.element.places import Places

@@ -17,7 +17,7 @@ from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.ragged import ragged_ranges
 from lamella.base.ties import MARGIN, nearest_whole
-from lamella.network.streamlines.charts import Ground, Look
+from lamella.network.charts.charts import Ground, Look
 from lamella.network.streamlines.direction_field import LineField
 from lamella.network.streamlines.probing import LONGEST, wound
 from lamella.network.streamlines.streamlines import Flow, finished, joined, trace

@@ -11,8 +11,8 @@ from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.network.assemble import RimNodes
+from lamella.network.charts.charts import Ground
 from lamella.network.network import BOUNDARY, REGULAR
-from lamella.network.streamlines.charts import Ground
 from lamella.network.streamlines.intersections import Crossings
 from lamella.network.streamlines.streamlines import RIM, Flow
 from lamella.surface.element.places import Places

@@ -19,11 +19,11 @@ from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import rounded
 from lamella.network.assemble import Curves, CurveSamples, SampledCurves, assemble
+from lamella.network.charts.charts import Ground, Look
 from lamella.network.density_request import DensityRequest
 from lamella.network.network import A, B, Network
 from lamella.network.pattern import Pattern
 from lamella.network.sampling import Division, divide, parts_of
-from lamella.network.streamlines.charts import Ground, Look
 from lamella.network.streamlines.direction_field import LEAST_ANGLE
 from lamella.network.streamlines.intersections import Crossings, find_crossings
 from lamella.network.streamlines.seeding import Seeded, seeded_lines

@@ -11,9 +11,9 @@ from lamella.base.arrays import Booleans, Floats
 from lamella.base.errors import InputError
 from lamella.base.vectors import dots, lengths
 from lamella.base.wording import rounded
+from lamella.network.charts.charts import Ground
 from lamella.network.density_request import CELLS_MIN, NODES_MAX, DensityRequest
 from lamella.network.pattern import Pattern
-from lamella.network.streamlines.charts import Ground
 from lamella.network.streamlines.direction_field import LEAST_ANGLE, LineField
 from lamella.network.streamlines.probing import probes
 from lamella.network.streamlines.seeding import RIM_POINTS, Guide, choose_guide

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
-from lamella.network.streamlines.charts import Ground, Look
+from lamella.network.charts.charts import Ground, Look
 from lamella.network.streamlines.direction_field import LineField
 from lamella.surface.element.places import Places
 

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Floats
 from lamella.base.ties import MARGIN
-from lamella.network.streamlines.charts import Ground
+from lamella.network.charts.charts import Ground
 from lamella.network.streamlines.direction_field import LineField
 from lamella.network.streamlines.probing import LONGEST, STEPS, probes, wound
 from lamella.network.streamlines.streamlines import RIM, UNREAL, Flow, finished, joined, trace

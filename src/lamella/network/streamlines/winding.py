@@ -10,8 +10,8 @@ import numpy as np
 
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
+from lamella.network.charts.charts import Ground
 from lamella.network.pattern import Pattern
-from lamella.network.streamlines.charts import Ground
 from lamella.network.streamlines.direction_field import LineField
 from lamella.network.streamlines.streamlines import Flow
 from lamella.network.streamlines.ways_to_rim import cut_across, reaching_curvature

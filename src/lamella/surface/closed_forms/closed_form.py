@@ -96,7 +96,7 @@ class ClosedForm(ABC):
             Largest distance of the faces from the surface over the diagonal of the bounding box, as far as
             `lamella.surface.closed_forms.sampling.MOST_LINES` vertices along either parameter allow.
         """
-        return sampling.surface_mesh(self, tolerance)
+        return sampling.surface_mesh(self.places, self.at, tolerance)
 
     def area(self) -> float:
         """Area by quadrature, m^2."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,10 +10,6 @@ from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.surface.closed_forms.outline import Disc, Outline, Rectangle, Ring
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.points import SurfacePoints
-
-if TYPE_CHECKING:
-    from lamella.surface.closed_forms.closed_form import ClosedForm
-
 
 # most vertices of a mesh along either parameter
 MOST_LINES = 1000
@@ -53,10 +48,12 @@ def grid(outline: Outline, rows: int, columns: int) -> tuple[Complexes, Integers
     return np.r_[0, rings], np.vstack([fan, 1 + grid_faces(rows - 1, columns, True)])
 
 
-def surface_mesh(surface: ClosedForm, tolerance: float) -> SurfaceMesh:
+def surface_mesh(
+    places: Callable[[int, int], tuple[Complexes, Integers]], at: Callable[[Complexes], SurfacePoints], tolerance: float
+) -> SurfaceMesh:
     """Mesh of a closed form, see `lamella.surface.closed_forms.closed_form.ClosedForm.mesh`."""
-    where, _ = surface.places(33, 33)
-    rough = surface.at(where)
+    where, _ = places(33, 33)
+    rough = at(where)
     points = rough.position
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
     k1, k2 = rough.principal_curvatures
@@ -68,10 +65,10 @@ def surface_mesh(surface: ClosedForm, tolerance: float) -> SurfaceMesh:
     for _ in range(3):
         rows, columns = (int(np.clip(np.ceil(long / edge), 24, MOST_LINES)) for long in (long_u, long_v))
         # a multiple of 4, so that bodies of revolution have their full width along x and y
-        where, faces = surface.places(rows, 4 * -(-columns // 4))
-        at = surface.at(where)
-        k1, k2 = at.principal_curvatures
-        mesh = SurfaceMesh(at.position, at.normal, faces, at.mean_curvature, k1 * k2, k1, k2)
+        where, faces = places(rows, 4 * -(-columns // 4))
+        there = at(where)
+        k1, k2 = there.principal_curvatures
+        mesh = SurfaceMesh(there.position, there.normal, faces, there.mean_curvature, k1 * k2, k1, k2)
         left = mesh.sag() / (tolerance * size)
         if left <= 1 or min(rows, columns) == MOST_LINES:
             break

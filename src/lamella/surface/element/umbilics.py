@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -12,15 +12,13 @@ from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.vectors import diagonal, dots, lengths
+from lamella.surface.element.connectivity import Connectivity
+from lamella.surface.element.curvature import ElementFrames, ElementPoints
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import rim_marks
 from lamella.surface.points import SurfacePoints
-
-if TYPE_CHECKING:
-    from lamella.surface.element.surface import ElementSurface
-
 
 # small triangles along an element's edge in which a zero is looked for
 PARTS = 4
@@ -68,7 +66,37 @@ class Umbilics:
         return 2 * (self.orders + 2)
 
 
-def find_umbilics(surface: ElementSurface) -> Umbilics:
+class SmoothElements(Protocol):
+    """What is asked of a surface of elements, see `lamella.surface.element.surface.ElementSurface`."""
+
+    @property
+    def connectivity(self) -> Connectivity: ...
+
+    @property
+    def nodes(self) -> Floats: ...
+
+    @property
+    def rim_loop(self) -> Integers: ...
+
+    @property
+    def rim_starts(self) -> Floats: ...
+
+    def at(self, where: Places) -> SurfacePoints: ...
+
+    def at_everywhere(self, local: Floats) -> SurfacePoints: ...
+
+    def frames(self, where: Places) -> ElementFrames: ...
+
+    def frames_everywhere(self, local: Floats) -> ElementFrames: ...
+
+    def shape_at(self, where: Places) -> tuple[ElementFrames, Floats, Complexes]: ...
+
+    def measured(self, where: Places) -> ElementPoints: ...
+
+    def closest_near(self, points: Floats, start: Places) -> tuple[Places, Floats]: ...
+
+
+def find_umbilics(surface: SmoothElements) -> Umbilics:
     """All zeros of the trace-free shape operator of a surface of elements, to Newton precision.
 
     A zero of order m turns the deviator m times around it. Every small triangle whose corners turn it, and its
@@ -107,7 +135,7 @@ def find_umbilics(surface: ElementSurface) -> Umbilics:
     return Umbilics(places[kept], position[kept], orders[kept])
 
 
-def _deepest_first(surface: ElementSurface, position: Floats, step: float) -> Integers:
+def _deepest_first(surface: SmoothElements, position: Floats, step: float) -> Integers:
     """Order of places (n, 3) by their distance from the rim, the farthest first: nets begin there on whatever elements.
 
     Of those about as far, within a step (m), the one nearest to a mark on the outer loop goes first: marks are turned,
@@ -141,7 +169,7 @@ def _distinct(places: Places, position: Floats, reach: float) -> tuple[Places, F
     return places[first], position[first]
 
 
-def _ratios(surface: ElementSurface, places: Places, position: Floats, reach: float) -> tuple[Integers, Floats]:
+def _ratios(surface: SmoothElements, places: Places, position: Floats, reach: float) -> tuple[Integers, Floats]:
     """Pairs (p, 2) of zeros within `reach` (m), and the largest deviator between them over its error, (p,)."""
     distance, near = cKDTree(position).query(position, min(NEIGHBOURS + 1, len(position)), distance_upper_bound=reach)
     start, column = np.nonzero(np.isfinite(distance.reshape(len(position), -1)))
@@ -159,7 +187,7 @@ def _ratios(surface: ElementSurface, places: Places, position: Floats, reach: fl
     return ends, np.asarray(largest / error.reshape(-1, ON_THE_WAY).max(1))
 
 
-def deviator_error(surface: ElementSurface, elements: Integers) -> Floats:
+def deviator_error(surface: SmoothElements, elements: Integers) -> Floats:
     """Bound of the deviator's error on elements (n,), 1/m, (n,).
 
     How far the continuous deviator is from that of the elements' own second derivatives, which are one order less
@@ -173,7 +201,7 @@ def deviator_error(surface: ElementSurface, elements: Integers) -> Floats:
 
 
 def _gathered(
-    surface: ElementSurface, places: Places, position: Floats, ends: Integers, size: float
+    surface: SmoothElements, places: Places, position: Floats, ends: Integers, size: float
 ) -> tuple[Places, Floats, Integers]:
     """Zeros that are joined (p, 2) as one in their middle, with the turns of the deviator around them."""
     group = _groups(len(position), ends)
@@ -191,7 +219,7 @@ def _gathered(
     return places, position, _turns(surface, places, position, radius)
 
 
-def _recentred(surface: ElementSurface, places: Places, position: Floats, orders: Integers) -> tuple[Places, Floats]:
+def _recentred(surface: SmoothElements, places: Places, position: Floats, orders: Integers) -> tuple[Places, Floats]:
     """Zeros of order 2 and above moved to where a circle around them, on which the deviator is sure, has them.
 
     D = c (z - z_0)^m on it has the Fourier coefficients c r^m and -m z_0 c r^(m - 1) of the orders m and m - 1.
@@ -220,7 +248,7 @@ def _turned(at: SurfacePoints, axes: Floats) -> Complexes:
     return np.asarray(at.deviator * (turn / np.abs(turn)) ** 2)
 
 
-def _newton(surface: ElementSurface, start: Places, axes: Floats) -> tuple[Places, Booleans]:
+def _newton(surface: SmoothElements, start: Places, axes: Floats) -> tuple[Places, Booleans]:
     """Zeros from starting places, by the deviator in frames along axes (n, 3); which ended inside their element."""
     element, local = start.element, start.local.copy()
 
@@ -246,7 +274,7 @@ def _newton(surface: ElementSurface, start: Places, axes: Floats) -> tuple[Place
     return Places(element, np.clip(local, 0, 1)), inside
 
 
-def _circle(surface: ElementSurface, places: Places, centre: Floats, radius: Floats) -> Complexes:
+def _circle(surface: SmoothElements, places: Places, centre: Floats, radius: Floats) -> Complexes:
     """Deviators at `CIRCLE` places around those of the surface, at a radius (m) of each, in its frame, (n, CIRCLE)."""
     frame = surface.at(places)
     angle = 2 * np.pi * np.arange(CIRCLE) / CIRCLE
@@ -259,7 +287,7 @@ def _circle(surface: ElementSurface, places: Places, centre: Floats, radius: Flo
     return _turned(surface.at(around), np.repeat(frame.e_u, CIRCLE, axis=0)).reshape(-1, CIRCLE)
 
 
-def _turns(surface: ElementSurface, places: Places, centre: Floats, radius: Floats) -> Integers:
+def _turns(surface: SmoothElements, places: Places, centre: Floats, radius: Floats) -> Integers:
     """Turns of the deviator once around places of the surface, at a radius (m) of each, (n,)."""
     value = _circle(surface, places, centre, radius)
     turns = np.angle(np.roll(value, -1, 1) / value).sum(1) / (2 * np.pi)

@@ -15,7 +15,6 @@ from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.geometry import dirichlet_blocks, smooth_normals, tangents
 from lamella.surface.element.placing import place_nodes, rim_parameters
 from lamella.surface.element.quadrature import triangle_rule
-from lamella.surface.form_finding.no_film import NoFilmError
 from lamella.surface.remesh.remesh import TriangleMesh
 
 
@@ -179,6 +178,20 @@ class Film:
         # the turn of the rim fades inwards, or the nodes next to it would be overtaken
         directions = normals + _harmonic(self, turned)
         return np.asarray(directions / np.linalg.norm(directions, axis=1)[:, None])
+
+
+class NoFilmError(ArithmeticError):
+    """A search ended without a film.
+
+    Attributes
+    ----------
+    last : Film or None
+        The last film on its way, with sound elements.
+    """
+
+    def __init__(self, message: str, last: Film | None = None) -> None:
+        super().__init__(message)
+        self.last = last
 
 
 def moved_with_rim(film: Film, nodes: Floats) -> Film:

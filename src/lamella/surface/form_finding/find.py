@@ -24,9 +24,9 @@ from lamella.surface.form_finding.necessary_conditions import (
     refuse_single,
 )
 from lamella.surface.form_finding.newton import Equilibrium, find_equilibrium
-from lamella.surface.form_finding.no_film import SearchError
 from lamella.surface.form_finding.not_found import impossible, not_found
 from lamella.surface.form_finding.refinement import adapted
+from lamella.surface.form_finding.search_error import SearchError
 from lamella.surface.form_finding.self_crossing import self_crossing
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report
@@ -23,12 +23,14 @@ from lamella.surface.form_finding.boundary_homotopy import (
 )
 from lamella.surface.form_finding.chart import make_chart
 from lamella.surface.form_finding.continuation import FoldError, Reached, VolumeFoldError, to_curvature, to_volume
-from lamella.surface.form_finding.film import Film, Loop, harmonic_over_itself
-from lamella.surface.form_finding.from_fixed_support import from_held
+from lamella.surface.form_finding.enclosed_volume import enclosed_volume
+from lamella.surface.form_finding.film import Film, Loop, NoFilmError, harmonic_over_itself
+from lamella.surface.form_finding.fixed_support import held
 from lamella.surface.form_finding.meshing import renewed, start_film
 from lamella.surface.form_finding.necessary_conditions import refuse_apart
 from lamella.surface.form_finding.newton import Equilibrium, find_equilibrium
-from lamella.surface.form_finding.no_film import NoFilmError, SearchError
+from lamella.surface.form_finding.release import let_go
+from lamella.surface.form_finding.search_error import SearchError
 
 # Newton steps from the harmonic start before a path is taken
 DIRECT_STEPS = 12
@@ -38,6 +40,10 @@ AREA_ROUNDS = 4
 SHARES = (0.6, 0.4, 0.25, 0.15, 0.08)
 # of those, how many are followed to the given loops
 MOST_PATHS = 2
+# H times the film's size, of a film followed at fixed volume: it is the wanted one but for rounding
+NEARLY = 1e-3
+# Newton steps to the wanted one
+FEW = 12
 
 
 @dataclass(frozen=True)
@@ -269,9 +275,38 @@ class FirstFilm:
         return reached.equilibrium
 
     def _from_held(self, mean_curvature: float, volume: float | None) -> Iterator[Equilibrium]:
-        """Films with the sliding edges held, and then let go."""
-        if any(loop.slides for loop in self.loops):
-            yield from from_held(self, mean_curvature, volume)
+        """Films of a mean curvature (1/m) or near it, or of a volume (m^3), with edges held near where they are drawn.
+
+        Where nothing comes of that, straight between their ends.
+        """
+        if not any(loop.slides for loop in self.loops):
+            return
+        near, straight = held(self.loops), held(self.loops, straight=True)
+        for loops in (near, straight) if is_moved(near, straight) else (near,):
+            self.progress(Report.detail("the sliding edges are held, and let go little by little"))
+            there = replace(self, loops=loops, steps=0, reasons=[], fold=None, calm=False, unstable=None)
+            try:
+                if volume is None:
+                    start = there.of_curvature(mean_curvature).equilibrium
+                else:
+                    start = there.of_volume(volume + _lids_apart(loops, self.loops, self.order)).equilibrium
+            except SearchError as error:
+                self.steps += error.steps
+                self.tell(f"with its sliding edges held: {error}")
+                continue
+            self.steps += there.steps
+            # where the pressure that is held drives the edges away, the volume may hold them
+            own = enclosed_volume(replace(start.film, loops=self.loops))
+            for fixed in (None, own) if volume is None else (volume,):
+                try:
+                    reached = let_go(start, self.loops, fixed, self.progress)
+                except NoFilmError as error:
+                    kept = "mean curvature" if fixed is None else "volume"
+                    self.tell(f"from its sliding edges held, which are let go at the same {kept}: {error}")
+                else:
+                    self.steps += reached.steps
+                    found = reached.equilibrium
+                    yield found if volume is not None else _exactly(found, mean_curvature)
 
     def _from_drawn(self, mean_curvature: float, volume: float | None = None) -> Iterator[Equilibrium]:
         """Films in the given loops, followed from the same loops drawn together."""
@@ -307,3 +342,19 @@ class FirstFilm:
             # behind a fold there may be another film, but more seldom than beyond a broken path
             if paths == MOST_PATHS or self.fold is not None:
                 return
+
+
+def _exactly(here: Equilibrium, mean_curvature: float) -> Equilibrium:
+    """A film of very nearly a mean curvature (1/m), stable or not, with that one."""
+    if abs(here.mean_curvature - mean_curvature) * here.film.size > NEARLY:
+        return here
+    try:
+        return find_equilibrium(here.film, mean_curvature, stable=False, most_steps=FEW)
+    except NoFilmError:
+        return here
+
+
+def _lids_apart(held_loops: tuple[Loop, ...], loops: tuple[Loop, ...], order: int) -> float:
+    """By how much the volume of a film is larger (m^3) in loops that are held: their lids are others."""
+    film = start_film(make_chart(held_loops), held_loops, order)
+    return enclosed_volume(film) - enclosed_volume(replace(film, loops=loops))

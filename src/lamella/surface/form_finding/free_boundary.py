@@ -9,8 +9,7 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
 from lamella.surface.element.placing import rim_parameters
-from lamella.surface.form_finding.film import Film, Loop, Slide
-from lamella.surface.form_finding.no_film import NoFilmError
+from lamella.surface.form_finding.film import Film, Loop, NoFilmError, Slide
 
 # points of an edge at which its arc length is taken, and Gauss points between two of them
 PIECES, GAUSS = 8, 6

@@ -9,7 +9,7 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.base.sparse import SingularError, SymmetricPattern, packed
 from lamella.surface.form_finding.chart import Chart, Curve
-from lamella.surface.form_finding.no_film import NoFilmError
+from lamella.surface.form_finding.film import NoFilmError
 
 
 def harmonic_surface(chart: Chart, loops: Sequence[Curve], rounds: int = 0) -> Floats:

@@ -14,7 +14,7 @@ import numpy as np
 from lamella.base.wording import rounded
 from lamella.surface.form_finding.film import Loop
 from lamella.surface.form_finding.first_film import FirstFilm
-from lamella.surface.form_finding.no_film import SearchError
+from lamella.surface.form_finding.search_error import SearchError
 from lamella.surface.form_finding.tubes import farthest, pressure_of, tube_of
 
 # of the largest H of stable films, the shares that are tried: next to the fold films are found with difficulty, and a

@@ -29,8 +29,7 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.sparse import Factor, SingularError, SymmetricPattern
-from lamella.surface.form_finding.film import Film
-from lamella.surface.form_finding.no_film import NoFilmError
+from lamella.surface.form_finding.film import Film, NoFilmError
 from lamella.surface.form_finding.variation import FirstVariation, Variation
 
 # a step this small, over the film's size, is the last: the next would be its square

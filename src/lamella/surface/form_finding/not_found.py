@@ -9,7 +9,7 @@ from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.first_film import FirstFilm
 from lamella.surface.form_finding.nearest_existing import Tries
 from lamella.surface.form_finding.necessary_conditions import ImpossibleError
-from lamella.surface.form_finding.no_film import SearchError
+from lamella.surface.form_finding.search_error import SearchError
 
 # no bound says that there is no such surface: the search alone ended
 MAY_EXIST = "no bound is broken, so that there may be one"

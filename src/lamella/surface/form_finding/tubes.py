@@ -22,7 +22,7 @@ from lamella.surface.form_finding.family import Member, member_of, stretches
 from lamella.surface.form_finding.film import Loop
 from lamella.surface.form_finding.first_film import FirstFilm
 from lamella.surface.form_finding.newton import NoFilmError
-from lamella.surface.form_finding.no_film import SearchError
+from lamella.surface.form_finding.search_error import SearchError
 
 SAMPLES = 400
 # of the first size: as far as a family is followed for where it gets stable or unstable

@@ -30,9 +30,8 @@ from lamella.surface.element.curvature import element_points, frames
 from lamella.surface.element.edge_basis import edge_rule
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.varying import VaryingSurface
-from lamella.surface.form_finding.film import Film
+from lamella.surface.form_finding.film import Film, NoFilmError
 from lamella.surface.form_finding.meshing import start_sizes, with_sizes
-from lamella.surface.form_finding.no_film import NoFilmError
 from lamella.surface.from_mesh.clean import CleanMesh
 from lamella.surface.from_mesh.edges import vertex_areas, vertex_normals
 from lamella.surface.from_mesh.to_elements import as_film, border_loops

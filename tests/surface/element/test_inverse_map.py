@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lamella.network.elements.inverse_map import find_places
 from lamella.surface.element.connectivity import connect
+from lamella.surface.element.inverse_map import find_places
 from lamella.surface.element.places import Places
 from lamella.surface.element.polynomials import Polynomials
 

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats, Integers
-from lamella.network.streamlines.charts import Look, RimPlaces
+from lamella.network.charts.charts import Look, RimPlaces
 from lamella.surface.element.places import Places
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import element_rims

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats
-from lamella.network.streamlines.charts import Look, RimPlaces
+from lamella.network.charts.charts import Look, RimPlaces
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.outline import Disc, Rectangle
 from lamella.surface.closed_forms.scherk import Scherk, asymptotic_to_conformal
