@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Protocol
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
-from lamella.surface.surface import Surface
 
 LARGEST, SMALLEST = 250.0, 0.1
 """m. The largest timber gridshells span well under 200 m; a lamella is as high as the smallest is wide."""
@@ -75,8 +75,21 @@ def refuse_doubtful(what: str, size: float, metres: float, unit: str, key: str) 
     )
 
 
+class HasPosition(Protocol):
+    """Points (n, 3), m."""
+
+    @property
+    def position(self) -> Floats: ...
+
+
+class HasCheckPoints(Protocol):
+    """A surface that gives points spread all over it."""
+
+    def check_points(self) -> HasPosition: ...
+
+
 @contextmanager
-def unit_first(surface: Surface[Any]) -> Iterator[None]:
+def unit_first(surface: HasCheckPoints) -> Iterator[None]:
     """Say in a refusal of a net that the surface's size looks like a wrong unit, before what is refused."""
     try:
         yield

@@ -1,0 +1,199 @@
+"""The contract of imports: which folder of the package may import which, and no circle between modules.
+
+Imports inside functions and those for annotations only count like all others. The table is the one of CONTRIBUTING.md.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parents[1] / "src" / "lamella"
+
+# what each group of folders may be built on
+SURFACES = ("surface", "surface.closed_forms", "surface.element")
+FILMS = (*SURFACES, "surface.boundary", "surface.remesh", "surface.form_finding")
+NETS = ("network", "network.charts", "network.lattice", "network.isothermic", "network.elements", "network.streamlines")
+PROJECTIONS = ("projection", "projection.constraints", "projection.problems")
+FILES = ("files", "files.read", "files.write")
+
+MAY_IMPORT: dict[str, tuple[str, ...]] = {
+    "base": (),
+    "surface": ("base",),
+    "surface.closed_forms": ("base", "surface"),
+    "surface.element": ("base", "surface"),
+    "surface.boundary": ("base", "surface"),
+    "surface.remesh": ("base", *SURFACES),
+    "surface.form_finding": ("base", *SURFACES, "surface.boundary", "surface.remesh"),
+    "surface.from_mesh": ("base", *FILMS),
+    "network": ("base", "surface"),
+    "network.charts": ("base", *SURFACES),
+    "network.lattice": ("base", *SURFACES, "network"),
+    "network.isothermic": ("base", *SURFACES, "network"),
+    "network.elements": ("base", *SURFACES, "surface.boundary", "network", "network.isothermic"),
+    "network.streamlines": ("base", *SURFACES, "network", "network.charts"),
+    "network.adjust": ("base", *FILMS, "network", "network.isothermic", "network.elements"),
+    "network.make": ("base", *SURFACES, *NETS),
+    "strip": ("base", *SURFACES, "network", "network.charts"),
+    "projection": ("base", *SURFACES, "surface.boundary", "strip", "projection.constraints"),
+    "projection.constraints": ("base", "projection"),
+    "projection.problems": ("base", "projection", "projection.constraints", "strip"),
+    "project": ("base", "network", "network.streamlines", "strip"),
+    "files": ("base", "files.read", "files.write", *PROJECTIONS, "version"),
+    "files.read": ("base", *FILMS),
+    "files.write": ("base", "files", *FILMS, "network", "strip", *PROJECTIONS, "version"),
+    "fabrication": ("base", "network", "strip", "files.write"),
+    "view": ("base", *SURFACES, "network", "strip", "fabrication", *FILES, *PROJECTIONS),
+    "stages": (
+        "base",
+        *FILMS,
+        "surface.from_mesh",
+        *NETS,
+        "network.adjust",
+        "strip",
+        "fabrication",
+        "project",
+        *FILES,
+        "view",
+        "version",
+    ),
+    "command": ("base", *FILMS, "project", *PROJECTIONS, *FILES, "view", "stages", "version"),
+}
+# imports against the table, still to be turned round
+PENDING = (
+    ("lamella.files.read.curves_json", "project"),
+    ("lamella.files.read.mesh", "surface.from_mesh"),
+    ("lamella.files.write.curves_3dm", "project"),
+    ("lamella.files.write.optimise_json", "command"),
+    ("lamella.files.write.rhino_file", "project"),
+    ("lamella.network.adjust.", "project"),
+    ("lamella.surface.boundary.", "project"),
+    ("lamella.surface.boundary.", "files.read"),
+    ("lamella.surface.form_finding.find", "project"),
+    ("lamella.surface.from_mesh.", "project"),
+    ("lamella.surface.from_mesh.", "files.read"),
+    ("lamella.view.", "stages"),
+)
+# circles still to be cut
+PENDING_CIRCLES = {"lamella.stages.pipeline": {"lamella.stages.output"}}
+# modules that stand above their folder: they choose among the folders below it
+ABOVE = {"lamella.network.make": "network.make"}
+
+
+class Imports:
+    """The modules of a package and what each of them imports from it."""
+
+    def __init__(self, package: Path) -> None:
+        self.name = package.name
+        self.folders = {
+            ".".join((self.name, *path.relative_to(package).with_suffix("").parts)).removesuffix(".__init__"): path
+            for path in sorted(package.rglob("*.py"))
+        }
+        self.of = {module: set(self._imported(module)) for module in self.folders}
+
+    def _imported(self, module: str) -> Iterator[str]:
+        for node in ast.walk(ast.parse(self.folders[module].read_text("utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                for alias in node.names:
+                    whole = f"{node.module}.{alias.name}"
+                    if whole in self.folders:
+                        yield whole
+                    elif node.module in self.folders:
+                        # the package itself gives its version, or it gives everything
+                        yield "version" if (node.module, alias.name) == (self.name, "__version__") else node.module
+            elif isinstance(node, ast.Import):
+                yield from (alias.name for alias in node.names if alias.name in self.folders)
+
+    def room(self, module: str) -> str:
+        """The folder a module is in, without the package's name; "" for the package's own modules."""
+        if module in ABOVE or module == "version":
+            return ABOVE.get(module, module)
+        path = self.folders[module]
+        parts = module.split(".")
+        return ".".join(parts[1:] if path.name == "__init__.py" else parts[1:-1])
+
+    def against(self, may_import: dict[str, tuple[str, ...]], pending: tuple[tuple[str, str], ...] = ()) -> list[str]:
+        """Imports from one folder into another that the table does not have, and folders that it does not know."""
+        found = []
+        for module, others in self.of.items():
+            room = self.room(module)
+            if room and room not in may_import:
+                found.append(f"{module} is in the folder {room!r}, which has no row")
+            elif room:
+                rooms = (*may_import[room], room)
+                rooms += tuple(to for start, to in pending if module.startswith(start))
+                found += [f"{module} imports {other}" for other in sorted(others) if self.room(other) not in rooms]
+        return found
+
+    def circle(self) -> list[str]:
+        """Modules that import each other in a circle; empty where none do."""
+        try:
+            TopologicalSorter(self.of).prepare()
+        except CycleError as error:
+            return list(error.args[1])
+        return []
+
+
+def test_folders_import_what_they_may() -> None:
+    assert Imports(PACKAGE).against(MAY_IMPORT, PENDING) == []
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    imports = Imports(PACKAGE)
+    for module, others in PENDING_CIRCLES.items():
+        imports.of[module] -= others
+    assert imports.circle() == []
+
+
+def test_no_folders_may_import_each_other_in_a_circle() -> None:
+    """But for a folder and those inside it, of which one holds what they share."""
+    nested = {
+        room: {other for other in others if not (room.startswith(f"{other}.") or other.startswith(f"{room}."))}
+        for room, others in MAY_IMPORT.items()
+    }
+    TopologicalSorter(nested).prepare()
+
+
+def test_contributing_lists_every_folder() -> None:
+    text = (PACKAGE.parents[1] / "CONTRIBUTING.md").read_text("utf-8")
+    folders = [room for room in MAY_IMPORT if room not in ABOVE.values()]
+    assert [room for room in folders if f"| `{room.replace('.', '/')}/` |" not in text] == []
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """A package of two folders, of which `upper` is built on `base`."""
+    for name in ("small/__init__.py", "small/base/__init__.py", "small/upper/__init__.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("")
+    (tmp_path / "small/base/one.py").write_text("ONE = 1\n")
+    (tmp_path / "small/upper/two.py").write_text("from small.base.one import ONE\n")
+    return tmp_path / "small"
+
+
+SMALL = {"base": (), "upper": ("base",)}
+
+
+def test_an_import_against_the_table_is_found(package: Path) -> None:
+    assert Imports(package).against(SMALL) == []
+    (package / "base/one.py").write_text("def one():\n    import small.upper.two\n")
+    imports = Imports(package)
+    assert imports.against(SMALL) == ["small.base.one imports small.upper.two"]
+    assert set(imports.circle()) == {"small.base.one", "small.upper.two"}
+
+
+def test_a_folder_without_a_row_is_found(package: Path) -> None:
+    (package / "cellar").mkdir()
+    (package / "cellar/three.py").write_text("from small.base import one\n")
+    assert Imports(package).against(SMALL) == ["small.cellar.three is in the folder 'cellar', which has no row"]
+
+
+def test_a_circle_of_annotations_is_one(package: Path) -> None:
+    lines = ("from typing import TYPE_CHECKING", "if TYPE_CHECKING:", "    from small.base.four import FOUR", "")
+    (package / "base/three.py").write_text("\n".join(lines))
+    (package / "base/four.py").write_text("from small.base.three import THREE\n")
+    assert set(Imports(package).circle()) == {"small.base.three", "small.base.four"}
