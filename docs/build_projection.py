@@ -13,17 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import shortest_path
 
-from lamella import (
-    Unduloid,
-    deform,
-    find_film,
-    foot_surface,
-    make_loop,
-    planar_strips,
-    quad_mesh,
-    sphere_stars,
-    straighten,
-)
+from lamella import Unduloid, deform, foot_surface, planar_strips, quad_mesh, sphere_stars, straighten
 from lamella.command.optimise_mesh import strip_mesh
 from lamella.network.elements.element_network import element_network
 from lamella.network.network import Network
@@ -31,8 +21,10 @@ from lamella.projection.polylines import diagonal_ring
 from lamella.projection.problems.planar_strips import PlanarStrips
 from lamella.projection.quad_mesh import QuadMesh
 from lamella.projection.star_measures import circle_angles
+from lamella.surface.boundary import make_loop
 from lamella.surface.boundary.splines import closed_spline
 from lamella.surface.element.surface import ElementSurface
+from lamella.surface.form_finding.find import find_film
 from lamella.view.net_picture import NetPanel, draw_nets
 
 PICTURES = Path(__file__).parent / "pictures"

@@ -1,14 +1,16 @@
 """The contract of imports: which folder of the package may import which, and no circle between modules.
 
-Imports inside functions and those for annotations only count like all others. The table is the one of CONTRIBUTING.md.
+Imports inside functions and those for annotations only count like all others, but for the signatures of methods that
+lead on along the flow (`ONWARD`). The table is the one of CONTRIBUTING.md.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 
@@ -37,7 +39,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "network.elements": ("base", *SURFACES, "surface.boundary", "network", "network.isothermic"),
     "network.streamlines": ("base", *SURFACES, "network", "network.charts"),
     "network.adjust": ("base", *FILMS, "network", "network.isothermic", "network.elements"),
-    "network.make": ("base", *SURFACES, *NETS),
+    "network.net": ("base", *SURFACES, *NETS),
     "strip": ("base", *SURFACES, "network", "network.charts"),
     "projection": ("base", *SURFACES, "surface.boundary", "strip", "projection.constraints"),
     "projection.constraints": ("base", "projection"),
@@ -47,7 +49,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "files.read": ("base", *FILMS),
     "files.write": ("base", "files", *FILMS, "network", "strip", *PROJECTIONS, "version"),
     "fabrication": ("base", "network", "strip", "files.write"),
-    "view": ("base", *SURFACES, "network", "strip", "fabrication", *FILES, *PROJECTIONS),
+    "view": ("base", *SURFACES, "surface.boundary", "network", "strip", "fabrication", *FILES, *PROJECTIONS),
     "stages": (
         "base",
         *FILMS,
@@ -81,22 +83,38 @@ PENDING = (
 # circles still to be cut
 PENDING_CIRCLES = {"lamella.stages.pipeline": {"lamella.stages.output"}}
 # modules that stand above their folder: they choose among the folders below it
-ABOVE = {"lamella.network.make": "network.make"}
+ABOVE = {"lamella.network.net": "network.net"}
+# results whose methods lead on to a later module by lamella.base.onward: their signatures name its types
+ONWARD = {
+    "lamella.network.network": {"lamella.strip.lamellas", "lamella.strip.material"},
+    "lamella.strip.lamellas": {"lamella.fabrication.part"},
+    "lamella.fabrication.part": {"lamella.fabrication.sheet"},
+}
+
+
+def _is_for_annotations(node: ast.AST) -> bool:
+    return isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
 
 
 class Imports:
     """The modules of a package and what each of them imports from it."""
 
-    def __init__(self, package: Path) -> None:
+    def __init__(self, package: Path, onward: Mapping[str, set[str]] = MappingProxyType({})) -> None:
         self.name = package.name
         self.folders = {
             ".".join((self.name, *path.relative_to(package).with_suffix("").parts)).removesuffix(".__init__"): path
             for path in sorted(package.rglob("*.py"))
         }
-        self.of = {module: set(self._imported(module)) for module in self.folders}
+        trees = {module: ast.parse(path.read_text("utf-8")) for module, path in self.folders.items()}
+        self.of = {module: set(self._imported(ast.walk(tree))) for module, tree in trees.items()}
+        for module in onward.keys() & trees.keys():
+            nodes = list(ast.walk(trees[module]))
+            named = {node for part in nodes if _is_for_annotations(part) for node in ast.walk(part)}
+            outside = set(self._imported(node for node in nodes if node not in named))
+            self.of[module] -= onward[module] - outside
 
-    def _imported(self, module: str) -> Iterator[str]:
-        for node in ast.walk(ast.parse(self.folders[module].read_text("utf-8"))):
+    def _imported(self, nodes: Iterable[ast.AST]) -> Iterator[str]:
+        for node in nodes:
             if isinstance(node, ast.ImportFrom) and node.module:
                 for alias in node.names:
                     whole = f"{node.module}.{alias.name}"
@@ -139,11 +157,11 @@ class Imports:
 
 
 def test_folders_import_what_they_may() -> None:
-    assert Imports(PACKAGE).against(MAY_IMPORT, PENDING) == []
+    assert Imports(PACKAGE, ONWARD).against(MAY_IMPORT, PENDING) == []
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
-    imports = Imports(PACKAGE)
+    imports = Imports(PACKAGE, ONWARD)
     for module, others in PENDING_CIRCLES.items():
         imports.of[module] -= others
     assert imports.circle() == []
@@ -190,6 +208,17 @@ def test_a_folder_without_a_row_is_found(package: Path) -> None:
     (package / "cellar").mkdir()
     (package / "cellar/three.py").write_text("from small.base import one\n")
     assert Imports(package).against(SMALL) == ["small.cellar.three is in the folder 'cellar', which has no row"]
+
+
+def test_signatures_may_lead_on_and_nothing_else(package: Path) -> None:
+    onward = {"small.base.one": {"small.upper.two"}}
+    line = "from small.upper.two import ONE"
+    (package / "base/one.py").write_text(f"if TYPE_CHECKING:\n    {line}\n")
+    assert Imports(package).against(SMALL) == ["small.base.one imports small.upper.two"]
+    assert Imports(package, onward).against(SMALL) == []
+    assert Imports(package, onward).circle() == []
+    (package / "base/one.py").write_text(f"if TYPE_CHECKING:\n    {line}\ndef one():\n    {line}\n")
+    assert Imports(package, onward).against(SMALL) == ["small.base.one imports small.upper.two"]
 
 
 def test_a_circle_of_annotations_is_one(package: Path) -> None:

@@ -4,12 +4,10 @@ Type checkers read this file; the package itself imports each name from where it
 """
 
 from lamella.base.errors import InputError as InputError
-from lamella.fabrication import make_parts as make_parts
-from lamella.fabrication import nest as nest
 from lamella.files.compas_json import compas_at as compas_at
 from lamella.files.compas_json import quad_mesh_of_compas as quad_mesh_of_compas
 from lamella.files.quad_mesh_files import read_quad_mesh as read_quad_mesh
-from lamella.network.make import make_network as make_network
+from lamella.network.net import net as net
 from lamella.network.network import Network as Network
 from lamella.project.read import parse_project as parse_project
 from lamella.project.read import read_project as read_project
@@ -29,11 +27,15 @@ from lamella.stages.pipeline import write as write
 from lamella.stages.surface_of_table import make_surface as make_surface
 from lamella.strip.lamellas import Lamellas as Lamellas
 from lamella.strip.lamellas import Section as Section
-from lamella.strip.lamellas import make_lamellas as make_lamellas
 from lamella.strip.material import Material as Material
 from lamella.strip.material import find_material as find_material
 from lamella.surface.boundary import Loop as Loop
-from lamella.surface.boundary import make_loop as make_loop
+from lamella.surface.boundary.curves import arc as arc
+from lamella.surface.boundary.curves import circle as circle
+from lamella.surface.boundary.curves import ellipse as ellipse
+from lamella.surface.boundary.curves import joined as joined
+from lamella.surface.boundary.curves import polyline as polyline
+from lamella.surface.boundary.curves import spline as spline
 from lamella.surface.closed_forms.catenoid import Catenoid as Catenoid
 from lamella.surface.closed_forms.cylinder import Cylinder as Cylinder
 from lamella.surface.closed_forms.delaunay import Nodoid as Nodoid
@@ -43,6 +45,6 @@ from lamella.surface.closed_forms.helicoid import Helicoid as Helicoid
 from lamella.surface.closed_forms.scherk import Scherk as Scherk
 from lamella.surface.element.places import Places as Places
 from lamella.surface.element.surface import ElementSurface as ElementSurface
-from lamella.surface.form_finding.find import find_film as find_film
+from lamella.surface.form_finding.film_in_loops import film as film
 
 __version__: str

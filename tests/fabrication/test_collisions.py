@@ -5,7 +5,10 @@ import re
 import numpy as np
 import pytest
 
-from lamella import Cylinder, Section, find_material, make_lamellas, make_network, make_parts
+import lamella
+from lamella import Cylinder, Section, find_material
+from lamella.fabrication import make_parts
+from lamella.strip.lamellas import make_lamellas
 
 RADIUS, CELLS = 2.0, 20
 # rows of nodes of helices at 45 degrees
@@ -14,7 +17,7 @@ ROW = np.pi * RADIUS / CELLS
 
 def warnings(beyond, overhang, layers=1):
     """Warnings of a cylinder whose rim lies so low that strips would cross `beyond` past their rim nodes."""
-    network = make_network(Cylinder(RADIUS, (0.3 * ROW, 5 * ROW - beyond / np.sqrt(2))), cells=CELLS)
+    network = lamella.net(Cylinder(RADIUS, (0.3 * ROW, 5 * ROW - beyond / np.sqrt(2))), cells=CELLS)
     lamellas = make_lamellas(network, Section(layers=layers, height=0.05), find_material("1.4301"))
     parts = make_parts(network, lamellas, density=7900.0, end_distance=0.02, rim_overhang=overhang)
     return [w for w in parts.warnings if "meet beyond the rim" in w]

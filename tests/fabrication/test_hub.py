@@ -3,13 +3,16 @@
 import numpy as np
 import pytest
 
-from lamella import Enneper, Section, find_material, make_lamellas, make_network, make_parts
+import lamella
+from lamella import Enneper, Section, find_material
+from lamella.fabrication import make_parts
 from lamella.network.network import SINGULAR
+from lamella.strip.lamellas import make_lamellas
 
 
 def _ends(order, **options):
     """Plan of the strips' ends around the hub: corners of every layer's rectangle nearest to the node, (rays, 4, 2)."""
-    network = make_network(Enneper(order, 0.8, 6.0), cells=12)
+    network = lamella.net(Enneper(order, 0.8, 6.0), cells=12)
     section = Section(layers=2, offset=0.03, thickness=0.002, height=0.06)
     lamellas = make_lamellas(network, section, find_material("1.4301"))
     parts = make_parts(network, lamellas, density=7900.0, **options)

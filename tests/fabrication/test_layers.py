@@ -9,14 +9,16 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+import lamella
 from fabrication.test_sheets import placed_outlines
 from fabrication.test_strips import sampled
-from lamella import Catenoid, Enneper, Section, Unduloid, find_material, make_lamellas, make_network, make_parts
-from lamella.fabrication import nest, read_slots, write_drawings, write_schedule
+from lamella import Catenoid, Enneper, Section, Unduloid, find_material
+from lamella.fabrication import make_parts, nest, read_slots, write_drawings, write_schedule
 from lamella.fabrication.axis import Axis, outline
 from lamella.fabrication.engraving import engrave
 from lamella.fabrication.flat import outline_area
 from lamella.fabrication.stroke_font import text_strokes
+from lamella.strip.lamellas import make_lamellas
 from lamella.strip.layers import SIDES
 from lamella.strip.unroll import develop
 
@@ -26,7 +28,7 @@ SURFACES = [Catenoid(2.0, (-1.5, 2.0)), Unduloid(1.0, 2.0, (-2.0, 3.0)), Enneper
 
 
 def built(surface, way, *, layers=2, cells=16, **options):
-    network = make_network(surface, cells=cells)
+    network = lamella.net(surface, cells=cells)
     section = Section(0.08, 0.001, layers, 0.03, layer_curves=way)
     lamellas = make_lamellas(network, section, STEEL, surface)
     return network, lamellas, make_parts(network, lamellas, density=7900.0, sheet=SHEET, **options)
@@ -40,7 +42,7 @@ def test_cut_outlines_are_the_layers_unrolled(surface):
     """
     worst = {}
     for offset in (0.04, 0.02):
-        network = make_network(surface, cells=16)
+        network = lamella.net(surface, cells=16)
         section = Section(0.08, 0.001, 2, offset, layer_curves="cut")
         lamellas = make_lamellas(network, section, STEEL)
         parts = make_parts(network, lamellas, density=7900.0, sheet=(60.0, 30.0))

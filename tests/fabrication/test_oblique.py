@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lamella import Catenoid, make_network
+import lamella
+from lamella import Catenoid
 from lamella.fabrication import Parts, make_parts
 from lamella.network.network import REGULAR, Network
 from lamella.strip.lamellas import Section, make_lamellas
@@ -16,7 +17,7 @@ SLOT = 0.002
 
 
 def parts_of(wanted: float | None) -> tuple[Network, Parts]:
-    network = make_network(Catenoid(1.0, (-0.5, 0.8)), cells=16, normal_curvature=wanted)
+    network = lamella.net(Catenoid(1.0, (-0.5, 0.8)), cells=16, normal_curvature=wanted)
     material = MATERIALS["1.4301"]
     parts = make_parts(
         network, make_lamellas(network, SECTION, material), density=material.density, slot_width=SLOT, sheet=(12.0, 2.0)

@@ -12,6 +12,7 @@ from lamella.network.network import BOUNDARY, REGULAR, SINGULAR, Network
 from lamella.network.pattern import LAMELLAS
 from lamella.strip.lamellas import Lamellas, Section
 from lamella.strip.layers import Layers
+from lamella.strip.material import find_material
 from lamella.surface.darboux import Darboux
 
 KINDS = {"o": REGULAR, "|": BOUNDARY, "+": BOUNDARY, "*": SINGULAR}
@@ -91,6 +92,8 @@ def build(strips, curvature=0.0, *, layers=2, height=0.1, thickness=0.0015, offs
     # what else a network tells of its making no part asks for
     network = Known(**{field.name: known.get(field.name) for field in fields(Network)} | {"pattern": LAMELLAS})
     lamellas = Lamellas(
+        network=network,
+        material=find_material("1.4301"),
         section=Section(height, thickness, layers, offset),
         bending=1e6 * ramp,
         torsion=2e6 * ramp,

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lamella import Catenoid, Enneper, Helicoid, Unduloid, make_network
+import lamella
+from lamella import Catenoid, Enneper, Helicoid, Unduloid
 from lamella.network.elements.element_network import element_network
 from lamella.network.network import Network
 from lamella.network.turning import turning
@@ -48,7 +49,7 @@ def test_exact_tangents(name: str) -> None:
     cells = np.array([16, 32, 64])
     errors = np.empty((2, len(cells)))
     for k, count in enumerate(cells.tolist()):
-        network = make_network(form, cells=count)
+        network = lamella.net(form, cells=count)
         error = np.abs(turned(network) - network.sample_darboux.kg)
         far = from_ends(network)
         errors[:, k] = error[far == 0].max(), error[far > 8].max()

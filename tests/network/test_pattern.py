@@ -15,19 +15,9 @@ import orjson
 import pytest
 from scipy.spatial import cKDTree
 
+import lamella
 from conftest import KINDS, draw_surface
-from lamella import (
-    Catenoid,
-    Cylinder,
-    Enneper,
-    Helicoid,
-    InputError,
-    Scherk,
-    Unduloid,
-    compute,
-    make_network,
-    parse_project,
-)
+from lamella import Catenoid, Cylinder, Enneper, Helicoid, InputError, Scherk, Unduloid, compute, parse_project
 from lamella.files.write.network_json import network_bytes, network_schema
 from lamella.network.cell_sizes import MOST_RATIO, large_cells
 from lamella.network.elements.element_network import ElementNetwork, element_network
@@ -82,8 +72,8 @@ def whole_cells(network: Network) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("surface", [Catenoid(1.0, (-1, 1.2)), Unduloid(0.6, 1.4, (-1, 2)), Enneper(3, 0.9)])
 def test_every_nth_curve_is_the_net_of_an_nfold_step(surface: Any, every: int) -> None:
     """l0 is whole length / cells, so every n-th of 24 curves are those of 24 / n cells; the origin is the same."""
-    thinned = make_network(surface, cells=24, every=(every, every))
-    coarse = make_network(surface, cells=24 // every)
+    thinned = lamella.net(surface, cells=24, every=(every, every))
+    coarse = lamella.net(surface, cells=24 // every)
     same_points(thinned.node_points, coarse.node_points, 1e-12)
     assert thinned.ids == coarse.ids
     assert len(thinned.face_nodes) == len(coarse.face_nodes)
@@ -99,8 +89,8 @@ def test_every_nth_curve_is_the_net_of_an_nfold_step(surface: Any, every: int) -
 def test_rectangles_of_any_surface(kind: str) -> None:
     rng = np.random.default_rng([KINDS.index(kind), 71])
     surface = draw_surface(kind, rng)
-    full = make_network(surface, cells=60, minimum_length=0)
-    some = make_network(surface, cells=60, every=(3, 2), minimum_length=0)
+    full = lamella.net(surface, cells=60, minimum_length=0)
+    some = lamella.net(surface, cells=60, every=(3, 2), minimum_length=0)
     _check_combinatorics(some, 0 if isinstance(surface.outline, Ring) else 1)
     size = np.linalg.norm(np.ptp(full.node_points, axis=0))
     distance, _ = cKDTree(inner(full)).query(inner(some))
@@ -113,7 +103,7 @@ def test_rectangles_of_any_surface(kind: str) -> None:
 
 
 def test_periods_count_the_curves_that_are_kept() -> None:
-    network = make_network(Catenoid(1.0, (-1, 1)), cells=24, every=(2, 3))
+    network = lamella.net(Catenoid(1.0, (-1, 1)), cells=24, every=(2, 3))
     ((_, a, b),) = network.periods
     assert (a, b) == pytest.approx((12, 8))
     assert (network.families == "A").sum() == 12
@@ -140,18 +130,18 @@ def test_a_hole_needs_a_multiple(cells: int, every: Any, told: str, remedy: str)
 
 def test_spacing_takes_a_multiple() -> None:
     for spacing in np.linspace(0.1, 0.4, 7):
-        network = make_network(Catenoid(1.0, (-1, 1)), spacing=float(spacing), every=(3, 2))
+        network = lamella.net(Catenoid(1.0, (-1, 1)), spacing=float(spacing), every=(3, 2))
         assert network.cells % 6 == 0
-        plain = make_network(Catenoid(1.0, (-1, 1)), spacing=float(spacing))
+        plain = lamella.net(Catenoid(1.0, (-1, 1)), spacing=float(spacing))
         assert abs(network.cells - plain.cells) <= 3 or network.cells == 18
 
 
 def test_only_the_family_that_is_crossed_needs_a_multiple() -> None:
     """Around the axis principal lines of one family are crossed; those of the other one run around it."""
-    network = make_network(Catenoid(1.0, (-1, 1)), cells=25, kind="principal", every=(2, 5))
+    network = lamella.net(Catenoid(1.0, (-1, 1)), cells=25, kind="principal", every=(2, 5))
     assert network.periods[0][1:] == pytest.approx((0, 5))
     with pytest.raises(InputError, match="no multiple of 2"):
-        make_network(Catenoid(1.0, (-1, 1)), cells=25, kind="principal", every=(5, 2))
+        lamella.net(Catenoid(1.0, (-1, 1)), cells=25, kind="principal", every=(5, 2))
 
 
 def test_fitting_cells() -> None:
@@ -173,7 +163,7 @@ def test_on_elements_as_on_the_closed_form(name: str, pattern: Pattern) -> None:
     """The singular node fixes the lattice; the nodes are the closed form's to 1e-5 of the size."""
     form, _ = FORMS[name]()
     net = on_elements(name, pattern).network
-    exact = make_network(form, cells=20, kind=pattern.kind, every=pattern.every)
+    exact = lamella.net(form, cells=20, kind=pattern.kind, every=pattern.every)
     size = float(np.linalg.norm(np.ptp(exact.node_points, axis=0)))
     off, _ = from_exact_nodes(form, net, net.step)
     assert off.max() < 1e-5 * size
@@ -224,7 +214,7 @@ def test_patterns_on_random_films(seed: int) -> None:
 def test_principal_combinatorics(kind: str, seed: int) -> None:
     rng = np.random.default_rng([seed, 72])
     surface, cells = draw_surface(kind, rng), int(rng.integers(16, 40))
-    network = make_network(surface, cells=cells, kind="principal", minimum_length=0)
+    network = lamella.net(surface, cells=cells, kind="principal", minimum_length=0)
     _check_combinatorics(network, 0 if isinstance(surface.outline, Ring) else 1)
     scale = max(np.abs(network.sample_darboux.kn).max(), 1e-9)
     assert np.abs(network.sample_darboux.tg).max() < 1e-11 * scale
@@ -240,7 +230,7 @@ def test_principal_combinatorics(kind: str, seed: int) -> None:
 def test_principal_lines_of_the_catenoid() -> None:
     """rho = c cosh u: parallels u = 2 pi k / cells and meridians, normal curvatures -+1 / (c cosh^2 u)."""
     c, cells = 1.5, 24
-    network = make_network(Catenoid(c, (-1.3, 2.1)), cells=cells, kind="principal")
+    network = lamella.net(Catenoid(c, (-1.3, 2.1)), cells=cells, kind="principal")
     parallels = network.closed
     assert (network.families == np.where(parallels, "A", "B")).all()
     assert (~parallels).sum() == cells
@@ -264,7 +254,7 @@ def test_a_parallel_on_the_rim_is_the_rim() -> None:
     """Height of five cells exactly: the rims are parallels of the net, and panels end there."""
     cells = 24
     height = 5 * 2 * np.pi / cells
-    network = make_network(Cylinder(1.0, (0.0, height)), cells=cells, kind="principal")
+    network = lamella.net(Cylinder(1.0, (0.0, height)), cells=cells, kind="principal")
     assert network.closed.sum() == 6
     assert (network.node_kinds == BOUNDARY).sum() == 2 * cells
     _check_combinatorics(network, 0)
@@ -274,7 +264,7 @@ def test_a_parallel_on_the_rim_is_the_rim() -> None:
 def test_rays_of_a_flat_point() -> None:
     """Around a zero of order m every family has m + 2 principal rays, alternating: index -m / 2 of both fields."""
     for order in (3, 4):
-        network = make_network(Enneper(order, 0.8, 3.0), cells=16, kind="principal")
+        network = lamella.net(Enneper(order, 0.8, 3.0), cells=16, kind="principal")
         a, b = network.node_degrees()
         (node,) = np.flatnonzero(network.node_kinds == SINGULAR)
         rays = order  # zero of order m = n - 2
@@ -296,7 +286,7 @@ def test_principal_panels_are_planar_to_a_higher_order(surface: Any) -> None:
 
     def rate(kind: Any) -> float:
         missed = [
-            principal_summary(make_network(surface, cells=int(c), kind=kind, minimum_length=0))["panel_planarity"]
+            principal_summary(lamella.net(surface, cells=int(c), kind=kind, minimum_length=0))["panel_planarity"]
             for c in sizes
         ]
         return -float(np.polyfit(np.log(sizes), np.log([m["median"] for m in missed]), 1)[0])
@@ -307,7 +297,7 @@ def test_principal_panels_are_planar_to_a_higher_order(surface: Any) -> None:
 
 def test_principal_lines_end_exactly_on_the_rim() -> None:
     def rim(surface: Any) -> np.ndarray:
-        network = make_network(surface, cells=21, kind="principal")
+        network = lamella.net(surface, cells=21, kind="principal")
         return network.node_points[network.node_kinds == BOUNDARY]
 
     p = rim(Scherk(1.3, 2.0))[:, :2] / 2
@@ -321,12 +311,12 @@ def test_principal_lines_end_exactly_on_the_rim() -> None:
 def test_cells_along_the_longest_principal_line(kind: str) -> None:
     """`cells` counts the same in both kinds of net; the principal one's edges are sqrt2 longer."""
     surface = draw_surface(kind, np.random.default_rng([KINDS.index(kind), 73]))
-    principal, lamellas = (make_network(surface, cells=40, kind=k) for k in ("principal", "lamellas"))
+    principal, lamellas = (lamella.net(surface, cells=40, kind=k) for k in ("principal", "lamellas"))
     assert principal.step == lamellas.step
     ratio = np.median(principal.cell_edges) / np.median(lamellas.cell_edges)
     assert ratio == pytest.approx(np.sqrt(2), rel=0.15)
     wanted = float(np.median(principal.cell_edges))
-    assert make_network(surface, spacing=wanted, kind="principal").cells == pytest.approx(40, abs=1)
+    assert lamella.net(surface, spacing=wanted, kind="principal").cells == pytest.approx(40, abs=1)
 
 
 # --- cells much larger than others ----------------------------------------------------------------------------------
@@ -334,8 +324,8 @@ def test_cells_along_the_longest_principal_line(kind: str) -> None:
 
 def test_large_cells_of_the_catenoid() -> None:
     """A cell edge is about l0 cosh(z) / sqrt2: only where cosh(z) is over four times the median is one told."""
-    assert large_cells(make_network(Catenoid(1.0, (-0.5, 2.0)), cells=24)) == (0, ())
-    network = make_network(Catenoid(1.0, (-0.5, 3.2)), cells=24)
+    assert large_cells(lamella.net(Catenoid(1.0, (-0.5, 2.0)), cells=24)) == (0, ())
+    network = lamella.net(Catenoid(1.0, (-0.5, 3.2)), cells=24)
     count, places = large_cells(network)
     edges = network.cell_edges
     assert count == (edges > MOST_RATIO * np.median(edges)).sum() > 0
@@ -344,7 +334,7 @@ def test_large_cells_of_the_catenoid() -> None:
     for place in places:
         assert place.edge == pytest.approx(network.step / np.sqrt(2) * np.cosh(place.point[2]), rel=0.03)
     # unequal families are no large cells
-    assert large_cells(make_network(Catenoid(1.0, (-0.5, 0.5)), cells=60, every=(6, 1))) == (0, ())
+    assert large_cells(lamella.net(Catenoid(1.0, (-0.5, 0.5)), cells=60, every=(6, 1))) == (0, ())
 
 
 def test_large_cells_are_told_with_place_and_size() -> None:
@@ -390,14 +380,14 @@ def test_no_strips_on_principal_lines(until: str) -> None:
 
 def test_strips_are_refused_as_a_function_too() -> None:
     section = Section(0.1, 0.0015, 1, 0.025)
-    network = make_network(Catenoid(1.0, (-0.5, 0.5)), cells=12, kind="principal")
+    network = lamella.net(Catenoid(1.0, (-0.5, 0.5)), cells=12, kind="principal")
     with pytest.raises(InputError, match="there are no strips for this net"):
         make_lamellas(network, section, MATERIALS["S355"])
 
 
 def test_the_files_tell_the_kind() -> None:
     for kind in ("principal", "lamellas"):
-        written = orjson.loads(network_bytes(make_network(Enneper(3, 0.9), cells=8, kind=kind), name="", version="0"))
+        written = orjson.loads(network_bytes(lamella.net(Enneper(3, 0.9), cells=8, kind=kind), name="", version="0"))
         jsonschema.Draft202012Validator(network_schema()).validate(written)
         assert written.get("kind", "lamellas") == kind
 
@@ -431,6 +421,6 @@ def test_adjust_is_not_for_lines_of_other_normal_curvature() -> None:
 
 
 def test_summary_of_lamellas_has_no_panels() -> None:
-    told = network_summary(make_network(Enneper(3, 0.9), cells=8), "cells = 8")
+    told = network_summary(lamella.net(Enneper(3, 0.9), cells=8), "cells = 8")
     assert (told["kind"], told["every"]) == ("lamellas", [1, 1])
     assert "panel_planarity" not in told

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lamella import Catenoid, Enneper, Unduloid, compute, make_network, parse_project
+import lamella
+from lamella import Catenoid, Enneper, Unduloid, compute, parse_project
 from lamella.files.write.network_json import network_bytes
 from lamella.network.written_lines import WrittenLines
 from validation.measure_network import measure
@@ -20,7 +21,7 @@ def test_smooth_lines_bend_with_the_mean_curvature(surface) -> None:
     """kn = H on every lamella, open and closed ones, which cross at 90 degrees: by the fourth power of the distance."""
     errors = []
     for cells in (6, 12):
-        network = make_network(surface, cells=cells)
+        network = lamella.net(surface, cells=cells)
         written = WrittenLines.of(network)
         off = np.abs(90 - written.node_angles(network)).max()
         errors.append((written.bend_off(network, surface.mean_curvature).max(), off))
@@ -32,7 +33,7 @@ def test_smooth_lines_bend_with_the_mean_curvature(surface) -> None:
 
 def test_weights_are_the_published_ones() -> None:
     """Savitzky and Golay, Anal. Chem. 36 (1964), table of second derivatives of a quartic over seven points."""
-    network = make_network(Catenoid(1.0, (-1.0, 1.2)), cells=12)
+    network = lamella.net(Catenoid(1.0, (-1.0, 1.2)), cells=12)
     before = WrittenLines.of(network)
     first, last = network.sample_offsets[:2]
     middle = (first + last) // 2
@@ -48,7 +49,7 @@ def test_weights_are_the_published_ones() -> None:
 
 def test_samples_in_one_place_tell_nothing_new() -> None:
     """No division by zero where samples coincide: what the others tell is left."""
-    network = make_network(Catenoid(1.0, (-1.0, 1.2)), cells=10)
+    network = lamella.net(Catenoid(1.0, (-1.0, 1.2)), cells=10)
     first, last = network.sample_offsets[:2]
     middle = (first + last) // 2
     points = network.sample_points.copy()
@@ -63,7 +64,7 @@ def test_lines_that_turn_sharply_are_traced_as_exactly_as_others() -> None:
 
     Their samples turn by up to 0.06 from one to the next: chords are shorter than arcs by 0.06^2 / 24 of them.
     """
-    network = make_network(Enneper(3, 0.8), cells=16, normal_curvature=0.1)
+    network = lamella.net(Enneper(3, 0.8), cells=16, normal_curvature=0.1)
     assert np.abs(network.sample_darboux.kg).max() > 5
     written = WrittenLines.of(network)
     assert written.bend_off(network, 0.1).max() < 2e-4

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from conftest import KINDS, draw_places, draw_surface
-from lamella import Catenoid, Unduloid, make_loop
+from lamella import Catenoid, Unduloid
 from lamella.projection import constraints as package
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.closeness import Closeness
@@ -43,6 +43,7 @@ from lamella.projection.curve_feet import LineFeet, LoopFeet, SplineFeet
 from lamella.projection.foot_points import MeshFeet, foot_surface
 from lamella.projection.solve import LEAST_DAMPING, solve
 from lamella.projection.unknowns import Block
+from lamella.surface.boundary import make_loop
 from lamella.surface.boundary.arcs import circle
 from surface.element.exact_elements import catenoid_map, whole_catenoid
 

@@ -11,12 +11,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from lamella import InputError, Unduloid, find_film, make_loop
+from lamella import InputError, Unduloid
 from lamella.network.elements.element_network import element_network
 from lamella.projection.foot_points import MeshFeet, foot_surface
 from lamella.projection.problems.planar_strips import PlanarStrips, planar_strips
 from lamella.strip.planarity import planarity_score
+from lamella.surface.boundary import make_loop
 from lamella.surface.boundary.splines import closed_spline
+from lamella.surface.form_finding.find import find_film
 
 UNDULOID = Unduloid(0.6, 1.4, (-8.0, 8.0))
 HALF = UNDULOID.period / 2

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lamella import Catenoid, Enneper, Helicoid, Nodoid, Unduloid, make_network
+import lamella
+from lamella import Catenoid, Enneper, Helicoid, Nodoid, Unduloid
 from lamella.network.elements.element_network import element_network
 from lamella.network.lattice.density import choose_density
 from lamella.network.lattice.trace import trace_closed_form
@@ -104,20 +105,20 @@ def test_slopes_of_lines_by_differences():
 def test_closed_forms():
     """Catenoid: tg = 1 / (c cosh^2 u); Delaunay: -+T / r^2; du/ds = 1 / (sqrt2 lambda) along lamellas upwards."""
     c = 1.3
-    network = make_network(Catenoid(c, (-1.0, 1.4)), cells=20)
+    network = lamella.net(Catenoid(c, (-1.0, 1.4)), cells=20)
     u = network.sample_points[:, 2] / c
     expected = np.sqrt(2) * np.tanh(u) / (c**2 * np.cosh(u) ** 3)
     up = np.sign(network.sample_tangents[:, 2])
     sense = np.sign(network.sample_darboux.tg)
     np.testing.assert_allclose(network.sample_slopes, -up * sense * expected, atol=1e-13)
     for surface in (Unduloid(0.6, 1.2, (-0.9, 1.3)), Nodoid(0.8, 2.0, (-0.3, 0.25))):
-        network = make_network(surface, cells=20)
+        network = lamella.net(surface, cells=20)
         r = np.hypot(*network.sample_points.T[:2])
         # dr/ds by the tangent
         outwards = (network.sample_points[:, :2] * network.sample_tangents[:, :2]).sum(1) / r
         expected = -2 * np.sign(network.sample_darboux.tg) * abs(surface.flux) / r**3 * outwards
         np.testing.assert_allclose(network.sample_slopes, expected, atol=1e-12)
-    helicoid = make_network(Helicoid(5.0, 1.0, 4.0, 1.0), cells=10)
+    helicoid = lamella.net(Helicoid(5.0, 1.0, 4.0, 1.0), cells=10)
     helix = np.abs(helicoid.sample_darboux.kg) > 1e-9
     assert np.abs(helicoid.sample_slopes[helix]).max() < 1e-13
 
@@ -132,7 +133,7 @@ def ray_ends(network: Network) -> np.ndarray:
 def test_enneper(order: int):
     """H^2 - K = (2 (n - 1) r^(n-2) / (1 + r^(2n-2))^2)^2: tg along a ray, straight in the parameters, has no kink."""
     surface = Enneper(order, 0.8, 2.0)
-    network = make_network(surface, cells=16)
+    network = lamella.net(surface, cells=16)
     r = np.abs(network.sample_where)
     at = surface.at(network.sample_where)
     expected = (

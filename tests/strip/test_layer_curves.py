@@ -9,6 +9,7 @@ import pytest
 import rhino3dm
 from scipy.interpolate import CubicSpline
 
+import lamella
 from lamella import (
     Catenoid,
     Enneper,
@@ -19,15 +20,13 @@ from lamella import (
     Unduloid,
     compute,
     find_material,
-    make_lamellas,
-    make_network,
-    make_parts,
     parse_project,
     write,
 )
+from lamella.fabrication import make_parts
 from lamella.network.elements.element_network import element_network
 from lamella.network.network import Network
-from lamella.strip.lamellas import crossings
+from lamella.strip.lamellas import crossings, make_lamellas
 from lamella.strip.unroll import development_deviation
 from network.elements.test_element_network import catenoid
 
@@ -42,7 +41,7 @@ def lines(network: Network) -> list[slice]:
 @pytest.mark.parametrize("surface", [Catenoid(2.0, (-1.5, 2.0)), Unduloid(1.0, 2.0, (-2.0, 3.0))], ids=lambda s: s.kind)
 def test_their_curves_are_lamellas(surface):
     """On surfaces of revolution u + v or u - v is U +- V up to a factor: constant along each layer."""
-    network = make_network(surface, cells=20)
+    network = lamella.net(surface, cells=20)
     layers = make_lamellas(network, SECTION, STEEL, surface).layers
     for points, offset in zip(layers.points, SECTION.layer_offsets, strict=True):
         angle = np.arctan2(points[:, 1], points[:, 0])
@@ -120,7 +119,7 @@ def meeting_gaps(network: Network, lamellas: Lamellas) -> np.ndarray:
     ids=lambda s: s.kind,
 )
 def test_slots_are_where_layers_cross(surface):
-    network = make_network(surface, cells=20)
+    network = lamella.net(surface, cells=20)
     lamellas = make_lamellas(network, SECTION, STEEL, surface)
     assert meeting_gaps(network, lamellas).max() < 2e-5
     assert lamellas.layer.max() == 0
@@ -156,7 +155,7 @@ def test_on_elements():
 def test_next_to_a_singular_node():
     """Rays: their layers turn away from them at the node. Strips end where neighbours are clear of each other."""
     surface = Enneper(3, 0.8, 3.0)
-    network = make_network(surface, cells=16)
+    network = lamella.net(surface, cells=16)
     lamellas = make_lamellas(network, SECTION, STEEL, surface)
     assert np.isfinite(lamellas.layers.stations).all()
     parts = make_parts(network, lamellas, density=7900.0)
@@ -211,5 +210,5 @@ def test_lines_of_another_normal_curvature_have_none():
         make_lamellas(network, SECTION, STEEL, surface)
     assert caught.value.where == "lamella.layer_curves"
     with pytest.raises(InputError) as caught:
-        make_lamellas(make_network(surface, cells=24), SECTION, STEEL)
+        make_lamellas(lamella.net(surface, cells=24), SECTION, STEEL)
     assert caught.value.where == "lamella.layer_curves"

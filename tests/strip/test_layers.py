@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from lamella import Catenoid, Helicoid, Section, Unduloid, find_material, make_lamellas, make_network, make_parts
+import lamella
+from lamella import Catenoid, Helicoid, Section, Unduloid, find_material
+from lamella.fabrication import make_parts
 from lamella.fabrication.stroke_font import GLYPHS
-from lamella.strip.lamellas import layer_drift
+from lamella.strip.lamellas import layer_drift, make_lamellas
 
 STEEL = find_material("1.4301")
 
@@ -14,7 +16,7 @@ STEEL = find_material("1.4301")
 def test_own_lengths_are_those_of_the_curves_to_the_side(surface):
     """Against the chords of c + d u, d to the side of the written centre line."""
     section = Section(layers=3, offset=0.04, layer_lengths="own")
-    network = make_network(surface, cells=24)
+    network = lamella.net(surface, cells=24)
     lamellas = make_lamellas(network, section, STEEL)
     sideways = np.cross(network.sample_normals, network.sample_tangents)
     for d, stations in zip(section.layer_offsets, lamellas.layer_stations, strict=True):
@@ -29,14 +31,14 @@ def test_own_lengths_are_those_of_the_curves_to_the_side(surface):
 
 
 def test_layers_alike_share_the_centre_lines_marks():
-    network = make_network(Catenoid(2.0, (-1.5, 2.0)), cells=24)
+    network = lamella.net(Catenoid(2.0, (-1.5, 2.0)), cells=24)
     lamellas = make_lamellas(network, Section(layers=2), STEEL)
     assert (lamellas.layer_stations == network.stop_arclengths).all()
 
 
 def test_drift_of_layers_cut_alike():
     """A helix of the helicoid turns by the integral of kg: its layers differ in length by that times their distance."""
-    network = make_network(Helicoid(5.0, 1.0, 4.0, 1.0), cells=10)
+    network = lamella.net(Helicoid(5.0, 1.0, 4.0, 1.0), cells=10)
     lamellas = make_lamellas(network, Section(layers=2, offset=0.03, layer_lengths="own"), STEEL)
     ends = network.stop_offsets[1:] - 1
     difference = np.abs(np.diff(lamellas.layer_stations, axis=0)[0][ends])
@@ -47,7 +49,7 @@ def test_drift_of_layers_cut_alike():
 
 
 def test_own_layers_are_parts_of_their_own():
-    network = make_network(Catenoid(2.0, (-1.5, 2.0)), cells=24)
+    network = lamella.net(Catenoid(2.0, (-1.5, 2.0)), cells=24)
     lamellas = make_lamellas(network, Section(layers=2, layer_lengths="own"), STEEL)
     parts = make_parts(network, lamellas, density=7900.0)
     assert [part.id for part in parts.parts[:4]] == ["A1-1", "A1-2", "A2-1", "A2-2"]

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+import lamella
 from conftest import draw_surface
-from lamella import Section, Unduloid, find_material, make_lamellas, make_network
+from lamella import Section, Unduloid, find_material
+from lamella.strip.lamellas import make_lamellas
 from lamella.strip.planarity import planarity_score
 from lamella.strip.unroll import develop, developed_line, development_deviation
 
@@ -45,7 +47,7 @@ def test_wrong_radius_is_seen():
 def test_ten_metre_lamellas_unroll_to_a_tenth_of_a_millimetre(kind, cells):
     rng = np.random.default_rng([cells, 4])
     surface = draw_surface(kind, rng)
-    network = make_network(surface, cells=cells)
+    network = lamella.net(surface, cells=cells)
     scale = 10 / network.lengths.max()
     deviation = development_deviation(
         network.sample_points * scale, network.sample_normals, network.sample_offsets, network.mean_curvature / scale
@@ -71,7 +73,7 @@ def test_relaxed_marks_are_longer_by_the_shortening():
     """On a cylinder tg = 1/(2 R) all along, so every distance grows by the factor 1 + h^2 tg^2 / 24."""
     from lamella import Cylinder
 
-    network = make_network(Cylinder(0.5, (0, 2)), cells=20)
+    network = lamella.net(Cylinder(0.5, (0, 2)), cells=20)
     steel = find_material("1.4301")
     plain = make_lamellas(network, Section(), steel)
     relaxed = make_lamellas(network, Section(marks="relaxed"), steel)
@@ -82,7 +84,7 @@ def test_relaxed_marks_are_longer_by_the_shortening():
 
 
 def test_relaxed_marks_where_the_twist_varies():
-    network = make_network(Unduloid(0.5, 1.5, (-2, 2)), cells=24)
+    network = lamella.net(Unduloid(0.5, 1.5, (-2, 2)), cells=24)
     relaxed = make_lamellas(network, Section(marks="relaxed"), find_material("1.4301"))
     a, b = network.sample_offsets[:2]
     s, tg = network.sample_arclengths[a:b], network.sample_darboux.tg[a:b]
@@ -95,6 +97,6 @@ def test_relaxed_marks_where_the_twist_varies():
 def test_strip_higher_than_its_own_circle_is_refused():
     from lamella import InputError
 
-    network = make_network(Unduloid(0.02, 0.03, (-0.05, 0.05)), cells=12)
+    network = lamella.net(Unduloid(0.02, 0.03, (-0.05, 0.05)), cells=12)
     with pytest.raises(InputError, match=r"height = 0\.1 m: strips of radius 0\.05 m"):
         make_lamellas(network, Section(), find_material("1.4301"))

@@ -12,15 +12,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import lamella
 from conftest import KINDS, draw_surface, load
-from lamella import Catenoid, Enneper, Helicoid, Nodoid, Scherk, Unduloid, make_network
+from lamella import Catenoid, Enneper, Helicoid, Nodoid, Scherk, Unduloid
 from lamella.files.write.network_json import network_bytes
 from lamella.network.lattice.density import choose_density
 from validation.measure_network import measure
 
 
 def _measured(surface, cells):
-    network = make_network(surface, cells=cells)
+    network = lamella.net(surface, cells=cells)
     return network, measure(json.loads(network_bytes(network, name="ruler", version="0")))
 
 
@@ -80,7 +81,7 @@ def test_ruler_agrees_at_200_cells(surface):
 
 def test_ruler_sees_a_wrong_network():
     """The ruler is no rubber stamp: a node moved by a millimetre and a swapped family show."""
-    network = make_network(draw_surface("catenoid", np.random.default_rng(5)), cells=24)
+    network = lamella.net(draw_surface("catenoid", np.random.default_rng(5)), cells=24)
     content = json.loads(network_bytes(network, name="ruler", version="0"))
     content["lamellas"][0]["family"] = "B"
     content["nodes"][5]["point"][0] += 1e-3

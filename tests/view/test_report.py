@@ -12,7 +12,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from lamella.network.make import make_network
+import lamella
 from lamella.strip.lamellas import Section, make_lamellas
 from lamella.strip.material import find_material
 from lamella.surface.closed_forms.catenoid import Catenoid
@@ -69,7 +69,7 @@ class Page(HTMLParser):
 @pytest.fixture(scope="module")
 def full():
     surface = Catenoid(2.0, (-1.2, 2.2))
-    network = make_network(surface, cells=12)
+    network = lamella.net(surface, cells=12)
     lamellas = make_lamellas(network, Section(), find_material("1.4301"))
     return ReportData(
         name="Oculus",

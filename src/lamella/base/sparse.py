@@ -121,6 +121,10 @@ class SymmetricPattern:
     _border_target: Integers = field(repr=False)  # (border, size) entries of the border's rows
     _symbolic: dict[str, Any] = field(default_factory=dict, repr=False)
 
+    def __getstate__(self) -> dict[str, Any]:
+        # the solver's analysis is its own memory, and made again by the next factorisation
+        return vars(self) | {"_symbolic": {}}
+
     @classmethod
     def from_elements(
         cls, unknowns: Integers, count: int, *, border: int = 0, backend: Backend | None = None

@@ -7,6 +7,9 @@ from numpy.typing import ArrayLike
 
 from lamella.base.arrays import Floats
 
+# straight parts of an arc in pictures
+ARC_PARTS = 8
+
 
 def outline_area(vertices: Floats) -> float:
     """Area in m2 of a closed outline of straight lines and arcs, (v, 3), see `lamella.fabrication.axis.outline`."""
@@ -20,6 +23,18 @@ def outline_area(vertices: Floats) -> float:
     arcs = square * (1 + safe**2) ** 2 / (32 * safe**2) * (angle - np.sin(angle))
     segments = np.where(flat, square * bulge / 3, arcs)
     return float(0.5 * np.sum(x * next_y - next_x * y) + np.sum(segments))
+
+
+def outline_points(vertices: Floats) -> Floats:
+    """Points (n, 2) of an outline, m, closed by its first one: its arcs in `ARC_PARTS` straight parts each."""
+    corners = vertices[:, 0] + 1j * vertices[:, 1]
+    half = 2 * np.arctan(vertices[:, 2])[:, None]
+    share = np.arange(ARC_PARTS) / ARC_PARTS
+    # the chord to a share of the arc, over the whole chord
+    part = share * np.sinc(half * share / np.pi) / np.sinc(half / np.pi) * np.exp(1j * half * (share - 1))
+    points = corners[:, None] + (np.roll(corners, -1) - corners)[:, None] * part
+    kept = np.append(points[(half != 0) | (share == 0)], corners[0])
+    return np.column_stack([kept.real, kept.imag])
 
 
 def extents(lengths: ArrayLike, height: float, curvature: float) -> tuple[Floats, Floats]:

@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.message import Message
+from lamella.base.onward import onward
+from lamella.base.result import Shown
+from lamella.base.wording import counted
 from lamella.fabrication.axis import Axis
 from lamella.fabrication.flat import extents
+
+if TYPE_CHECKING:
+    from lamella.fabrication.sheet import Nesting
+
 
 # points an arc whose bounds and distances are taken from them
 BOUND_POINTS = 33
 
 
-@dataclass(frozen=True)
-class Part:
+@dataclass(frozen=True, eq=False, repr=False)
+class Part(Shown):
     """One flat strip to be cut, or one piece of a lamella that had to be split.
 
     Stations run along the developed centre line from the lamella's first node, in m. The part's own drawing frame is
@@ -83,6 +91,9 @@ class Part:
     area: float
     mass: float
 
+    def _line(self) -> str:
+        return f"{self.label}: {self.length:.4g} m, {counted(len(self.slots), 'slot')}, {self.mass:.4g} kg"
+
     @property
     def start(self) -> float:
         """Station of the strip's start, m."""
@@ -140,8 +151,8 @@ class Part:
         return float(np.abs(across).max())
 
 
-@dataclass(frozen=True)
-class Parts:
+@dataclass(frozen=True, eq=False, repr=False)
+class Parts(Shown):
     """All parts of a structure.
 
     Attributes
@@ -157,6 +168,29 @@ class Parts:
     parts: tuple[Part, ...]
     warnings: tuple[Message, ...]
     colliding: bool = False
+
+    def _line(self) -> str:
+        return f"{counted(len(self.parts), 'part')}, {counted(self.pieces, 'piece')}, {self.mass:.4g} kg"
+
+    def nest(self, *, sheet: tuple[float, float] = (12.0, 2.0), gap: float = 0.01) -> Nesting:
+        """All pieces laid on sheets.
+
+        Parameters
+        ----------
+        sheet : (float, float)
+            Length and width, m; the longer one is laid along x.
+        gap : float
+            Between pieces and to the sheet's edge, m.
+
+        Examples
+        --------
+        >>> import lamella
+        >>> parts = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12).strips().parts()
+        >>> parts.nest(sheet=(12.0, 1.5))
+        Nesting(48 pieces on 2 sheets)
+        """
+        nesting: Nesting = onward("lamella.fabrication.sheet.nest")(self, sheet=sheet, gap=gap)
+        return nesting
 
     @property
     def mass(self) -> float:

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from bisect import bisect_left, insort
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import cos, sin, sqrt
 
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
+from lamella.base.result import Shown
+from lamella.base.wording import counted
 from lamella.fabrication.part import Part, Parts
 
 
-@dataclass(frozen=True)
-class Nesting:
+@dataclass(frozen=True, eq=False, repr=False)
+class Nesting(Shown):
     """Places of all pieces, (p,) arrays; pieces of one part follow each other in the order of the parts.
 
     Attributes
@@ -33,6 +35,8 @@ class Nesting:
         Length and width of each sheet, m; larger than asked for where a part does not fit otherwise.
     gap : float
         Between pieces and to the sheet's edge, m.
+    source : Parts
+        The parts.
     """
 
     parts: Integers
@@ -43,6 +47,10 @@ class Nesting:
     rotations: Floats
     sizes: Floats
     gap: float
+    source: Parts = field(compare=False)
+
+    def _line(self) -> str:
+        return f"{counted(len(self.parts), 'piece')} on {counted(self.sheet_count, 'sheet')}"
 
     @property
     def sheet_count(self) -> int:
@@ -120,6 +128,7 @@ def nest(parts: Parts, *, sheet: tuple[float, float] = (12.0, 2.0), gap: float =
         np.where(turned, 180.0, 0.0),
         np.array(plan.sizes, dtype=float).reshape(-1, 2)[order],
         gap,
+        parts,
     )
 
 

@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.message import Message
+from lamella.base.onward import onward
+from lamella.base.result import Shown
+from lamella.base.wording import counted
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.darboux import Darboux
 
 A, B = range(2)
 FAMILIES = ("A", "B")
+if TYPE_CHECKING:
+    from lamella.strip.lamellas import Lamellas, Section
+    from lamella.strip.material import Material
+    from lamella.surface.surface import Surface
+
 NODE_KINDS = ("regular", "boundary", "singular", "seam")
 REGULAR, BOUNDARY, SINGULAR, SEAM = range(4)
 
@@ -26,8 +35,8 @@ class Period(NamedTuple):
     b_cells: float
 
 
-@dataclass(frozen=True)
-class Network:
+@dataclass(frozen=True, eq=False, repr=False)
+class Network(Shown):
     """A net of lamella centre lines on a surface of mean curvature H.
 
     Lists of unequal length are stored one after the other: item ``k`` of a list with ``offsets`` is
@@ -88,6 +97,12 @@ class Network:
         A node of each face with more corners than are written.
     pattern : Pattern
         Which curves of the isothermic lattice these are.
+    surface : Surface, optional
+        The surface it lies on, where `lamella.net` made it.
+    figures : dict
+        What `describe` returns.
+    notes : tuple of str
+        What `warnings` returns.
     """
 
     mean_curvature: float
@@ -118,6 +133,51 @@ class Network:
     face_nodes: Integers
     faces_left_out: Integers
     pattern: Pattern = LAMELLAS
+    surface: Surface[Any] | None = field(default=None, compare=False)
+    figures: dict[str, Any] = field(default_factory=dict, compare=False)
+    notes: tuple[Message, ...] = field(default=(), compare=False)
+
+    def _line(self) -> str:
+        what = "lamella" if self.pattern.kind == "lamellas" else "principal line"
+        return (
+            f"{self.cells} cells: {counted(len(self.ids), what)}, {counted(len(self.node_points), 'node')}, "
+            f"{counted(len(self.face_offsets) - 1, 'face')}"
+        )
+
+    def describe(self) -> dict[str, Any]:
+        """Further figures: umbilics, what is missing where the net does not close, corners (docs/files.md)."""
+        return dict(self.figures)
+
+    def warnings(self) -> tuple[Message, ...]:
+        """What a user should know about this net before building it."""
+        return self.notes
+
+    def strips(
+        self, section: Section | tuple[float, float] = (0.1, 0.0015), material: Material | str = "1.4301"
+    ) -> Lamellas:
+        """Flat strips that stand normal to the surface along every lamella, with their stresses.
+
+        Parameters
+        ----------
+        section : Section or (float, float)
+            Height and thickness, m, two layers 25 mm apart; or all of it as a `lamella.Section`.
+        material : Material or str
+            Or its name, one of those of `lamella.find_material`.
+
+        Raises
+        ------
+        InputError
+            The strips are as high as their radius; principal lines have none; an unknown material.
+
+        Examples
+        --------
+        >>> import lamella
+        >>> net = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12)
+        >>> net.strips((0.1, 0.0015), "S355")
+        Lamellas(24 lamellas of 2 x 100 x 1.5 mm, 174.4 m, utilisation up to 0.40)
+        """
+        lamellas: Lamellas = onward("lamella.strip.lamellas.strips_of")(self, section, material)
+        return lamellas
 
     @property
     def normal_curvature(self) -> float:

@@ -19,13 +19,15 @@ from scipy.sparse.csgraph import connected_components
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
+from lamella.base.result import Shown
+from lamella.base.wording import counted
 
 # an edge of this share of its length is none any more
 COLLAPSED = 1e-3
 
 
-@dataclass(frozen=True)
-class QuadMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class QuadMesh(Shown):
     """Vertices and consistently oriented quads, see `quad_mesh`.
 
     Attributes
@@ -40,6 +42,9 @@ class QuadMesh:
     vertices: Floats
     faces: Integers
     twin: Integers
+
+    def _line(self) -> str:
+        return f"{counted(len(self.vertices), 'vertex', 'vertices')}, {counted(len(self.faces), 'face')}"
 
     @cached_property
     def tail(self) -> Integers:

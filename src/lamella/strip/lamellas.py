@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
 from lamella.base.errors import InputError, require_positive
-from lamella.base.wording import rounded
+from lamella.base.onward import onward
+from lamella.base.result import Shown
+from lamella.base.wording import counted, rounded
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.layer_curves import lamella_layers
 from lamella.strip.layers import LayerCurves, Layers, at_stops, parallel_layers, running
-from lamella.strip.material import Material
+from lamella.strip.material import Material, find_material
 from lamella.strip.planarity import planarity_score
 from lamella.strip.stress import shortening, stresses
 from lamella.surface.surface import Surface
+
+if TYPE_CHECKING:
+    from lamella.fabrication.part import Parts
 
 Marks = Literal["arc-length", "relaxed"]
 LayerLengths = Literal["alike", "own"]
@@ -80,8 +85,8 @@ class Section:
                 raise InputError(f"{key} = {value!r}", f"choose one of {', '.join(known)}", f"lamella.{key}")
 
 
-@dataclass(frozen=True)
-class Lamellas:
+@dataclass(frozen=True, eq=False, repr=False)
+class Lamellas(Shown):
     """Flat strips that stand normal to the surface along the centre lines of a network.
 
     Arrays of shape (k,) run over the network's samples, (q,) over its stops, (m,) over its lamellas. The
@@ -89,7 +94,9 @@ class Lamellas:
 
     Attributes
     ----------
+    network : Network
     section : Section
+    material : Material
     bending, torsion : (k,)
         Weak-axis bending stress E t |kg| / 2 and St-Venant shear G t |tg|, Pa.
     layer : (k,)
@@ -116,7 +123,9 @@ class Lamellas:
         Length of the developed centre line from first to last node, m.
     """
 
+    network: Network = field(compare=False)
     section: Section
+    material: Material
     bending: Floats
     torsion: Floats
     layer: Floats
@@ -130,6 +139,56 @@ class Lamellas:
     stop_stations: Floats
     layers: Layers
     developed_lengths: Floats
+
+    def _line(self) -> str:
+        section = self.section
+        return (
+            f"{counted(len(self.developed_lengths), 'lamella')} of {section.layers} x {1e3 * section.height:g} x "
+            f"{1e3 * section.thickness:g} mm, {self.developed_lengths.sum():.4g} m, utilisation up to "
+            f"{self.utilisation.max(initial=0.0):.2f}"
+        )
+
+    def parts(
+        self,
+        *,
+        end_distance: float | None = None,
+        rim_overhang: float = 0.01,
+        hub_radius: float | None = None,
+        slot_width: float | None = None,
+        sheet: tuple[float, float] = (12.0, 2.0),
+        gap: float = 0.01,
+    ) -> Parts:
+        """Flat parts of every lamella, with their slots.
+
+        Parameters
+        ----------
+        end_distance, rim_overhang, hub_radius, slot_width, sheet, gap
+            m, see `lamella.fabrication.parts.make_parts`.
+
+        Raises
+        ------
+        InputError
+            Where the measures contradict each other.
+
+        Examples
+        --------
+        >>> import lamella
+        >>> strips = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12).strips()
+        >>> strips.parts()
+        Parts(24 parts, 48 pieces, 414.3 kg)
+        """
+        parts: Parts = onward("lamella.fabrication.parts.make_parts")(
+            self.network,
+            self,
+            density=self.material.density,
+            end_distance=end_distance,
+            rim_overhang=rim_overhang,
+            hub_radius=hub_radius,
+            slot_width=slot_width,
+            sheet=sheet,
+            gap=gap,
+        )
+        return parts
 
     @property
     def layer_stations(self) -> Floats:
@@ -211,7 +270,9 @@ def make_lamellas(
     lengthening = np.zeros_like(tg) if held else shortening(section.height, tg)
     stations = network.stop_arclengths + at_stops(network, running(network, lengthening))
     return Lamellas(
+        network,
         section,
+        material,
         s.bending,
         s.torsion,
         s.layer,
@@ -226,6 +287,13 @@ def make_lamellas(
         _layers(network, section, lengthening, surface),
         stations[network.stop_offsets[1:] - 1],
     )
+
+
+def strips_of(network: Network, section: Section | tuple[float, float], material: Material | str) -> Lamellas:
+    """What `Network.strips` does."""
+    section = section if isinstance(section, Section) else Section(*section)
+    material = find_material(material) if isinstance(material, str) else material
+    return make_lamellas(network, section, material, network.surface)
 
 
 def _layers(network: Network, section: Section, lengthening: Floats, surface: Surface[Any] | None) -> Layers:

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
+from lamella.base.result import Shown
+from lamella.base.wording import counted
 
 
-@dataclass(frozen=True)
-class SurfaceMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class SurfaceMesh(Shown):
     """Vertices on the surface with their curvatures, and faces.
 
     Attributes
@@ -30,6 +32,9 @@ class SurfaceMesh:
     gaussian_curvature: Floats
     k1: Floats
     k2: Floats
+
+    def _line(self) -> str:
+        return f"{counted(len(self.points), 'point')}, {counted(len(self.faces), 'face')}"
 
     def sag(self) -> float:
         """Largest distance of the faces from the surface, estimated from the vertices' normals, m.

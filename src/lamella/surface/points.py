@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats
+from lamella.base.result import Result
 from lamella.base.vectors import symmetric
+from lamella.base.wording import counted
 
 
-@dataclass(frozen=True)
-class SurfacePoints:
+@dataclass(frozen=True, eq=False, repr=False)
+class SurfacePoints(Result):
     """Points of a surface in bulk; tangent vectors are complex numbers: h means Re(h) e_u + Im(h) e_v.
 
     Attributes
@@ -35,6 +37,9 @@ class SurfacePoints:
     mean_curvature: Floats
     deviator: Complexes
     log_mu_gradient: Complexes
+
+    def _line(self) -> str:
+        return counted(len(self.position), "point")
 
     def vector(self, components: Complexes) -> Floats:
         """Tangent vectors in space, (n, 3)."""

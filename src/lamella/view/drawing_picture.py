@@ -60,7 +60,7 @@ def draw_sheets(drawing: Path, path: Path, *, sheets: int = 2, width: int = 1200
             low = frame.min(0)
             inside = [c for c in curves if c.layer != "SHEET" and _within(c.points, low, low + extent)]
             shift = np.array([margin, top - heading - float(extent[1])]) - low
-            _put_curves(axes, [_Curve("SHEET", True, frame, ""), *inside], shift, fill=True, line=0.7)
+            put_curves(axes, [Curve("SHEET", True, frame, ""), *inside], shift, fill=True, line=0.7)
             label = f"sheet {number}: {extent[0]:,.0f} x {extent[1]:,.0f} mm"
             axes.text(margin, top - 0.75 * heading, label, fontsize=11, color=INK)
             top -= float(extent[1]) + heading
@@ -103,17 +103,17 @@ def draw_part(
     own = _level([curve for curve in curves if curve.part == name])
     with new_figure(size) as figure:
         whole = figure.add_axes((0.02, 0.66, 0.96, 0.32))
-        _put_curves(whole, own, np.zeros(2), fill=True, line=0.7)
+        put_curves(whole, own, np.zeros(2), fill=True, line=0.7)
         frame(whole, np.concatenate([curve.points for curve in own]))
         start = figure.add_axes((0.02, 0.02, 0.96, 0.62))
-        _put_curves(start, own, np.zeros(2), fill=True, line=1.3)
+        put_curves(start, own, np.zeros(2), fill=True, line=1.3)
         _name_features(start, own, length, size[1] / size[0] * 0.62 / 0.96)
         save(figure, path)
 
 
 @dataclass(frozen=True)
-class _Curve:
-    """A polyline of a drawing, mm: layer, whether it is closed, points (n, 2), id of its part."""
+class Curve:
+    """A polyline of a drawing, mm or m: layer, whether it is closed, points (n, 2), id of its part."""
 
     layer: str
     closed: bool
@@ -121,7 +121,7 @@ class _Curve:
     part: str
 
 
-def _read_drawing(drawing: Path) -> list[_Curve]:
+def _read_drawing(drawing: Path) -> list[Curve]:
     """Curves of a DXF file that a run wrote; arcs become polylines within `FLATNESS`."""
     import ezdxf
     from ezdxf import path as paths
@@ -136,7 +136,7 @@ def _read_drawing(drawing: Path) -> list[_Curve]:
             part = str(tags[1000]) if tags[1071] == 1 else f"{tags[1000]}#{tags[1071]}"
         way = paths.make_path(entity)
         points = np.array([(p.x, p.y) for p in way.flattening(FLATNESS)], float)
-        curves.append(_Curve(str(entity.dxf.layer), bool(way.is_closed), points, part))
+        curves.append(Curve(str(entity.dxf.layer), bool(way.is_closed), points, part))
     return curves
 
 
@@ -144,7 +144,8 @@ def _within(points: Floats, low: Floats, high: Floats) -> bool:
     return bool((points.min(0) >= low - 1).all() and (points.max(0) <= high + 1).all())
 
 
-def _put_curves(axes: Axes, curves: list[_Curve], shift: Floats, *, fill: bool, line: float) -> None:
+def put_curves(axes: Axes, curves: list[Curve], shift: Floats, *, fill: bool, line: float) -> None:
+    """Draw curves shifted by (2,) in the colours of their layers, with equal scales."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     by_layer: dict[str, list[Floats]] = defaultdict(list)
@@ -161,7 +162,7 @@ def _put_curves(axes: Axes, curves: list[_Curve], shift: Floats, *, fill: bool, 
     axes.set_axis_off()
 
 
-def _level(curves: list[_Curve]) -> list[_Curve]:
+def _level(curves: list[Curve]) -> list[Curve]:
     """A part turned so that its start is upright at the origin, the +n side up."""
     outline = next(curve.points for curve in curves if curve.layer == "CUT")
     # the first vertex is the start's corner on the -n side, the last one that on the +n side
@@ -173,10 +174,10 @@ def _level(curves: list[_Curve]) -> list[_Curve]:
         local = ((points - start) @ np.array([1, 1j])) / upright
         return np.column_stack([local.real, local.imag])
 
-    return [_Curve(c.layer, c.closed, turned(c.points), c.part) for c in curves]
+    return [Curve(c.layer, c.closed, turned(c.points), c.part) for c in curves]
 
 
-def _name_features(axes: Axes, curves: list[_Curve], length: float, aspect: float) -> None:
+def _name_features(axes: Axes, curves: list[Curve], length: float, aspect: float) -> None:
     """Limits around a part's first millimetres, and names and measures beside its features there."""
     inside = [c for c in curves if c.points[:, 0].min() < length]
     outline = next(c.points for c in curves if c.layer == "CUT")

@@ -16,9 +16,9 @@ from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.projection.mesh_figures import mesh_figures
 from lamella.projection.quad_mesh import QuadMesh
-from lamella.view.figure import INK, new_figure, require_matplotlib, save
+from lamella.view.camera import Camera
+from lamella.view.figure import INK, frame, new_figure, require_matplotlib, save
 from lamella.view.net_colours import NetColour, NetColours, net_colours
-from lamella.view.picture import Camera
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -112,6 +112,13 @@ def draw_nets(
             if colours is not None:
                 _explain(figure, colours, middle_share, 0.6 / len(panels), whole[1])
         save(figure, path, shaded=True)
+
+
+def put_net(axes: Axes, panel: NetPanel, view: tuple[float, float]) -> None:
+    """Draw one net on axes of two dimensions, without title and scale."""
+    camera = Camera.around(panel.mesh.vertices, *view)
+    _put(axes, panel, _colours([panel])[0], camera, LIFT * panel.mesh.mean_edge)
+    frame(axes, camera.project(panel.mesh.vertices)[0])
 
 
 def _colours(panels: Sequence[NetPanel]) -> list[NetColours | None]:

@@ -6,9 +6,8 @@ their own height, surfaces their own proportions.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.network.network import SINGULAR, Network
 from lamella.surface.mesh import SurfaceMesh
+from lamella.view.camera import Camera
 from lamella.view.figure import FAMILIES, INK, SINGULAR_COLOUR, frame, new_figure, require_matplotlib, save
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from lamella.stages.pipeline import Results
+    from lamella.strip.lamellas import Lamellas
 
 Colour = Literal["utilisation", "torsion", "curvature", "planarity", "family", "none"]
 
@@ -37,44 +38,6 @@ SURFACE = (0.80, 0.84, 0.88)
 VEIL = 0.42
 # quads of strip in a cell at most: more cannot be told apart at the size of a page
 QUADS_A_CELL = 4
-
-
-@dataclass(frozen=True)
-class Camera:
-    """A perspective camera that looks at a point.
-
-    Attributes
-    ----------
-    target : (3,)
-        m.
-    right, up, back : (3,)
-        Orthonormal; `back` points from the target to the eye.
-    distance : float
-        From target to eye, m.
-    """
-
-    target: Floats
-    right: Floats
-    up: Floats
-    back: Floats
-    distance: float
-
-    @classmethod
-    def around(cls, points: Floats, azimuth: float, elevation: float) -> Camera:
-        """A camera for points (n, 3), seen from azimuth and elevation in degrees."""
-        a, e = np.radians((azimuth, elevation))
-        back = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
-        right = np.array([-np.sin(a), np.cos(a), 0.0])
-        low, high = points.min(0), points.max(0)
-        # three diameters away: depth can be read and proportions still hold
-        return cls((low + high) / 2, right, np.cross(back, right), back, 3 * float(np.linalg.norm(high - low)))
-
-    def project(self, points: Floats) -> tuple[Floats, Floats]:
-        """Picture coordinates (..., 2) and distances from the eye (...) of points (..., 3), m."""
-        local = points - self.target
-        away = self.distance - local @ self.back
-        flat = np.stack((local @ self.right, local @ self.up), axis=-1)
-        return flat * (self.distance / away)[..., None], away
 
 
 def draw(
@@ -111,20 +74,42 @@ def draw(
         The file cannot be written.
     """
     require_matplotlib()
-    network = results.network
-    values = _values(results, colour)
-    points = results.mesh.points if network is None else np.vstack([results.mesh.points, network.sample_points])
-    camera = Camera.around(points, *view)
-    quads, shades = _surface_quads(results.mesh, camera)
-    corners, away = camera.project(quads)
-    height = results.project.lamella.height
-    # behind the strips that stand on it, so that these show at their full height
-    depth = away.mean(1) + height + (away.max(1) - away.min(1)) / 2
-    colours = np.column_stack([np.outer(shades, SURFACE), np.full(len(shades), VEIL)])
+    scene = Scene(results.mesh, results.network, results.lamellas, results.project.lamella.height)
+    barred = scene.network is not None and colour not in ("family", "none")
+    with new_figure(size) as figure:
+        axes = figure.add_axes((0.01, 0.01, 0.87 if barred else 0.98, 0.98))
+        scale = put_scene(axes, scene, view=view, colour=colour)
+        if scale is not None:
+            _colour_bar(figure, scale, LABELS[colour])
+        save(figure, path, scale)
+
+
+class Scene(NamedTuple):
+    """What a picture shows: a surface, the strips of a net (m high) on it, or either alone."""
+
+    mesh: SurfaceMesh | None
+    network: Network | None = None
+    lamellas: Lamellas | None = None
+    height: float = 0.0
+
+
+def put_scene(axes: Axes, scene: Scene, *, view: tuple[float, float], colour: Colour) -> Any:
+    """Draw a scene on axes of two dimensions, see `draw`; the scale for a colour bar, or None."""
+    mesh, network = scene.mesh, scene.network
+    values = _values(scene, colour)
+    points = [] if mesh is None else [mesh.points]
+    camera = Camera.around(np.vstack([*points, *([] if network is None else [network.sample_points])]), *view)
+    corners, depth, colours = np.empty((0, 4, 2)), np.empty(0), np.empty((0, 4))
+    if mesh is not None:
+        quads, shades = surface_quads(mesh, camera)
+        corners, away = camera.project(quads)
+        # behind the strips that stand on it, so that these show at their full height
+        depth = away.mean(1) + scene.height + (away.max(1) - away.min(1)) / 2
+        colours = np.column_stack([np.outer(shades, SURFACE), np.full(len(shades), VEIL)])
     smooth = np.zeros(len(corners), bool)
     scale = None
     if network is not None:
-        strips, first = _strip_quads(network, height)
+        strips, first = _strip_quads(network, scene.height)
         flat, strip_away = camera.project(strips)
         paint, scale = _paint(network, values, first, colour)
         paint[:, :3] *= _strip_shades(strips, camera)[:, None]
@@ -133,22 +118,18 @@ def draw(
         colours = np.concatenate([colours, paint])
         smooth = np.r_[smooth, np.ones(len(flat), bool)]
     order = np.argsort(-depth, kind="stable")
-    with new_figure(size) as figure:
-        axes = figure.add_axes((0.01, 0.01, 0.98 if scale is None else 0.87, 0.98))
-        _put_quads(axes, corners[order], colours[order], smooth[order])
-        if network is not None:
-            _put_singular(axes, network, camera)
-        frame(axes, corners.reshape(-1, 2))
-        if scale is not None:
-            _colour_bar(figure, scale, LABELS[colour])
-        elif colour == "family" and network is not None:
-            _family_key(axes)
-        save(figure, path, scale)
+    _put_quads(axes, corners[order], colours[order], smooth[order])
+    if network is not None:
+        _put_singular(axes, network, camera)
+    frame(axes, corners.reshape(-1, 2))
+    if colour == "family" and network is not None:
+        _family_key(axes)
+    return scale
 
 
-def _values(results: Results, colour: str) -> Floats | None:
+def _values(scene: Scene, colour: str) -> Floats | None:
     """What the strips are coloured by, one value a sample."""
-    network, lamellas = results.network, results.lamellas
+    network, lamellas = scene.network, scene.lamellas
     known = (*LABELS, "family", "none")
     if colour not in known:
         raise InputError(f"unknown colour {colour!r}", f"choose one of {', '.join(known)}")
@@ -163,7 +144,7 @@ def _values(results: Results, colour: str) -> Floats | None:
     return lamellas.utilisation if colour == "utilisation" else lamellas.planarity
 
 
-def _surface_quads(mesh: SurfaceMesh, camera: Camera) -> tuple[Floats, Floats]:
+def surface_quads(mesh: SurfaceMesh, camera: Camera) -> tuple[Floats, Floats]:
     """Faces as quads (f, 4, 3) and their shades (f,)."""
     normals = mesh.normals[mesh.faces].mean(1)
     light = _light(camera)

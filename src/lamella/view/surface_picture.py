@@ -17,8 +17,8 @@ from lamella.base.errors import InputError
 from lamella.surface.element.lagrange import EDGES
 from lamella.surface.element.surface import MOST_PARTS, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
+from lamella.view.camera import Camera
 from lamella.view.figure import INK, new_figure, require_matplotlib, save
-from lamella.view.picture import Camera
 from lamella.view.quantity import Quantity, surface_quantities
 
 if TYPE_CHECKING:

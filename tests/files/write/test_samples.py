@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from lamella.network.network import BOUNDARY, REGULAR, Network
 from lamella.strip.lamellas import Lamellas, Section
 from lamella.strip.layers import parallel_layers
+from lamella.strip.material import find_material
 from lamella.surface.darboux import Darboux
 from lamella.surface.mesh import SurfaceMesh
 
@@ -79,6 +80,8 @@ def cylinder_net(cells: int = 6, rows: int = 4, per_cell: int = 8) -> tuple[Netw
         faces_left_out=np.zeros(0, np.int64),
     )
     lamellas = Lamellas(
+        network=network,
+        material=find_material("1.4301"),
         section=Section(height=0.1, thickness=0.0015),
         stop_stations=network.stop_arclengths,
         layers=parallel_layers(network, Section().layer_offsets, zero, own_lengths=False, cut=False),

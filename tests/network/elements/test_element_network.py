@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from lamella import Catenoid, Enneper, Helicoid, InputError, Unduloid, compute, make_network, parse_project
+import lamella
+from lamella import Catenoid, Enneper, Helicoid, InputError, Unduloid, compute, parse_project
 from lamella.files.write.network_json import network_bytes
 from lamella.network.elements.element_network import ElementNetwork, element_network
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
@@ -252,7 +253,7 @@ def test_nodes_are_those_of_the_closed_form_net(name: str) -> None:
     assert off.max() < 1e-5 * size_of(network)
     if name in {"catenoid", "unduloid"}:
         # the step is the exact one: 2 pi sqrt(2 |Q|) around over the cells
-        exact = make_network(form, cells=20)
+        exact = lamella.net(form, cells=20)
         assert net.lattice.step == pytest.approx(exact.step, rel=1e-6)
         assert [p.around for p in network.periods] == ["border 1"]
         for cells in network.periods[0][1:]:
@@ -288,7 +289,7 @@ def test_singular_nodes(name: str, order: int) -> None:
     assert np.diff(angle[turn]) == pytest.approx(180 / (order + 2), abs=0.5)
     letters = "".join(network.families[owner[turn]])
     assert letters in {"AB" * (order + 2), "BA" * (order + 2)}
-    exact = make_network(form, cells=20)
+    exact = lamella.net(form, cells=20)
     assert (exact.node_kinds == SINGULAR).sum() == 1
     told = net.describe()["umbilics"]
     assert [(one["order"], one["rays"], one["node"]) for one in told] == [(order, 2 * (order + 2), True)]
@@ -357,7 +358,7 @@ def test_form_found_catenoid_agrees_with_the_closed_form_net() -> None:
     assert results.network is not None
     form = Catenoid(1.0, (-0.6, 0.6))
     nodes = results.summary["surface"]["surface_nodes"]
-    off, _ = from_exact_nodes(form, results.network, make_network(form, cells=20).step)
+    off, _ = from_exact_nodes(form, results.network, lamella.net(form, cells=20).step)
     print(f"form-found catenoid, {nodes} surface nodes: off by {off.max() / size_of(results.network):.1e} of the size")
     assert nodes < 5000
     assert off.max() < 1e-5 * size_of(results.network)

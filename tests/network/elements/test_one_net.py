@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from lamella import Catenoid, Cylinder, Enneper, Helicoid, Scherk, make_network
+import lamella
+from lamella import Catenoid, Cylinder, Enneper, Helicoid, Scherk
 from lamella.network.elements.element_network import element_network, lay_net
 from lamella.network.elements.lattice import choose_lattice
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
@@ -237,7 +238,7 @@ def test_doubled_cells_contain_the_single_ones(case: str) -> None:
 )
 @pytest.mark.parametrize("kind", ["lamellas", "principal"])
 def test_doubled_cells_of_closed_forms_contain_the_single_ones(form, cells: int, kind) -> None:
-    network, double = (make_network(form, cells=n, kind=kind, minimum_length=0.0) for n in (cells, 2 * cells))
+    network, double = (lamella.net(form, cells=n, kind=kind, minimum_length=0.0) for n in (cells, 2 * cells))
     crossings = network.node_points[np.isin(network.node_kinds, (REGULAR, SINGULAR))]
     assert off(crossings, double.node_points) < 1e-9 * size_of(network)
 

@@ -7,12 +7,12 @@ import json
 import numpy as np
 import pytest
 
+import lamella
 from lamella import compute, parse_project
 from lamella.files.write.network_json import network_bytes
 from lamella.network.elements.element_network import element_network
 from lamella.network.isothermic.beyond_rim import zeros_beyond_rim
 from lamella.network.isothermic.umbilic_depth import UmbilicDepths, depth_errors
-from lamella.network.make import make_network
 from lamella.network.network import SINGULAR
 from lamella.stages.summary import network_summary
 from surface.element.weierstrass import weierstrass
@@ -33,7 +33,7 @@ def test_zero_beyond_the_rim_is_estimated(distance) -> None:
 @pytest.mark.parametrize("distance", [1.02, *(pytest.param(d, marks=pytest.mark.slow) for d in (1.005, 1.05))])
 def test_angles_next_to_a_zero_beyond_the_rim(distance) -> None:
     """The net's own angles are right and are those that the ruler finds."""
-    net = make_network(weierstrass([distance * np.exp(0.4j)], rings=10), cells=20)
+    net = lamella.net(weierstrass([distance * np.exp(0.4j)], rings=10), cells=20)
     ruler = measure(json.loads(network_bytes(net, name="x", version="0")))
     figures = network_summary(net, "")
     assert ruler["node_angle_deviation_max_deg"] < 0.1
@@ -43,7 +43,7 @@ def test_angles_next_to_a_zero_beyond_the_rim(distance) -> None:
 @pytest.mark.parametrize("inside", [0.02, pytest.param(0.01, marks=pytest.mark.slow)])
 def test_a_singular_node_next_to_the_rim_has_all_its_rays(inside) -> None:
     """Cells are large next to an umbilic: some of its rays reach the rim within a small part of one."""
-    net = make_network(weierstrass([(1 - inside) * np.exp(0.4j)], rings=10), cells=20, minimum_length=0.0)
+    net = lamella.net(weierstrass([(1 - inside) * np.exp(0.4j)], rings=10), cells=20, minimum_length=0.0)
     (node,) = np.flatnonzero(net.node_kinds == SINGULAR)
     a, b = net.node_degrees()
     assert (a[node], b[node]) == (3, 3)

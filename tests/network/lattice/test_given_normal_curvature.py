@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from lamella import Catenoid, Cylinder, Enneper, InputError, Nodoid, Unduloid, compute, make_network, parse_project
+import lamella
+from lamella import Catenoid, Cylinder, Enneper, InputError, Nodoid, Unduloid, compute, parse_project
 from lamella.network.lattice.density import choose_density
 from lamella.network.network import REGULAR
 from lamella.network.pattern import Pattern
@@ -28,7 +29,7 @@ LEANING = [
 @pytest.mark.parametrize(("surface", "wanted"), LEANING)
 def test_lines_of_a_given_normal_curvature(surface: Any, wanted: float) -> None:
     """Euler's formula: kn = H + mu^2 cos 2 phi, and the families cross at 2 phi or its supplement."""
-    network = make_network(surface, cells=24, normal_curvature=wanted, minimum_length=0)
+    network = lamella.net(surface, cells=24, normal_curvature=wanted, minimum_length=0)
     _check_combinatorics(network, 0)
     assert np.abs(network.sample_darboux.kn - wanted).max() < 1e-14
     nodes = network.node_points[network.node_kinds == REGULAR]
@@ -51,7 +52,7 @@ def test_curvatures_of_such_lines_from_their_points_alone() -> None:
     for surface, wanted in LEANING[:4]:
         misses = []
         for cells in (24, 48):
-            n = make_network(surface, cells=cells, normal_curvature=wanted, minimum_length=0)
+            n = lamella.net(surface, cells=cells, normal_curvature=wanted, minimum_length=0)
             first, stops = slice(0, n.sample_offsets[1]), n.stop_samples[: n.stop_offsets[1]]
             t, normal, s = n.sample_tangents[first], n.sample_normals[first], n.sample_arclengths[first]
             # inside the pieces between nodes arcs are equal
@@ -66,7 +67,7 @@ def test_curvatures_of_such_lines_from_their_points_alone() -> None:
 
 def test_helices_of_the_cylinder() -> None:
     """kn = sin^2(pitch angle) / R: the families cross at twice the angle, all cells are alike."""
-    network = make_network(Cylinder(1.0, (0.0, 3.0)), cells=24, normal_curvature=0.3)
+    network = lamella.net(Cylinder(1.0, (0.0, 3.0)), cells=24, normal_curvature=0.3)
     pitch = np.degrees(np.arcsin(np.sqrt(0.3)))
     assert network.node_angles == pytest.approx(np.full(len(network.node_angles), 2 * pitch), abs=1e-10)
     whole = network.cell_edges[network.cell_edges > 0.999 * network.cell_edges.max()]
@@ -76,26 +77,26 @@ def test_helices_of_the_cylinder() -> None:
 
 def test_at_the_mean_curvature_they_are_the_lamellas() -> None:
     surface = Unduloid(0.6, 1.4, (-0.4, 1.3))
-    plain = make_network(surface, cells=24)
-    same = make_network(surface, cells=24, normal_curvature=surface.mean_curvature)
+    plain = lamella.net(surface, cells=24)
+    same = lamella.net(surface, cells=24, normal_curvature=surface.mean_curvature)
     assert np.array_equal(plain.sample_points, same.sample_points)
-    near = make_network(surface, cells=24, normal_curvature=surface.mean_curvature + 1e-9)
+    near = lamella.net(surface, cells=24, normal_curvature=surface.mean_curvature + 1e-9)
     same_points(near.node_points, plain.node_points, 1e-7)
 
 
 def test_spacing_of_such_lines() -> None:
     """The cells are rhombi, and the guess from which the nearest number is looked for knows it."""
     for surface, wanted in LEANING:
-        median = float(np.median(make_network(surface, cells=40, normal_curvature=wanted).cell_edges))
-        assert make_network(surface, spacing=median, normal_curvature=wanted).cells == pytest.approx(40, abs=1)
+        median = float(np.median(lamella.net(surface, cells=40, normal_curvature=wanted).cell_edges))
+        assert lamella.net(surface, spacing=median, normal_curvature=wanted).cells == pytest.approx(40, abs=1)
         fine = choose_density(surface, spacing=median / 10, pattern=Pattern(normal_curvature=wanted))
         assert fine.estimated_nodes > 20_000
         assert fine.cells == pytest.approx(400, rel=0.1)
 
 
 def test_such_lines_with_some_left_out() -> None:
-    full = make_network(Catenoid(1.0, (-0.5, 0.8)), cells=24, normal_curvature=0.2)
-    some = make_network(Catenoid(1.0, (-0.5, 0.8)), cells=24, normal_curvature=0.2, every=(2, 1))
+    full = lamella.net(Catenoid(1.0, (-0.5, 0.8)), cells=24, normal_curvature=0.2)
+    some = lamella.net(Catenoid(1.0, (-0.5, 0.8)), cells=24, normal_curvature=0.2, every=(2, 1))
     _check_combinatorics(some, 0)
     assert cKDTree(inner(full)).query(inner(some))[0].max() < 1e-12
 
@@ -115,17 +116,17 @@ def test_such_lines_with_some_left_out() -> None:
 def test_normal_curvatures_that_are_refused(surface: Any, wanted: float, told: str) -> None:
     """The catenoid's principal curvatures at the rim: +-1 / cosh(0.5)^2 = 0.7864; Enneper's are 2 in the middle."""
     with pytest.raises(InputError, match=told) as refused:
-        make_network(surface, cells=24, normal_curvature=wanted)
+        lamella.net(surface, cells=24, normal_curvature=wanted)
     assert refused.value.where == "network.normal_curvature"
 
 
 def test_the_remedy_of_a_refused_normal_curvature_works() -> None:
     surface = Unduloid(0.6, 1.4, (-1.0, 2.0))
     with pytest.raises(InputError) as refused:
-        make_network(surface, cells=24, normal_curvature=0.0)
+        lamella.net(surface, cells=24, normal_curvature=0.0)
     low, high = re.findall(r"from (\S+) to (\S+) 1/m", refused.value.remedy)[0]
     for value in (float(low), float(high)):
-        assert make_network(surface, cells=24, normal_curvature=value).node_angles.min() > 20
+        assert lamella.net(surface, cells=24, normal_curvature=value).node_angles.min() > 20
 
 
 def test_normal_curvature_in_the_project_file() -> None:

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from scipy.integrate import romb
 
+import lamella
 from conftest import KINDS, draw_surface
-from lamella import Catenoid, Cylinder, Enneper, Helicoid, InputError, Nodoid, Scherk, Unduloid, make_network
+from lamella import Catenoid, Cylinder, Enneper, Helicoid, InputError, Nodoid, Scherk, Unduloid
 from lamella.network.lattice.density import choose_density
 from lamella.network.network import BOUNDARY, REGULAR, SINGULAR
 from lamella.surface.closed_forms.outline import Ring
@@ -52,7 +53,7 @@ def _check_combinatorics(network, euler):
 def test_combinatorics(kind, seed):
     rng = np.random.default_rng([seed, 21])
     surface = draw_surface(kind, rng)
-    network = make_network(surface, cells=int(rng.integers(8, 40)))
+    network = lamella.net(surface, cells=int(rng.integers(8, 40)))
     _check_combinatorics(network, 0 if isinstance(surface.outline, Ring) else 1)
 
 
@@ -64,14 +65,14 @@ def test_combinatorics_many(kind):
         surface, cells = draw_surface(kind, rng), int(rng.integers(6, 60))
         if choose_density(surface, cells=cells).estimated_nodes < 6 * cells:
             continue  # a band so low that hardly any lamellas cross
-        network = make_network(surface, cells=cells)
+        network = lamella.net(surface, cells=cells)
         _check_combinatorics(network, 0 if isinstance(surface.outline, Ring) else 1)
 
 
 @pytest.mark.parametrize("cells", [3, 10, 24, 57])
 def test_closes_around_the_axis(cells):
     for surface in (Unduloid(0.6, 1.4, (-1, 2)), Nodoid(1, 4, (-0.5, 0.4)), Catenoid(1, (-1, 1)), Cylinder(1, (0, 4))):
-        network = make_network(surface, cells=cells)
+        network = lamella.net(surface, cells=cells)
         (period,) = network.periods
         assert abs(period.a_cells) == pytest.approx(cells, abs=1e-9)
         assert abs(period.b_cells) == pytest.approx(cells, abs=1e-9)
@@ -86,10 +87,10 @@ def test_spacing_takes_the_nearest_number_of_cells(kind, seed):
     surface = draw_surface(kind, rng)
 
     def median(cells):
-        return np.median(make_network(surface, cells=cells, minimum_length=0).cell_edges)
+        return np.median(lamella.net(surface, cells=cells, minimum_length=0).cell_edges)
 
     wanted = float(median(int(rng.integers(20, 32))) * rng.uniform(0.95, 1.05))
-    cells = make_network(surface, spacing=wanted, minimum_length=0).cells
+    cells = lamella.net(surface, spacing=wanted, minimum_length=0).cells
     miss = {n: abs(median(n) - wanted) for n in (cells - 1, cells, cells + 1)}
     assert miss[cells] <= min(miss.values()) + 1e-12
 
@@ -98,24 +99,24 @@ def test_lamellas_end_exactly_on_the_rim():
     def rim(network):
         return network.node_points[network.node_kinds == BOUNDARY]
 
-    z = rim(make_network(Unduloid(0.6, 1.4, (-1.2345, 2.1)), cells=17))[:, 2]
+    z = rim(lamella.net(Unduloid(0.6, 1.4, (-1.2345, 2.1)), cells=17))[:, 2]
     assert np.minimum(np.abs(z + 1.2345), np.abs(z - 2.1)).max() < 1e-12
-    z = rim(make_network(Nodoid(1.0, 4.0, (-0.5, 0.31)), cells=17))[:, 2]
+    z = rim(lamella.net(Nodoid(1.0, 4.0, (-0.5, 0.31)), cells=17))[:, 2]
     assert np.minimum(np.abs(z + 0.5), np.abs(z - 0.31)).max() < 1e-12
-    p = rim(make_network(Scherk(1.3, 2.0), cells=21))[:, :2] / 2
+    p = rim(lamella.net(Scherk(1.3, 2.0), cells=21))[:, :2] / 2
     assert np.abs(np.abs(p).max(1) - 1.3).max() < 1e-12
-    p = rim(make_network(Helicoid(3.0, 0.5, 2.0, 1.1), cells=9))
+    p = rim(lamella.net(Helicoid(3.0, 0.5, 2.0, 1.1), cells=9))
     r = np.hypot(p[:, 0], p[:, 1])
     turn = p[:, 2] / 3.0
     off = np.min([np.abs(r - 0.5), np.abs(r - 2.0), np.abs(turn), np.abs(turn - 1.1)], 0)
     assert off.max() < 1e-12
-    network = make_network(Enneper(3, 0.9, 2.0), cells=20)
+    network = lamella.net(Enneper(3, 0.9, 2.0), cells=20)
     where = network.sample_where[np.r_[network.sample_offsets[1:] - 1]]
     assert np.abs(np.abs(where) - 0.9).max() < 1e-12
 
 
 def test_helicoid_has_whole_cells_between_its_rims():
-    network = make_network(Helicoid(3.0, 0.5, 2.0, 1.1), cells=9)
+    network = lamella.net(Helicoid(3.0, 0.5, 2.0, 1.1), cells=9)
     r = np.hypot(*network.node_points[:, :2].T)
     assert np.abs(r - 0.5).min() < 1e-12
     assert len(np.unique(np.round(r, 9))) == 10
@@ -138,7 +139,7 @@ def _delaunay_forms(surface, network):
 def test_darboux_curvatures_of_rotational_surfaces(kind, seed):
     """DESIGN section 9, Delaunay and catenoid; kn = H."""
     surface = draw_surface(kind, np.random.default_rng([seed, 41]))
-    network = make_network(surface, cells=24)
+    network = lamella.net(surface, cells=24)
     tg, kg = _delaunay_forms(surface, network)
     scale = np.abs(tg).max()
     kn = network.sample_darboux.kn
@@ -150,7 +151,7 @@ def test_darboux_curvatures_of_rotational_surfaces(kind, seed):
 def test_darboux_curvatures_of_minimal_surfaces():
     """Helicoid: rulings kg = 0, helices |kg| = sinh u / (c cosh^2 u); Enneper tg = 2/(1 + r^2)^2."""
     c = 3.0 / (2 * np.pi)
-    network = make_network(Helicoid(3.0, 0.4, 2.5, 0.8), cells=12)
+    network = lamella.net(Helicoid(3.0, 0.4, 2.5, 0.8), cells=12)
     u = network.sample_where.real
     kg = np.abs(network.sample_darboux.kg)
     level = np.abs(network.sample_tangents[:, 2]) < 1e-12  # a ruling is horizontal
@@ -159,7 +160,7 @@ def test_darboux_curvatures_of_minimal_surfaces():
     np.testing.assert_allclose(kg[level], 0, atol=1e-12)
     np.testing.assert_allclose(kg[~level], (np.sinh(u) / (c * np.cosh(u) ** 2))[~level], rtol=1e-12)
     np.testing.assert_allclose(np.abs(network.sample_darboux.tg), 1 / (c * np.cosh(u) ** 2), rtol=1e-12)
-    network = make_network(Enneper(2, 1.1), cells=20)
+    network = lamella.net(Enneper(2, 1.1), cells=20)
     r = np.abs(network.sample_where)
     np.testing.assert_allclose(np.abs(network.sample_darboux.tg), 2 / (1 + r**2) ** 2, rtol=1e-12)
     assert (
@@ -176,7 +177,7 @@ def test_geodesic_curvature_is_the_turn_of_the_written_curve(kind):
         surface = Enneper(3, 0.9)
 
     def miss(cells):
-        n = make_network(surface, cells=cells)
+        n = lamella.net(surface, cells=cells)
         sideways = np.cross(n.sample_normals, n.sample_tangents)
         s, t = n.sample_arclengths, n.sample_tangents
         inner = np.flatnonzero((s[1:-1] > s[:-2]) & (s[2:] > s[1:-1])) + 1
@@ -200,7 +201,7 @@ def test_geodesic_curvature_is_the_turn_of_the_written_curve(kind):
 def test_same_twist_integral_in_every_cell(kind, seed):
     """The integral of sqrt|tg| ds between neighbouring nodes is l0 / sqrt2, to 1e-9 (Romberg on 17 samples a cell)."""
     surface = draw_surface(kind, np.random.default_rng([seed, 44]))
-    network = make_network(surface, cells=32)
+    network = lamella.net(surface, cells=32)
     owner = network.stop_owner
     start = network.sample_offsets[owner] + network.stop_samples
     regular = network.node_kinds[network.stop_nodes] == REGULAR
@@ -219,7 +220,7 @@ def test_same_twist_integral_in_every_cell(kind, seed):
 @pytest.mark.parametrize("order", [3, 4, 5, 8])
 def test_singular_node_in_the_middle(order):
     """A zero of order m has 2 (m + 2) lamella rays, alternately A and B, evenly around; order 3: the hexagonal node."""
-    network = make_network(Enneper(order, 0.8, 3.0), cells=16)
+    network = lamella.net(Enneper(order, 0.8, 3.0), cells=16)
     (node,) = np.flatnonzero(network.node_kinds == SINGULAR)
     np.testing.assert_allclose(network.node_points[node], 0, atol=1e-15)
     stops = np.flatnonzero(network.stop_nodes == node)
@@ -238,7 +239,7 @@ def test_singular_node_in_the_middle(order):
 
 
 def test_classical_enneper_has_a_regular_node_or_a_face_in_its_middle():
-    even, odd = (make_network(Enneper(2, 1.0), cells=c) for c in (20, 21))
+    even, odd = (lamella.net(Enneper(2, 1.0), cells=c) for c in (20, 21))
     assert np.linalg.norm(even.node_points, axis=1).min() < 1e-12
     assert np.linalg.norm(odd.node_points, axis=1).min() > 1e-3
     assert not (even.node_kinds == SINGULAR).any()
@@ -246,14 +247,14 @@ def test_classical_enneper_has_a_regular_node_or_a_face_in_its_middle():
 
 def test_cells_along_the_longest_principal_line():
     """Scherk: the section y = 0 is a principal line from rim to rim; it passes `cells` cells corner to corner."""
-    network = make_network(Scherk(1.3), cells=20)
+    network = lamella.net(Scherk(1.3), cells=20)
     on_line = np.abs(network.node_points[:, 1]) < 1e-12
     assert on_line.sum() == 21
 
 
 def test_short_lamellas_are_left_out_and_counted():
-    everything = make_network(Scherk(1.45), cells=30, minimum_length=0)
-    some = make_network(Scherk(1.45), cells=30, minimum_length=3)
+    everything = lamella.net(Scherk(1.45), cells=30, minimum_length=0)
+    some = lamella.net(Scherk(1.45), cells=30, minimum_length=3)
     assert some.left_out > 0
     assert len(some.ids) + some.left_out == len(everything.ids)
     assert some.lengths.min() >= 3 * np.median(some.cell_edges) * 0.9
@@ -273,7 +274,7 @@ def test_short_lamellas_are_left_out_and_counted():
 def test_absurd_densities_are_refused_before_any_work(options, words):
     tracemalloc.start()
     with pytest.raises(InputError) as error:
-        make_network(Unduloid(0.6, 1.4, (-1, 3)), **options)
+        lamella.net(Unduloid(0.6, 1.4, (-1, 3)), **options)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 20e6
@@ -284,14 +285,14 @@ def test_absurd_densities_are_refused_before_any_work(options, words):
 def test_estimate_of_nodes():
     for kind in KINDS:
         surface = draw_surface(kind, np.random.default_rng(51))
-        network = make_network(surface, cells=50)
+        network = lamella.net(surface, cells=50)
         rim = (network.node_kinds == BOUNDARY).sum()
         assert abs(choose_density(surface, cells=50).estimated_nodes - len(network.node_points)) <= rim
 
 
 def test_band_too_low_for_a_crossing():
     with pytest.raises(InputError, match="no two lamellas cross"):
-        make_network(Catenoid(1.0, (0.1, 0.12)), cells=6)
+        lamella.net(Catenoid(1.0, (0.1, 0.12)), cells=6)
 
 
 @pytest.mark.parametrize("offset", [sign * 10.0**power for sign in (-1, 1) for power in np.arange(-9, -3.9, 0.25)])
@@ -299,9 +300,9 @@ def test_a_crossing_next_to_the_rim_is_one_node(offset):
     """Rims a fraction of a cell off a row of crossings: one boundary node within 1e-6 cells, else two or three."""
     around = np.pi * 2 / 24
     for network in (
-        make_network(Cylinder(2.0, (0, (12 + offset) * around)), cells=24),
-        make_network(Catenoid(2.0, (0, (3 + offset) * around)), cells=24),
-        make_network(
+        lamella.net(Cylinder(2.0, (0, (12 + offset) * around)), cells=24),
+        lamella.net(Catenoid(2.0, (0, (3 + offset) * around)), cells=24),
+        lamella.net(
             Helicoid(2 * np.pi, 0.5, 2.0, (np.arcsinh(2) - np.arcsinh(0.5)) / (2 * np.pi) / 8 * (24 + offset)), cells=8
         ),
     ):

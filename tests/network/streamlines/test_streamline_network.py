@@ -12,8 +12,9 @@ import pytest
 from scipy.integrate import cumulative_simpson
 from scipy.interpolate import CubicSpline
 
+import lamella
 from conftest import run_of_example
-from lamella import Enneper, Helicoid, InputError, Scherk, make_network, parse_project
+from lamella import Enneper, Helicoid, InputError, Scherk, parse_project
 from lamella.files.write.network_json import network_bytes
 from lamella.network.cell_sizes import large_cells
 from lamella.network.charts.element_charts import ElementGround
@@ -119,7 +120,7 @@ def off_the_helicoid(wanted: float, cells: int) -> float:
     kn = sin(2 theta) / (c cosh^2 U), theta from the ruling, an asymptotic line: dV / dU = tan theta.
     """
     c = 4 / (2 * np.pi)
-    network = make_network(Helicoid(4.0, 0.5, 3.0, 0.5), cells=cells, normal_curvature=wanted)
+    network = lamella.net(Helicoid(4.0, 0.5, 3.0, 0.5), cells=cells, normal_curvature=wanted)
     is_sound(network)
     u = np.linspace(np.arcsinh(0.5 / c), np.arcsinh(3 / c), 100_001)
     sine = wanted * c * np.cosh(u) ** 2
@@ -160,7 +161,7 @@ def test_the_order_of_tracing() -> None:
     "surface", [Helicoid(4.0, 0.0, 4.0, 1.0), Enneper(2, 0.9, 4.0), Enneper(3, 0.9, 4.0), Scherk(1.25, 3.0)]
 )
 def test_the_ruler_on_closed_forms(surface: Any) -> None:
-    network = make_network(surface, cells=12, normal_curvature=0.02)
+    network = lamella.net(surface, cells=12, normal_curvature=0.02)
     is_sound(network)
     figures = ruled(network)
     # next to a flat point lines turn within a few of the ruler's samples
@@ -174,7 +175,7 @@ def test_the_ruler_on_closed_forms(surface: Any) -> None:
 
 def test_spacing_is_the_median_cell_edge() -> None:
     for spacing in (0.4, 0.8):
-        network = make_network(Scherk(1.25, 3.0), spacing=spacing, normal_curvature=0.02)
+        network = lamella.net(Scherk(1.25, 3.0), spacing=spacing, normal_curvature=0.02)
         assert np.median(network.cell_edges) == pytest.approx(spacing, rel=0.1)
 
 
@@ -242,16 +243,16 @@ def test_why_cells_are_large() -> None:
 def test_what_is_refused() -> None:
     surface = Scherk(1.25, 3.0)
     with pytest.raises(InputError, match="no direction of the surface has it") as refused:
-        make_network(surface, cells=12, normal_curvature=1.0)
+        lamella.net(surface, cells=12, normal_curvature=1.0)
     low, high = (float(x) for x in refused.value.remedy.split("from ")[1].split(" 1/m")[0].split(" to "))
-    assert len(make_network(surface, cells=6, normal_curvature=0.9 * high).ids) > 2
+    assert len(lamella.net(surface, cells=6, normal_curvature=0.9 * high).ids) > 2
     assert low == pytest.approx(-high)
     with pytest.raises(InputError, match=r"spacing = 9 m leaves \S+ cells across the surface"):
-        make_network(surface, spacing=9.0, normal_curvature=0.02)
+        lamella.net(surface, spacing=9.0, normal_curvature=0.02)
     with pytest.raises(InputError, match="leaves out curves of an isothermic lattice"):
-        make_network(surface, cells=12, normal_curvature=0.02, every=(2, 1))
+        lamella.net(surface, cells=12, normal_curvature=0.02, every=(2, 1))
     with pytest.raises(InputError, match="nodes and take about"):
-        make_network(surface, spacing=1e-3, normal_curvature=0.02)
+        lamella.net(surface, spacing=1e-3, normal_curvature=0.02)
     table = {"surface": {"kind": "scherk", "extent": 1.25, "scale": 3.0}}
     with pytest.raises(InputError, match='closing = "round"') as refused:
         compute(parse_project(table | {"network": {"normal_curvature": 0.02, "closing": "round"}}))

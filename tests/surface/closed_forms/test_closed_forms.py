@@ -8,19 +8,9 @@
 import numpy as np
 import pytest
 
+import lamella
 from conftest import KINDS, draw_places, draw_surface
-from lamella import (
-    Catenoid,
-    Cylinder,
-    Enneper,
-    Helicoid,
-    InputError,
-    Nodoid,
-    Scherk,
-    Section,
-    Unduloid,
-    make_network,
-)
+from lamella import Catenoid, Cylinder, Enneper, Helicoid, InputError, Nodoid, Scherk, Section, Unduloid
 from lamella.surface.umbilic import refuse_umbilic
 
 
@@ -220,9 +210,9 @@ def test_mesh_lies_on_the_surface_and_its_area_converges(kind):
         (lambda: Scherk(2.0), ("extent = 2", "1.5708")),
         (lambda: Section(marks="relaxd"), ("relaxd", "relaxed")),  # type: ignore[arg-type]
         (lambda: Section(height=0.001, thickness=0.1), ("0.1 m", "0.001 m")),
-        (lambda: make_network(Cylinder(1.0, (0, 2)), cells=24.5), ("24.5", "whole")),  # type: ignore[arg-type]
-        (lambda: make_network(Cylinder(1.0, (0, 2)), spacing=float("nan")), ("nan",)),
-        (lambda: make_network(Cylinder(1.0, (0, 2)), spacing=0.0), ("0.0",)),
+        (lambda: lamella.net(Cylinder(1.0, (0, 2)), cells=24.5), ("24.5", "whole")),  # type: ignore[arg-type]
+        (lambda: lamella.net(Cylinder(1.0, (0, 2)), spacing=float("nan")), ("nan",)),
+        (lambda: lamella.net(Cylinder(1.0, (0, 2)), spacing=0.0), ("0.0",)),
         (lambda: Nodoid(0.5, 1.6, (-0.1, 0.4)), ("0.4 m", "fold", "0.315034")),
     ],
 )

@@ -460,7 +460,7 @@ def element_network(
     surface : ElementSurface
         Of constant mean curvature.
     cells, spacing, minimum_length
-        See `lamella.network.make.make_network`.
+        See `lamella.network.net.net`.
     closing : "open" or "round"
         What is done where shifts are not whole: a seam, or the nearest whole numbers by the smallest change of the
         coordinates.

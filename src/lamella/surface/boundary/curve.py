@@ -12,6 +12,9 @@ from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.base.message import Message
+from lamella.base.onward import onward
+from lamella.base.result import Shown
+from lamella.base.wording import counted
 from lamella.surface.boundary.arc_length import Course
 from lamella.surface.boundary.pieces import Pieces
 
@@ -62,8 +65,8 @@ class Slide:
     direction: Floats | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Loop:
+@dataclass(frozen=True, eq=False, repr=False)
+class Loop(Shown):
     """A closed curve with the fraction t of its arc length as parameter, periodic with period 1.
 
     Attributes
@@ -91,6 +94,10 @@ class Loop:
     smooth: Booleans
     slides: tuple[Slide, ...] = ()
     remarks: tuple[Message, ...] = ()
+
+    def _line(self) -> str:
+        name = f"{self.name}: " if self.name else ""
+        return f"{name}{self.length:.6g} m, {counted(int((~self.smooth).sum()), 'corner')}"
 
     @property
     def length(self) -> float:
@@ -154,6 +161,48 @@ class Loop:
             tuple(slides),
             self.remarks,
         )
+
+    def rounded(self, radius: float) -> Loop:
+        """The loop with its corners rounded to a least radius, m; those at the ends of parts that slide stay.
+
+        Examples
+        --------
+        >>> import lamella
+        >>> square = lamella.polyline([[0, 0, 0], [6, 0, 2], [6, 6, 0], [0, 6, 2]])
+        >>> square.rounded(0.4)
+        Loop(24.7199 m, 0 corners)
+        """
+        loop: Loop = onward("lamella.surface.boundary.fillets.rounded_loop")(self, radius, "radius")
+        return loop
+
+    def sliding(
+        self, *, normal: ArrayLike | None = None, point: ArrayLike | None = None, direction: ArrayLike | None = None
+    ) -> Loop:
+        """The loop free to slide: on a plane, which the surface then meets at 90 degrees, or along lines.
+
+        Parameters
+        ----------
+        normal, point : (3,), optional
+            Of the plane; through the loop's first point when no point is given, m.
+        direction : (3,), optional
+            Of the lines, instead.
+
+        Examples
+        --------
+        >>> import lamella
+        >>> lamella.circle((0, 0, 0), 3.0).sliding(normal=(0, 0, 1)).slides[0].normal
+        array([0., 0., 1.])
+        """
+        if (normal is None) == (direction is None):
+            raise InputError(
+                "a loop slides on a plane or along lines", "give a normal (and a point), or a direction", "normal"
+            )
+
+        def unit(vector: ArrayLike | None) -> Floats | None:
+            return None if vector is None else _unit(np.asarray(vector, float))
+
+        on = None if normal is None else np.asarray(self.at(0.0) if point is None else point, float)
+        return replace(self, slides=(Slide(0.0, 1.0, on, unit(normal), unit(direction)),))
 
     def scaled(self, factor: float, shift: ArrayLike = (0.0, 0.0, 0.0)) -> Loop:
         """The loop of the points factor x + shift, factor > 0, shift (3,) in m."""

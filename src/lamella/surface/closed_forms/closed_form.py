@@ -15,13 +15,14 @@ import numpy as np
 
 from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.base.message import Message
+from lamella.base.result import Shown
 from lamella.surface.closed_forms import sampling
 from lamella.surface.closed_forms.outline import Outline
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.points import SurfacePoints
 
 
-class ClosedForm(ABC):
+class ClosedForm(ABC, Shown):
     """A closed-form surface; places on it are complex parameters ``where = U + i V``, shape (n,).
 
     The surface normal is n = e_U x e_V. Signs and names are those of `lamella`'s package docstring.
@@ -42,6 +43,9 @@ class ClosedForm(ABC):
     mean_curvature: float
     outline: Outline
     hopf_order: int = 0
+
+    def _line(self) -> str:
+        return f"mean curvature {self.mean_curvature:.6g} 1/m, {self.area():.4g} m2"
 
     def has_lattice(self, normal_curvature: float | None = None) -> bool:
         """See `lamella.surface.surface.Surface.has_lattice`."""

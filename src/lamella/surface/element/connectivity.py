@@ -8,12 +8,13 @@ from functools import cached_property
 import numpy as np
 
 from lamella.base.arrays import Integers
+from lamella.base.result import Lean
 from lamella.base.sparse import SymmetricPattern
 from lamella.surface.element.lagrange import EDGES, Lagrange, lagrange
 
 
 @dataclass(frozen=True)
-class Connectivity:
+class Connectivity(Lean):
     """Nodes of Lagrange triangles on a mesh of m triangles with v vertices; the first v nodes are the vertices.
 
     Attributes

@@ -13,13 +13,14 @@ from math import perm
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
+from lamella.base.result import Lean
 
 EDGES = ((0, 1), (1, 2), (2, 0))
 """Corners of the local edges."""
 
 
 @dataclass(frozen=True)
-class Lagrange:
+class Lagrange(Lean):
     """The basis of one order.
 
     Attributes

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.result import Result
+from lamella.base.wording import counted
 
 
-@dataclass(frozen=True)
-class Places:
+@dataclass(frozen=True, eq=False, repr=False)
+class Places(Result):
     """Places in bulk.
 
     Attributes
@@ -22,6 +24,9 @@ class Places:
 
     element: Integers
     local: Floats
+
+    def _line(self) -> str:
+        return counted(len(self), "place")
 
     def __len__(self) -> int:
         return len(self.element)

@@ -7,10 +7,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.base.drawing_origin import NOWHERE, Origin
 from lamella.base.message import Message
+from lamella.base.result import Shown
 from lamella.base.vectors import dots, images, lengths, symmetric
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import Connectivity, connect
@@ -38,8 +40,8 @@ RIM_SHARE = 0.25
 LEAST_SQUARE = 1e-200
 
 
-@dataclass(frozen=True)
-class ElementSurface:
+@dataclass(frozen=True, eq=False, repr=False)
+class ElementSurface(Shown):
     """A surface of Lagrange triangles of order 2 to 4.
 
     Places are `Places`: elements with local coordinates. Position and normal are those of the elements. The shape
@@ -86,6 +88,13 @@ class ElementSurface:
     def has_boundary_curves(self) -> bool:
         """Whether the surface was found between curves: their corners can be rounded, and they can be adjusted."""
         return self.kind == "form-found"
+
+    def _line(self) -> str:
+        connectivity = self.connectivity
+        return (
+            f"{self.kind}: mean curvature {self.mean_curvature:.6g} 1/m, {len(connectivity.elements):,} elements "
+            f"of order {connectivity.basis.order}, {len(self.nodes):,} nodes"
+        )
 
     @property
     def origin(self) -> Origin:
@@ -254,9 +263,9 @@ class ElementSurface:
     def _search(self) -> ClosestPoint:
         return ClosestPoint(self.connectivity, self.nodes)
 
-    def closest(self, points: Floats) -> tuple[Places, Floats]:
+    def closest(self, points: ArrayLike) -> tuple[Places, Floats]:
         """Closest places to points (n, 3), and their positions (n, 3), m."""
-        return self._search(points)
+        return self._search(np.asarray(points, np.float64))
 
     def closest_near(self, points: Floats, start: Places) -> tuple[Places, Floats]:
         """The same, searched from places (n,) that are near."""

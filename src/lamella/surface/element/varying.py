@@ -23,7 +23,7 @@ from lamella.surface.element.surface import ElementSurface
 CORNERS = 3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class VaryingSurface(ElementSurface):
     """See `ElementSurface`; `mean_curvature` is the mean of H over the area, 1/m.
 

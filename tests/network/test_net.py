@@ -1,4 +1,4 @@
-"""`make_network` takes every surface, and what it makes goes on to strips and parts."""
+"""`net` takes every surface, and what it makes goes on to strips and parts."""
 
 from __future__ import annotations
 
@@ -22,10 +22,9 @@ def film(boundary: list[dict[str, Any]]) -> Any:
 
 
 def test_a_film_goes_all_the_way_to_parts() -> None:
-    network = lamella.make_network(film([{"points": WAVED}]), cells=10)
+    network = lamella.net(film([{"points": WAVED}]), cells=10)
     assert network.cells == 10
-    lamellas = lamella.make_lamellas(network, lamella.Section(0.08, 0.001), lamella.find_material("S355"))
-    parts = lamella.make_parts(network, lamellas, density=7850)
+    parts = network.strips((0.08, 0.001), "S355").parts()
     assert parts.pieces == 2 * len(network.ids)
     # the mass of two layers as long as the net's lamellas, slots and ends aside
     assert parts.mass == pytest.approx(2 * 0.08 * 0.001 * 7850 * network.lengths.sum(), rel=0.05)
@@ -39,7 +38,7 @@ def test_it_is_the_network_of_a_run() -> None:
         }
     )
     run = lamella.compute(project, until="network").network
-    own = lamella.make_network(lamella.make_surface(project), spacing=0.6, every=(2, 1), minimum_length=0.7)
+    own = lamella.net(lamella.make_surface(project), spacing=0.6, every=(2, 1), minimum_length=0.7)
     assert run is not None
     assert own.ids == run.ids
     np.testing.assert_array_equal(own.node_points, run.node_points)
@@ -50,24 +49,24 @@ def test_meshes_kept_as_they_are(tmp_path: Path) -> None:
     write_grid(tmp_path / "m.obj", hypar, (-2, 2), (-2, 2), 16, 16)
     table = {"surface": {"kind": "mesh", "file": "m.obj", "mean_curvature": "varying"}}
     surface = lamella.make_surface(lamella.parse_project(table | {"network": {"normal_curvature": 0.0}}), tmp_path)
-    network = lamella.make_network(surface, cells=8, normal_curvature=0.0)
+    network = lamella.net(surface, cells=8, normal_curvature=0.0)
     assert network.normal_curvature == 0
     assert np.abs(network.sample_darboux.kn).max() < 1e-6
     with pytest.raises(InputError) as refused:
-        lamella.make_network(surface, cells=8)
+        lamella.net(surface, cells=8)
     assert refused.value.where == "network.normal_curvature"
     with pytest.raises(InputError) as refused:
-        lamella.make_network(surface, cells=8, normal_curvature=0.0, closing="round")
+        lamella.net(surface, cells=8, normal_curvature=0.0, closing="round")
     assert refused.value.where == "network.closing"
 
 
 def test_what_is_no_surface_or_has_no_net() -> None:
     circle = [{"circle": {"center": [0, 0, 0], "radius": 2.0}}]
     with pytest.raises(InputError) as refused:
-        lamella.make_network(film(circle))
+        lamella.net(film(circle))
     assert refused.value.where == "surface"
     with pytest.raises(InputError, match="list"):
-        lamella.make_network([1, 2])  # type: ignore[arg-type]
+        lamella.net([1, 2])  # type: ignore[arg-type]
     with pytest.raises(InputError) as refused:
-        lamella.make_network(film([{"points": WAVED}]), cells=8, spacing=0.3)
+        lamella.net(film([{"points": WAVED}]), cells=8, spacing=0.3)
     assert refused.value.where == "network"

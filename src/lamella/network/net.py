@@ -1,26 +1,27 @@
-"""The network stage as one function."""
+"""The net of any surface."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from lamella.base.errors import InputError
 from lamella.network.charts.ground_of import ground_of
 from lamella.network.density_request import DensityRequest
-from lamella.network.elements.element_network import Closing, element_network
+from lamella.network.elements.element_network import Closing, ElementNetwork, element_network
 from lamella.network.lattice.density import choose_density
 from lamella.network.lattice.trace import trace_closed_form
 from lamella.network.network import Network
 from lamella.network.pattern import NetKind, Pattern
 from lamella.network.streamlines.applicability import check_traced, is_traced, told_mean_curvature
-from lamella.network.streamlines.streamline_network import traced_network
+from lamella.network.streamlines.streamline_network import TracedNetwork, traced_network
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import refuse_umbilic
 
 
-def make_network(
+def net(
     surface: Surface[Any],
     *,
     cells: int | None = None,
@@ -36,8 +37,7 @@ def make_network(
     Parameters
     ----------
     surface : Surface
-        A closed form, or a surface of elements: one that was found, or a mesh (`lamella.make_surface`,
-        `lamella.find_film`).
+        A closed form, or a surface of elements: a film (`lamella.film`) or one of a mesh (`lamella.mesh_surface`).
     cells : int, optional
         A lamellas crossed once around the axis, or around the first hole; on a simply connected surface, cells along
         its longest principal line. 24 when spacing is not given either.
@@ -57,6 +57,12 @@ def make_network(
     closing : "open" or "round"
         Where the net of a surface of elements misses whole cells: a seam, or bent to the nearest whole numbers.
 
+    Returns
+    -------
+    Network
+        With `describe` and `warnings`: on surfaces of elements its umbilics, how many cells are missing where it does
+        not meet itself, and how far lamellas are off their normal curvature.
+
     Raises
     ------
     InputError
@@ -65,28 +71,40 @@ def make_network(
     See Also
     --------
     lamella.compute : a project's network with its warnings, strips and parts.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> net = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12)
+    >>> net
+    Network(12 cells: 24 lamellas, 108 nodes, 84 faces)
+    >>> print(f"{net.node_angles.min():.6f} to {net.node_angles.max():.6f} degrees")
+    90.000000 to 90.000000 degrees
     """
     if not isinstance(surface, ClosedForm | ElementSurface):
         raise InputError(
             f"a net needs a surface, not a {type(surface).__name__}",
-            'take a closed form, what make_surface returns, or find_film(...).surface("form-found")',
+            "take a closed form, or what lamella.film, mesh_surface or make_surface returns",
         )
     DensityRequest.of(cells, spacing)
     pattern = Pattern(kind, every, normal_curvature)
+    made: TracedNetwork | ElementNetwork
     if is_traced(surface, pattern):
         check_traced(surface, pattern, closing)
         refuse_umbilic(surface)
-        return traced_network(
+        made = traced_network(
             ground_of(surface),
             pattern,
             mean_curvature=told_mean_curvature(surface, pattern),
             cells=cells,
             spacing=spacing,
             minimum_length=minimum_length,
-        ).network
-    if isinstance(surface, ElementSurface):
-        return element_network(
+        )
+    elif isinstance(surface, ElementSurface):
+        made = element_network(
             surface, cells=cells, spacing=spacing, closing=closing, minimum_length=minimum_length, pattern=pattern
-        ).network
-    density = choose_density(surface, cells=cells, spacing=spacing, pattern=pattern)
-    return trace_closed_form(surface, density, minimum_length=minimum_length)
+        )
+    else:
+        density = choose_density(surface, cells=cells, spacing=spacing, pattern=pattern)
+        return replace(trace_closed_form(surface, density, minimum_length=minimum_length), surface=surface)
+    return replace(made.network, surface=surface, figures=made.describe(), notes=tuple(made.warnings()))
