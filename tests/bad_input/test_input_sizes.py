@@ -13,14 +13,14 @@ import pytest
 
 from lamella.base.errors import InputError
 from lamella.files.quad_mesh_files import read_quad_mesh
-from lamella.files.read import raw_mesh
+from lamella.files.read import file_mesh
+from lamella.files.read.file_mesh import BLOCK, blocks
 from lamella.files.read.mesh import read_mesh
 from lamella.files.read.mesh_obj import read_obj
 from lamella.files.read.mesh_ply import read_ply
 from lamella.files.read.mesh_stl import read_stl
-from lamella.files.read.raw_mesh import BLOCK, blocks
 from lamella.project.read import parse_project, read_project
-from lamella.surface.boundary import boundary_loops
+from lamella.stages.boundary_of_tables import boundary_loops
 
 UNDULOID = '[surface]\nkind = "unduloid"\nneck_radius = 1.6\nbulge_radius = 2.8\nheight = [-1.0, 1.0]\n'
 SECONDS = 15
@@ -101,7 +101,7 @@ def test_a_mesh_of_several_blocks_is_read_as_one() -> None:
 
 def test_a_text_takes_little_more_than_its_own_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     count, block = 60_000, 20_000
-    monkeypatch.setattr(raw_mesh, "BLOCK", block)
+    monkeypatch.setattr(file_mesh, "BLOCK", block)
     text = b"".join(b"v %d 0 0\n" % k for k in range(count)) + b"f 1 2 3\n"
     tracemalloc.start()
     read_obj(text)

@@ -54,10 +54,10 @@ def test_meshes_kept_as_they_are(tmp_path: Path) -> None:
     assert np.abs(network.sample_darboux.kn).max() < 1e-6
     with pytest.raises(InputError) as refused:
         lamella.net(surface, cells=8)
-    assert refused.value.where == "network.normal_curvature"
+    assert refused.value.where == "normal_curvature"
     with pytest.raises(InputError) as refused:
         lamella.net(surface, cells=8, normal_curvature=0.0, closing="round")
-    assert refused.value.where == "network.closing"
+    assert refused.value.where == "closing"
 
 
 def test_what_is_no_surface_or_has_no_net() -> None:
@@ -69,4 +69,4 @@ def test_what_is_no_surface_or_has_no_net() -> None:
         lamella.net([1, 2])  # type: ignore[arg-type]
     with pytest.raises(InputError) as refused:
         lamella.net(film([{"points": WAVED}]), cells=8, spacing=0.3)
-    assert refused.value.where == "network"
+    assert refused.value.where == "spacing"

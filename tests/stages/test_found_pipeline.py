@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 import os
-import sys
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -16,20 +15,11 @@ from lamella import InputError, compute, parse_project
 from lamella.base.progress import Progress, Report
 from lamella.command.main import main
 from lamella.project.read import moved
-from lamella.project.tables import FormFoundTable, MeshTable, Project, Table
+from lamella.project.tables import FormFoundTable, MeshTable, Project
 from lamella.stages.output import report_data
 from lamella.stages.pipeline import STAGES
 from lamella.surface.surface import Surface
 from stages.test_pipeline import KEYS, PROJECT
-
-
-class FoundTable(Table):
-    """Stands for the table of a surface that has to be found."""
-
-    kind: str
-    order: int = 4
-    tolerance: float = 5e-3
-    most_nodes: int = 100_000
 
 
 @pytest.fixture(params=["form-found", "mesh"])
@@ -53,20 +43,21 @@ def found(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> tu
         def describe(self) -> dict[str, Any]:
             return {"stability": "stable"}
 
-    def surface_of_table(table: FoundTable, folder: Path, progress: Progress) -> Found:
+    def surface_of_table(table: FormFoundTable | MeshTable, folder: Path, progress: Progress) -> Found:
         assert table.kind == request.param
         asked.append(folder)
         progress(Report.detail("Newton step 1"))
         return Found()
 
-    where = {"form-found": "lamella.surface.form_finding.find", "mesh": "lamella.surface.from_mesh.fit_cmc"}[
-        request.param
-    ]
-    module = ModuleType(where)
-    module.surface_of_table = surface_of_table  # type: ignore[attr-defined]
-    for name in (where.rpartition(".")[0], where):
-        monkeypatch.setitem(sys.modules, name, module)
-    project = parse_project(PROJECT).model_copy(update={"surface": FoundTable(kind=request.param)})
+    found, kind = {
+        "form-found": ("film_of_table", FormFoundTable),
+        "mesh": ("surface_of_mesh_table", MeshTable),
+    }[request.param]
+    monkeypatch.setattr(f"lamella.stages.surface_of_table.{found}", surface_of_table)
+    table = kind.model_construct(
+        kind=request.param, order=4, tolerance=2e-2, most_nodes=100_000, file="a.obj", boundary=()
+    )
+    project = parse_project(PROJECT).model_copy(update={"surface": table})
     monkeypatch.setattr("lamella.stages.pipeline.read_project", lambda path: project)
     monkeypatch.setattr("lamella.project.read.read_project", lambda path: project)
     monkeypatch.setattr(Project, "to_toml", lambda self: "")

@@ -18,16 +18,16 @@ import rhino3dm
 from lamella import __version__, compute, parse_project, write
 from lamella.base.drawing_origin import NOWHERE, coordinates, origin_of, told_from
 from lamella.base.errors import InputError
+from lamella.base.units import METRES
 from lamella.files.write.curves_3dm import write_curves_3dm
 from lamella.files.write.model_3dm import model_bytes
 from lamella.files.write.rhino_file import Frame
 from lamella.files.write.surface_3dm import surface_3dm_bytes
 from lamella.project.read import read_project
 from lamella.project.tables import FormFoundTable
-from lamella.project.values import METRES
+from lamella.stages.boundary_of_tables import boundary_loops, with_origin
 from lamella.stages.check import check_project
 from lamella.stages.pipeline import Results
-from lamella.surface.boundary import boundary_loops, with_origin
 
 FAR = np.array([4_500_013.0, 5_300_027.0, 503.0])
 SAME = 1e-6

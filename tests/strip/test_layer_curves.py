@@ -208,7 +208,7 @@ def test_lines_of_another_normal_curvature_have_none():
     network = trace_closed_form(surface, choose_density(surface, cells=24, spacing=None, pattern=pattern))
     with pytest.raises(InputError) as caught:
         make_lamellas(network, SECTION, STEEL, surface)
-    assert caught.value.where == "lamella.layer_curves"
+    assert caught.value.where == "section.layer_curves"
     with pytest.raises(InputError) as caught:
         make_lamellas(lamella.net(surface, cells=24), SECTION, STEEL)
-    assert caught.value.where == "lamella.layer_curves"
+    assert caught.value.where == "surface"

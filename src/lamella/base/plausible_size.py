@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Protocol
 
-import numpy as np
-
-from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
+from lamella.base.units import METRES
 
 LARGEST, SMALLEST = 250.0, 0.1
 """m. The largest timber gridshells span well under 200 m; a lamella is as high as the smallest is wide."""
 
-_UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}, {"in": 0.0254, "ft": 0.3048}
+_UNITS = [{unit: METRES[unit] for unit in units} for units in (("mm", "cm", "m"), ("in", "ft"))]
 _ROOMY, _USUAL = 12.0, (1.0, 150.0)
 """m; of the units in which a size is usual, metric ones first, the one in which it is nearest to this is named."""
 
@@ -73,34 +68,3 @@ def refuse_doubtful(what: str, size: float, metres: float, unit: str, key: str) 
         f'write unit = "{better}"; if it is {unit} indeed, write unit = "{unit}"',
         key,
     )
-
-
-class HasPosition(Protocol):
-    """Points (n, 3), m."""
-
-    @property
-    def position(self) -> Floats: ...
-
-
-class HasCheckPoints(Protocol):
-    """A surface that gives points spread all over it."""
-
-    def check_points(self) -> HasPosition: ...
-
-
-@contextmanager
-def unit_first(surface: HasCheckPoints) -> Iterator[None]:
-    """Say in a refusal of a net that the surface's size looks like a wrong unit, before what is refused."""
-    try:
-        yield
-    except InputError as error:
-        size = float(np.linalg.norm(np.ptp(surface.check_points().position, axis=0)))
-        if not is_doubtful(size):
-            raise
-        better, there = likely_unit(size, 1.0)
-        raise InputError(
-            f"the surface is {size:,.4g} m large: was {better} meant for its lengths ({there:.3g} m)? As it is: "
-            f"{error.message}",
-            f'check the unit of the boundary or mesh first (unit = "{better}"); if it is right: {error.remedy}',
-            error.where,
-        ) from None

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, cast, get_args
 
 import numpy as np
@@ -15,9 +13,8 @@ from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
 from lamella.command.optimise_options import Wishes
-from lamella.files.quad_mesh_files import QuadFile, quad_mesh_bytes
+from lamella.files.quad_mesh_files import QuadFile
 from lamella.projection.foot_points import foot_surface
-from lamella.projection.mesh_figures import mesh_figures
 from lamella.projection.polylines import diagonal_ring, polylines
 from lamella.projection.problems.crossing import AngleForm
 from lamella.projection.problems.deform import deform
@@ -315,8 +312,9 @@ def _require_near(mesh: QuadMesh, surface: Surface[Any], wishes: Wishes) -> None
 
 def _surface(given: QuadFile, wishes: Wishes, progress: Progress) -> Surface[Any]:
     """That of a project, or the surface of constant mean curvature the mesh itself means."""
-    from lamella.project.read import located, parse_project, read_project
+    from lamella.project.read import located, read_project
     from lamella.stages.surface_of_table import make_surface
+    from lamella.surface.from_mesh.fit_cmc import fit_cmc
 
     if wishes.surface is not None:
         project = read_project(wishes.surface)
@@ -327,17 +325,10 @@ def _surface(given: QuadFile, wishes: Wishes, progress: Progress) -> Surface[Any
     progress(
         Report.heading("no --surface: looking for the surface of constant mean curvature that the mesh itself means")
     )
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "mesh.ply"
-        content = quad_mesh_bytes(
-            ".ply", given.mesh, mesh_figures(given.mesh), like=QuadFile(given.mesh), name="mesh", version=""
-        )
-        file.write_bytes(content)
-        try:
-            project = parse_project({"surface": {"kind": "mesh", "file": str(file), "unit": "m"}})
-            return make_surface(project, Path(folder), progress)
-        except InputError as error:
-            raise InputError(
-                f"no surface of constant mean curvature fits the mesh: {error.message}",
-                "name a project with the surface: --surface PROJECT.toml",
-            ) from None
+    try:
+        return fit_cmc(given.mesh.vertices, given.mesh.faces, progress=progress)
+    except InputError as error:
+        raise InputError(
+            f"no surface of constant mean curvature fits the mesh: {error.message}",
+            "name a project with the surface: --surface PROJECT.toml",
+        ) from None

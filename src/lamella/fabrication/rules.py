@@ -111,13 +111,11 @@ class Rules:
                 raise InputError(
                     f"{name} is {value:g}, it has to be more than {bound:g}",
                     f"write a {name} above {bound:g}",
-                    f"fabrication.{name}",
+                    name,
                 )
         for name, value in (("hub_radius", self.hub_radius), ("rim_overhang", self.rim_overhang)):
             if not (np.isfinite(value) and value >= 0):
-                raise InputError(
-                    f"{name} is {value:g} m, it cannot be less than 0", "give 0 or more", f"fabrication.{name}"
-                )
+                raise InputError(f"{name} is {value:g} m, it cannot be less than 0", "give 0 or more", name)
         # twice the thickness, where the strip is high enough
         usual = min(2 * self.thickness, (self.thickness + self.height) / 2)
         if not (np.isfinite(self.slot_width) and self.slot_width >= self.thickness):
@@ -125,13 +123,13 @@ class Rules:
                 f"slot_width is {self.slot_width:g} m, less than the thickness {self.thickness:g} m "
                 "of the strip that goes in",
                 f"write slot_width = {usual:g}",
-                "fabrication.slot_width",
+                "slot_width",
             )
         if self.slot_width >= self.height:
             raise InputError(
                 f"slot_width is {self.slot_width:g} m, not less than the strip's height {self.height:g} m",
                 f"write slot_width = {usual:g}",
-                "fabrication.slot_width",
+                "slot_width",
             )
         # a tighter circle's inner edge would be narrower than the slots and their distances
         if self.edge_scale <= 0.5 or abs(self.curvature) * self.slot_width >= self.edge_scale:
@@ -141,10 +139,10 @@ class Rules:
             raise InputError(
                 f"the lamellas' circle has a radius of {1 / abs(self.curvature):g} m, too little for a strip "
                 f"{self.height:g} m high with slots {self.slot_width:g} m wide",
-                f"write lamella.height = {rounded(0.99 * highest, up=False):g} or less, and leave slot_width out"
+                f"write height = {rounded(0.99 * highest, up=False):g} or less, and leave slot_width out"
                 if highest > 2 * self.thickness
-                else f"write lamella.thickness = {rounded(0.1 / bend, up=False):g} or less",
-                "lamella.height",
+                else f"write thickness = {rounded(0.1 / bend, up=False):g} or less",
+                "height",
             )
         nearest = self.least_end_distance
         if not (np.isfinite(self.end_distance) and self.end_distance >= nearest - ROUNDING):
@@ -152,5 +150,5 @@ class Rules:
                 f"end_distance is {self.end_distance:g} m, which leaves less than one slot width "
                 f"({self.slot_width:g} m) beyond the last slot",
                 f"raise end_distance to {rounded(nearest, up=True):g} m or more",
-                "fabrication.end_distance",
+                "end_distance",
             )

@@ -93,7 +93,7 @@ class Notes:
         if self.hub_needed:
             yield Message(
                 "hub_small",
-                f"strips run into each other around the singular node: fabrication.hub_radius is "
+                f"strips run into each other around the singular node: hub_radius is "
                 f"{1e3 * rules.hub_radius:g} mm, it takes {1e3 * self.hub_needed:.1f} mm, or fewer layers",
             )
         if self.collisions:
@@ -131,7 +131,7 @@ class Notes:
             return f"{self.other_cells}; or move the rim" if self.other_cells else "move the rim"
         end_distance = rules.end_distance - self.too_far - ROUNDING
         overhang = max(rules.rim_overhang - self.too_far - ROUNDING, 0.0)
-        lengths = f"fabrication.end_distance = {rounded(end_distance, up=False):g}"
+        lengths = f"end_distance = {rounded(end_distance, up=False):g}"
         if rules.rim_overhang:
             lengths += f" and rim_overhang = {rounded(overhang, up=False):g}"
         return f"write {lengths}, or move the rim"

@@ -17,7 +17,7 @@ from lamella import __version__
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.wording import cut, shown
-from lamella.files.read.raw_mesh import Polygons
+from lamella.files.read.file_mesh import Polygons
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
 
 DTYPE = "compas.datastructures/Mesh"

@@ -13,15 +13,14 @@ from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.plausible_size import SMALLEST
+from lamella.base.units import RHINO_METRES, metres_of, unit_name
 from lamella.base.wording import counted, one_line
 from lamella.files.compas_json import compas_bytes, read_compas
+from lamella.files.read.file_mesh import Polygons
 from lamella.files.read.mesh import LARGEST_FILE, LARGEST_SIZE, check_polygons
-from lamella.files.read.mesh_3dm import METRES as RHINO_METRES
 from lamella.files.read.mesh_3dm import read_3dm
 from lamella.files.read.mesh_obj import read_obj
 from lamella.files.read.mesh_ply import read_ply
-from lamella.files.read.mesh_units import METRES, name_of
-from lamella.files.read.raw_mesh import Polygons
 from lamella.files.write.text import dumped, require_finite, rows
 from lamella.projection.mesh_figures import MeshFigures
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
@@ -80,9 +79,7 @@ def read_quad_mesh(path: str | Path, unit: str | None = None) -> QuadFile:
 
 def _read(path: Path, unit: str | None) -> QuadFile:
     require_format(path)
-    asked = METRES.get(unit.strip().lower()) if unit is not None else None
-    if unit is not None and asked is None:
-        raise InputError(f"unit {unit!r} is not known", f"take one of {', '.join(METRES)}")
+    asked = None if unit is None else metres_of(unit)
     if not path.is_file():
         raise InputError("no such file", "check the path")
     size, most = path.stat().st_size, LARGEST_JSON if path.suffix.lower() == ".json" else LARGEST_FILE
@@ -101,7 +98,7 @@ def _read(path: Path, unit: str | None) -> QuadFile:
     _require_quads(found)
     told = found.metres_per_unit
     if told is not None and asked is not None and abs(told / asked - 1) > 1e-9:
-        raise InputError(f"the file says that its unit is {name_of(told)}, not {unit}", "leave the unit out")
+        raise InputError(f"the file says that its unit is {unit_name(told)}, not {unit}", "leave the unit out")
     metres = told or asked or 1.0
     notes = found.notes
     if told is None and asked is None:
@@ -136,11 +133,11 @@ def _check_size(mesh: QuadMesh, metres: float) -> tuple[Message, ...]:
         raise InputError("the mesh has no size: all its vertices are at one place", "export the mesh again")
     if size > LARGEST_SIZE:
         raise InputError(
-            f"the mesh is {size:,.0f} m large in {name_of(metres)} (at most {LARGEST_SIZE:,.0f} m)",
+            f"the mesh is {size:,.0f} m large in {unit_name(metres)} (at most {LARGEST_SIZE:,.0f} m)",
             f"say its unit: with --unit mm it is {size / metres * 1e-3:,.4g} m large",
         )
     return (
-        (Message("unit_small", f"the mesh is {size:.3g} m large: is its unit, {name_of(metres)}, right?"),)
+        (Message("unit_small", f"the mesh is {size:.3g} m large: is its unit, {unit_name(metres)}, right?"),)
         if size < SMALLEST
         else ()
     )
@@ -193,7 +190,7 @@ def quad_mesh_bytes(
     """
     points = mesh.vertices / like.metres
     require_finite(points)
-    unit = name_of(like.metres)
+    unit = unit_name(like.metres)
     match suffix.lower():
         case ".obj":
             head = f"# lamella {one_line(version)}\n# {one_line(name)}\n# units: {unit}; {FIGURE_UNITS}\n".encode()

@@ -68,7 +68,7 @@ class ArcLengths:
                 raise Stretched(
                     f"{len(left)} pieces of lamella stretch too much for their length to be measured: to "
                     f"{reached:.2g} of the mean speed along them (limit {tail:g})",
-                    where="network.cells",
+                    where="cells",
                 )
             speed, length = _speed_series(segments, left, points)
             end = np.abs(speed[-2:]).max(0) / speed[0]

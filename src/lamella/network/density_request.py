@@ -47,12 +47,12 @@ class DensityRequest:
         """
         if cells is not None and spacing is not None:
             raise InputError(
-                f"both cells = {cells} and spacing = {spacing:g} m are given", "give one of the two", "network"
+                f"both cells = {cells} and spacing = {spacing:g} m are given", "give one of the two", "spacing"
             )
         if cells is not None and (isinstance(cells, bool) or not isinstance(cells, int | np.integer)):
-            raise InputError(f"cells = {cells!r} is not a whole number", "write a whole number", "network.cells")
+            raise InputError(f"cells = {cells!r} is not a whole number", "write a whole number", "cells")
         if spacing is not None and not 0 < spacing < np.inf:
-            raise InputError(f"spacing = {spacing!r} m is no length", "write a number above 0, in m", "network.spacing")
+            raise InputError(f"spacing = {spacing!r} m is no length", "write a number above 0, in m", "spacing")
         if spacing is None:
             return cls(DEFAULT_CELLS if cells is None else int(cells), None, cells is None)
         return cls(None, spacing)
@@ -60,7 +60,7 @@ class DensityRequest:
     @property
     def parameter(self) -> str:
         """The parameter that errors are reported for."""
-        return "network.cells" if self.spacing is None else "network.spacing"
+        return "cells" if self.spacing is None else "spacing"
 
     def __str__(self) -> str:
         """As reports name it."""

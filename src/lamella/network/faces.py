@@ -131,8 +131,8 @@ def trace_faces(
         raise InputError(
             f"the net is too coarse for this surface: a face between lamellas and rim has {corners} corners "
             f"(limit {MOST_CORNERS})",
-            "raise network.cells (or lower network.spacing)",
-            "network.cells",
+            "raise cells (or lower spacing)",
+            "cells",
         )
     large = tail[first_edge[count > MOST_SIDES]]
     first_edge, count = first_edge[count <= MOST_SIDES], count[count <= MOST_SIDES]

@@ -120,6 +120,6 @@ def fitting_cells(cells: int, multiple: int, around: str, *, given: bool) -> int
     raise InputError(
         f"cells = {cells} around {around} {why}"
         + (": with every n-th curve kept the net would not meet itself" if cells % multiple else " are needed"),
-        f"write cells = {' or '.join(fits)}, or another network.every",
-        "network.cells",
+        f"write cells = {' or '.join(fits)}, or another every",
+        "cells",
     )

@@ -7,13 +7,14 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
+from lamella.base.limits import MOST_MOVE, MOST_SCALE, MOST_TILT, MOST_WAVES
+from lamella.base.number_lists import Refusal
+from lamella.base.units import METRES
 from lamella.project.values import (
-    METRES,
     Direction,
     Name,
     Point,
     Points,
-    Refusal,
     Shift,
     Table,
     Triple,
@@ -26,7 +27,6 @@ from lamella.project.values import (
 
 CURVE_FILES = (".3dm", ".dxf", ".json")
 MOST_PARTS = 200
-MOST_WAVES = 4
 
 
 class CircleTable(Table):
@@ -104,17 +104,19 @@ class PartTable(Table):
 class AdjustTable(Table):
     """How far a loop may be changed for a net that closes (network.closing = "adjust"); what is not given is held."""
 
-    move: float = number("Shift of the loop, at most.", "m", ge=0, le=1000, default=0.0, examples=[0.3])
-    scale: float = number("Change of size, as a share of it, at most.", "", ge=0, le=0.5, default=0.0, examples=[0.05])
+    move: float = number("Shift of the loop, at most.", "m", ge=0, le=MOST_MOVE, default=0.0, examples=[0.3])
+    scale: float = number(
+        "Change of size, as a share of it, at most.", "", ge=0, le=MOST_SCALE, default=0.0, examples=[0.05]
+    )
     tilt: float = number(
-        "Turn of the loop about any axis, at most.", "degrees", ge=0, le=45, default=0.0, examples=[5.0]
+        "Turn of the loop about any axis, at most.", "degrees", ge=0, le=MOST_TILT, default=0.0, examples=[5.0]
     )
     points: float = number(
         "Shift of any point of the curve, at most, by all waves along the loop together: of its points, or by arc "
         "length.",
         "m",
         ge=0,
-        le=1000,
+        le=MOST_MOVE,
         default=0.0,
         examples=[0.3],
     )

@@ -8,6 +8,7 @@ from typing import Any, get_args
 
 from pydantic_core import ErrorDetails
 
+from lamella.base.number_lists import Refusal
 from lamella.base.wording import cut, shown
 from lamella.project.tables import (
     FURTHER_TABLES,
@@ -15,7 +16,6 @@ from lamella.project.tables import (
     BoundaryTable,
     MaterialTable,
     Project,
-    Refusal,
     Table,
 )
 

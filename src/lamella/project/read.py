@@ -136,7 +136,7 @@ def parse_project(values: dict[str, Any], *, source: str = "", text: str = "") -
             raise told[0] from None
         raise InputError("\n".join(str(error) for error in told)) from None
     try:
-        project.material()
+        _check_material(project)
         _check_slots(project)
         _check_lines(project)
     except InputError as error:
@@ -177,6 +177,13 @@ def moved(project: Project, folder: Path, other: Path) -> Project:
     return project.model_copy(update={"surface": table})
 
 
+def _check_material(project: Project) -> None:
+    try:
+        project.material()
+    except InputError as error:
+        raise InputError(error.message, error.remedy, "lamella.material") from None
+
+
 def _check_slots(project: Project) -> None:
     width, thickness = project.fabrication.slot_width, project.lamella.thickness
     if width is not None and width < thickness:
@@ -194,7 +201,10 @@ def _check_lines(project: Project) -> None:
         return
     from lamella.network.streamlines.applicability import refuse_lattice_wishes
 
-    refuse_lattice_wishes(net.pattern, net.closing)
+    try:
+        refuse_lattice_wishes(net.pattern, net.closing)
+    except InputError as error:
+        raise InputError(error.message, error.remedy, f"network.{error.where}") from None
 
 
 def _surely_traced(project: Project) -> bool:

@@ -8,21 +8,19 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, field_validator, model_validator
 
 from lamella.base.drawing_origin import FAR
+from lamella.base.limits import LEAST_LENGTH, MOST_LENGTH
+from lamella.base.number_lists import Refusal, two_numbers
 from lamella.base.wording import rounded, shown
 from lamella.project.boundary_tables import BoundaryTable
 from lamella.project.values import (
-    LEAST_LENGTH,
-    MOST_LENGTH,
     Point,
     Range,
-    Refusal,
     Table,
     Unit,
     file_name,
     length,
     list_of_tables,
     number,
-    two_numbers,
 )
 
 # of a helicoid: the longer side of its parameter rectangle over the shorter one

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 import tomli_w
 from pydantic import Field, field_validator, model_validator
 
+from lamella.base.number_lists import Refusal, two_numbers
 from lamella.base.wording import is_byte, shown
 from lamella.network.density_request import CELLS_MIN, DEFAULT_CELLS
 from lamella.network.pattern import Pattern
@@ -21,22 +22,17 @@ from lamella.project.boundary_tables import (
 )
 from lamella.project.surface_tables import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
 from lamella.project.values import (
-    LEAST_LENGTH,
     Name,
     Range,
-    Refusal,
     Table,
     Unit,
     length,
     number,
-    read_points,
-    two_numbers,
 )
 from lamella.strip.material import MATERIALS, Material, find_material
 
 __all__ = [
     "FURTHER_TABLES",
-    "LEAST_LENGTH",
     "MATERIALS",
     "SURFACE_TABLES",
     "AdjustTable",
@@ -53,11 +49,9 @@ __all__ = [
     "PartTable",
     "PlaceTable",
     "Project",
-    "Refusal",
     "SlideTable",
     "Table",
     "project_schema",
-    "read_points",
 ]
 
 

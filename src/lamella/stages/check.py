@@ -15,13 +15,13 @@ from typing import Any
 from lamella.base.drawing_origin import drawing_origin, told_from
 from lamella.base.errors import InputError
 from lamella.base.message import Message
-from lamella.base.plausible_size import unit_first
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
 from lamella.network.streamlines.applicability import is_traced
 from lamella.project.tables import FormFoundTable, MeshTable, Project
 from lamella.stages.clock import Clock
 from lamella.stages.pipeline import Planned, Results, complete, plan
+from lamella.stages.unit_first import unit_first
 from lamella.stages.warnings import order_caution
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason

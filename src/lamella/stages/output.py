@@ -25,7 +25,7 @@ from lamella.files.write.rhino_file import Frame
 from lamella.files.write.surface_3dm import write_surface_3dm
 from lamella.network.network import Network
 from lamella.project.read import moved
-from lamella.surface.boundary.tables import boundary_loops, drawing_unit
+from lamella.stages.boundary_of_tables import boundary_loops, drawing_unit
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.report import ReportData, write_report

@@ -14,7 +14,6 @@ from lamella import __version__
 from lamella.base.drawing_origin import Origin, drawing_origin, told_from, with_drawn_points
 from lamella.base.errors import InputError
 from lamella.base.message import Message
-from lamella.base.plausible_size import unit_first
 from lamella.base.progress import Progress, Report, in_stage, silent
 from lamella.fabrication import Nesting, Parts, make_parts, nest
 from lamella.fabrication.rules import LEAST_END, LEAST_HUB, Rules, clear_hub, edge_scale
@@ -28,8 +27,10 @@ from lamella.project.tables import FormFoundTable, Project
 from lamella.stages import summary
 from lamella.stages import warnings as cautions
 from lamella.stages.clock import Clock
+from lamella.stages.keys import keys, with_keys
 from lamella.stages.other_cells import OtherCells
 from lamella.stages.surface_of_table import make_surface
+from lamella.stages.unit_first import unit_first
 from lamella.strip.lamellas import Lamellas, Section, make_lamellas
 from lamella.strip.layer_curves import check_layer_curves
 from lamella.surface.closed_forms.closed_form import ClosedForm
@@ -38,9 +39,9 @@ from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
 
 if TYPE_CHECKING:
-    from lamella.network.adjust.adjust import Adjusted
     from lamella.network.elements.element_network import ElementNetwork
     from lamella.network.streamlines.streamline_network import TracedNetwork
+    from lamella.stages.adjusted_table import AdjustedTable
 
 STAGES = ("surface", "network", "lamellas", "fabrication", "structure")
 LAST_STAGE = "fabrication"
@@ -67,7 +68,7 @@ class Results:
         The content of summary.json, without the time spent on files.
     folder : Path
         Where the files the project names were looked for.
-    adjusted : Adjusted or None
+    adjusted : AdjustedTable or None
         The boundary as it was changed for a net that closes.
     """
 
@@ -80,7 +81,7 @@ class Results:
     nesting: Nesting | None
     summary: dict[str, Any] = field(repr=False)
     folder: Path = Path()
-    adjusted: Adjusted | None = None
+    adjusted: AdjustedTable | None = None
 
     @property
     def origin(self) -> Origin:
@@ -88,7 +89,7 @@ class Results:
         return drawing_origin(self.surface)
 
 
-Planned = tuple[Surface[Any], "Density | None", "Adjusted | None"]
+Planned = tuple[Surface[Any], "Density | None", "AdjustedTable | None"]
 """The surface, the density of the net where that is arithmetic, and the boundary where it was adjusted."""
 
 
@@ -117,12 +118,13 @@ def plan(
     if depth >= STAGES.index("fabrication"):
         _check_fabrication(fill_in(project, surface), _normal_curvature(project, surface))
     table = project.network
-    if depth and is_traced(surface, table.pattern):
-        check_traced(surface, table.pattern, table.closing)
-        return surface, None
-    if not isinstance(surface, ClosedForm):
-        return surface, None
-    return surface, choose_density(surface, cells=table.cells, spacing=table.spacing, pattern=table.pattern)
+    with keys("network", surface="surface"):
+        if depth and is_traced(surface, table.pattern):
+            check_traced(surface, table.pattern, table.closing)
+            return surface, None
+        if not isinstance(surface, ClosedForm):
+            return surface, None
+        return surface, choose_density(surface, cells=table.cells, spacing=table.spacing, pattern=table.pattern)
 
 
 def _refuse_adjusting(project: Project) -> None:
@@ -136,9 +138,9 @@ def _refuse_adjusting(project: Project) -> None:
             "network.closing",
         )
     if isinstance(project.surface, FormFoundTable):
-        from lamella.surface.boundary.freedom import Freedom, refuse_held
+        from lamella.stages.adjusted_table import refuse_held_table
 
-        refuse_held(Freedom(project.surface))
+        refuse_held_table(project.surface)
 
 
 def _planned(project: Project, until: str | None, folder: Path, progress: Progress) -> Planned:
@@ -147,10 +149,10 @@ def _planned(project: Project, until: str | None, folder: Path, progress: Progre
     depth = _last_of(project, until)
     if not depth or project.network.closing != "adjust" or table.kind != "form-found":
         return *plan(project, until=until, folder=folder, progress=progress), None
-    from lamella.network.adjust.adjust import adjust_boundary
+    from lamella.stages.adjusted_table import adjust_table
 
     _refuse_adjusting(project)
-    adjusted = adjust_boundary(
+    adjusted = adjust_table(
         table,
         folder,
         cells=project.network.cells,
@@ -185,6 +187,7 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
     return project.model_copy(update=update)
 
 
+@keys("lamella", section="lamella")
 def _check_layers(project: Project, surface: Surface[Any], depth: int) -> None:
     """Refuse layers that the net's lamellas cannot have."""
     strip = project.lamella
@@ -198,6 +201,7 @@ def _normal_curvature(project: Project, surface: Surface[Any]) -> float:
     return surface.mean_curvature if wanted is None else wanted
 
 
+@keys("fabrication", height="lamella.height")
 def _check_fabrication(project: Project, curvature: float) -> None:
     """Refuse measures that no part can be made with, by the key in the project."""
     strip, cut = project.lamella, project.fabrication
@@ -267,7 +271,10 @@ def _complete(
     loops = summary.loop_summary(surface, getattr(project.surface, "boundary", ()))
     figures: dict[str, Any] = {"surface": summary.surface_summary(surface, mesh) | loops}
     clock.stop("surface", f"area {figures['surface']['area']:.4g} m2, H = {surface.mean_curvature:.6g} 1/m")
-    warnings += [*surface.warnings(), *cautions.size_cautions(mesh, project.lamella.height)]
+    warnings += [
+        *(with_keys(warning, "surface.tolerance =", "surface.radius =") for warning in surface.warnings()),
+        *cautions.size_cautions(mesh, project.lamella.height),
+    ]
     warnings += cautions.surface_file_cautions(surface)
 
     if depth and until is None and not density:
@@ -287,7 +294,8 @@ def _complete(
         if density:
             assert isinstance(surface, ClosedForm)
             clock.start("network", f"{density.requested}, about {density.estimated_nodes:,} nodes")
-            network = trace_closed_form(surface, density, minimum_length=table.minimum_length)
+            with keys("network", surface="surface"):
+                network = trace_closed_form(surface, density, minimum_length=table.minimum_length)
             figures["network"] = f = summary.network_summary(network, density.requested)
         else:
             # heavy, and closed forms do without
@@ -304,7 +312,7 @@ def _complete(
             figures["network"] = f = summary.network_summary(network, woven.requested) | woven.describe()
             if adjusted:
                 figures["network"]["adjustment"] = adjusted.figures
-            told = list(woven.warnings(finer))
+            told = [with_keys(warning, "surface.tolerance") for warning in woven.warnings(finer)]
             warnings += told
         others = OtherCells(project, surface, network, len(told))
         clock.stop(
@@ -322,9 +330,10 @@ def _complete(
     if network and depth >= STAGES.index("lamellas"):
         strip = project.lamella
         clock.start("lamellas", f"{strip.height * 1000:g} x {strip.thickness * 1000:g} mm, {strip.material}")
-        section = Section(**strip.model_dump(exclude={"material"}))
-        strips = partial(make_lamellas, section=section, material=project.material(), surface=surface)
-        lamellas = strips(network)
+        with keys("lamella", section="lamella", network="network"):
+            section = Section(**strip.model_dump(exclude={"material"}))
+            strips = partial(make_lamellas, section=section, material=project.material(), surface=surface)
+            lamellas = strips(network)
         figures["lamellas"] = f = summary.lamella_summary(network, lamellas, strip.material, project.material())
         f |= woven.corner_stresses(lamellas.utilisation) if woven else {}
         clock.stop("lamellas", f"{f['total_length']:.4g} m of lamella, utilisation up to {f['utilisation_max']:.2f}")
@@ -349,17 +358,19 @@ def _complete(
     if network and lamellas and others and depth >= STAGES.index("fabrication"):
         cut = project.fabrication
         clock.start("fabrication", "parts and sheets")
-        parts = make_parts(
-            network,
-            lamellas,
-            density=project.material().density,
-            others=lambda fault: others.without(lambda net: fault(net, strips(net))),
-            **cut.model_dump(),
-        )
+        with keys("fabrication", height="lamella.height"):
+            parts = make_parts(
+                network,
+                lamellas,
+                density=project.material().density,
+                others=lambda fault: others.without(lambda net: fault(net, strips(net))),
+                **cut.model_dump(),
+            )
         nesting = nest(parts, sheet=cut.sheet, gap=cut.gap)
         figures["fabrication"] = f = summary.fabrication_summary(parts, nesting, figures["surface"]["area"])
         clock.stop("fabrication", f"{f['parts']:,} parts, {f['mass']:.4g} kg, {f['sheets']} sheets")
-        warnings += parts.warnings
+        told_keys = ("fabrication.end_distance", "fabrication.hub_radius")
+        warnings += [with_keys(warning, *told_keys) for warning in parts.warnings]
 
     content: dict[str, Any] = {"schema": SCHEMA, "version": __version__, "name": project.name}
     content |= {stage: figures.get(stage) for stage in STAGES} | {"warnings": warnings, "seconds": clock.seconds}

@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from lamella.base.drawing_origin import NOWHERE, measured_from, origin_figure, told_from
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
-from lamella.project.tables import Project
+from lamella.project.tables import FormFoundTable, MeshTable, Project
+from lamella.stages.keys import keys
 from lamella.stages.warnings import order_caution
 from lamella.surface.closed_forms.kinds import CLOSED_FORMS
 from lamella.surface.surface import Surface
+
+if TYPE_CHECKING:
+    from lamella.surface.element.surface import ElementSurface
+    from lamella.surface.from_mesh.fit_options import FitOptions
+    from lamella.surface.from_mesh.raw_mesh import RawMesh
+
+# the way that a mesh of varying mean curvature has
+KEEP = (
+    'to keep the mesh\'s own surface write mean_curvature = "varying", and under [network] kind = "principal" (lines '
+    "of principal curvature) or a normal_curvature"
+)
 
 
 def make_surface(project: Project, folder: str | Path = Path(), progress: Progress = silent) -> Surface[Any]:
@@ -30,22 +45,98 @@ def make_surface(project: Project, folder: str | Path = Path(), progress: Progre
         No such surface.
     """
     table, folder = project.surface, Path(folder)
-    if table.kind not in ("form-found", "mesh"):
-        return CLOSED_FORMS[table.kind](**table.model_dump(exclude={"kind"}))
+    if not isinstance(table, FormFoundTable | MeshTable):
+        with keys("surface"):
+            return CLOSED_FORMS[table.kind](**table.model_dump(exclude={"kind"}))
     too_low = order_caution(table.order, table.tolerance, table.most_nodes)
     if too_low:
         progress(Report.step(too_low))
     try:
-        if table.kind == "form-found":
-            from lamella.surface.form_finding.find import surface_of_table as find
-
+        if isinstance(table, FormFoundTable):
             progress(Report.step("finding the surface between its curves"))
-            return find(table, folder, progress)
-        from lamella.surface.from_mesh.fit_cmc import surface_of_table as adopt
-
+            return film_of_table(table, folder, progress)
         progress(Report.step("reading the mesh"))
-        return adopt(table, folder, progress)
+        return surface_of_mesh_table(table, folder, progress)
     except InputError as error:
         if too_low and error.where == "surface.tolerance":
             raise InputError(error.message, f"write order = 3 or 4, or {error.remedy}", error.where) from None
         raise
+
+
+def film_of_table(table: FormFoundTable, folder: Path, progress: Progress = silent) -> ElementSurface:
+    """The film in the boundary of a table, see `make_surface`."""
+    # heavy, and closed forms do without
+    from lamella.stages.boundary_of_tables import boundary_loops, with_origin
+    from lamella.surface.boundary.corner_cost import corner_cost
+    from lamella.surface.form_finding.find import find_film, notes_on, remarks_on
+
+    table = with_origin(table, folder)
+    with told_from(table.origin or NOWHERE):
+        if table.origin:
+            progress(Report.step(measured_from(table.origin)))
+        loops = boundary_loops(table, folder)
+        remarks = remarks_on(loops)
+        for remark in (*remarks, corner_cost(loops, table.most_nodes, table.tolerance)):
+            if remark:
+                progress(Report.step(remark))
+        with keys("surface", loops="surface.boundary"):
+            found = find_film(
+                loops,
+                table.mean_curvature or 0.0,
+                volume=table.volume,
+                order=table.order,
+                tolerance=table.tolerance,
+                branch=table.branch,
+                most_nodes=table.most_nodes,
+                progress=progress,
+            )
+        notes = remarks + notes_on(found, given_curvature=table.volume is None)
+        return found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
+
+
+def surface_of_mesh_table(table: MeshTable, folder: Path, progress: Progress = silent) -> ElementSurface:
+    """The surface of the mesh that a table names, see `make_surface`."""
+    # heavy, and closed forms do without
+    from lamella.files.read.mesh import read_mesh
+    from lamella.surface.from_mesh.fit_cmc import cmc_surface
+    from lamella.surface.from_mesh.fit_options import FitOptions
+    from lamella.surface.from_mesh.fit_surface import varying_surface
+
+    with keys("surface", path="surface.file", points="surface.file", faces="surface.file"):
+        raw = read_mesh(folder / table.file, table.unit, table.origin)
+        if any(raw.origin):
+            progress(Report.step(measured_from(raw.origin)))
+        varying = table.mean_curvature == "varying"
+        options = FitOptions(
+            "fit" if table.mean_curvature == "varying" else table.mean_curvature,
+            table.corner_angle,
+            table.order,
+            table.tolerance,
+            table.most_nodes,
+            table.deviation,
+        )
+        with told_from(raw.origin):
+            if varying:
+                return varying_surface(raw, options, progress)
+            with _open_ways(raw, options):
+                return cmc_surface(raw, options, progress)
+
+
+@contextmanager
+def _open_ways(raw: RawMesh, options: FitOptions) -> Iterator[None]:
+    """Offer to keep the mesh's own surface where that can be; say why not where it is refused too."""
+    from lamella.surface.from_mesh.fit_cmc import NotConstantError
+    from lamella.surface.from_mesh.fit_surface import varying_surface
+
+    try:
+        yield
+    except NotConstantError as error:
+        try:
+            varying_surface(raw, options, silent)
+        except InputError as refused:
+            raise InputError(
+                f'{error.message}; with mean_curvature = "varying" {refused.message}',
+                f"{refused.remedy}; or {error.otherwise}",
+                refused.where,
+            ) from None
+        raise InputError(error.message, f"{KEEP}; or {error.otherwise}", error.where) from None

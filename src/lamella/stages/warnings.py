@@ -14,6 +14,7 @@ from lamella.base.wording import counted, rounded
 from lamella.network.cell_sizes import MOST_RATIO, large_cells, small_cells
 from lamella.network.density_request import CELLS_MIN, NODES_MAX
 from lamella.network.network import SINGULAR, Network
+from lamella.stages.keys import with_keys
 from lamella.strip.lamellas import Lamellas, Section, layer_drift
 from lamella.strip.material import Material
 from lamella.strip.overstress import Used, ways_to_stand
@@ -221,7 +222,7 @@ def lamella_cautions(
             f"utilisation reaches {lamellas.utilisation[worst]:.2f} in lamella {network.ids[lamella]} at ({point}) m "
             f"({over} of {len(network.ids)} lamellas {'is' if over == 1 else 'are'} over 1): "
             + (at_corner(network.sample_points[worst]) if at_corner else "")
-            + ways_to_stand(network, lamellas, material, known, used),
+            + with_keys(ways_to_stand(network, lamellas, material, known, used), "lamella.material ="),
         )
     half = lamellas.section.height / 2
     curvature = float(max(np.abs(mesh.k1).max(), np.abs(mesh.k2).max()))

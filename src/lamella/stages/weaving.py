@@ -11,6 +11,7 @@ from lamella.network.streamlines.applicability import told_mean_curvature
 from lamella.network.streamlines.streamline_network import TracedNetwork, traced_network
 from lamella.network.streamlines.streamline_plan import LaidLines, lay_lines
 from lamella.project.tables import Project
+from lamella.stages.keys import keys
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import refuse_umbilic
@@ -19,6 +20,7 @@ from lamella.surface.umbilic import refuse_umbilic
 MANNERS = ("umbilics, isothermic coordinates, lamellas", "lines from even seeds")
 
 
+@keys("network", surface="surface")
 def lay(surface: Surface[Any], project: Project, step: float | None, progress: Progress) -> LaidNet:
     """The lattice of a surface of elements; of a given spacing l0 (sqrt(m)) where it was adjusted."""
     assert isinstance(surface, ElementSurface)
@@ -36,6 +38,7 @@ def lay(surface: Surface[Any], project: Project, step: float | None, progress: P
     )
 
 
+@keys("network", surface="surface")
 def weave(laid: LaidNet, project: Project) -> ElementNetwork:
     """The network of that lattice."""
     table = project.network
@@ -44,6 +47,7 @@ def weave(laid: LaidNet, project: Project) -> ElementNetwork:
     return laid.traced(closing=closing, minimum_length=table.minimum_length)
 
 
+@keys("network", surface="surface")
 def lay_traced(surface: Surface[Any], project: Project) -> LaidLines:
     """How lines that follow from no lattice are laid."""
     refuse_umbilic(surface)
@@ -51,6 +55,7 @@ def lay_traced(surface: Surface[Any], project: Project) -> LaidLines:
     return lay_lines(ground_of(surface), table.pattern, cells=table.cells, spacing=table.spacing)
 
 
+@keys("network", surface="surface")
 def trace(surface: Surface[Any], project: Project, progress: Progress) -> TracedNetwork:
     """The network of such lines."""
     refuse_umbilic(surface)

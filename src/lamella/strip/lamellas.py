@@ -74,7 +74,7 @@ class Section:
             raise InputError(
                 f"thickness = {self.thickness:g} m is not below height = {self.height:g} m",
                 "the strip stands on edge: its height is the larger measure",
-                "lamella.thickness",
+                "thickness",
             )
         for key, value, known in (
             ("marks", self.marks, get_args(Marks)),
@@ -82,7 +82,7 @@ class Section:
             ("layer_curves", self.layer_curves, get_args(LayerCurves)),
         ):
             if value not in known:
-                raise InputError(f"{key} = {value!r}", f"choose one of {', '.join(known)}", f"lamella.{key}")
+                raise InputError(f"{key} = {value!r}", f"choose one of {', '.join(known)}", key)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -242,9 +242,8 @@ def make_lamellas(
         raise InputError(
             f"height = {section.height:g} m: strips of radius {limit / 2:.4g} m cannot be "
             f"{limit:.4g} m high or more, their inner edge would reach the centre",
-            f"write lamella.height = {rounded(0.99 * limit / 2, up=False):g} or less, or check that the surface is in "
-            "metres",
-            "lamella.height",
+            f"write height = {rounded(0.99 * limit / 2, up=False):g} or less, or check that the surface is in metres",
+            "section.height",
         )
     kn, kg, tg = network.sample_darboux
     held = section.marks == "arc-length"
@@ -304,7 +303,7 @@ def _layers(network: Network, section: Section, lengthening: Floats, surface: Su
             raise InputError(
                 'layer_curves = "lamella" needs the surface that the network is on',
                 "give make_lamellas the surface, or choose another value",
-                "lamella.layer_curves",
+                "surface",
             )
         return lamella_layers(surface, network, offsets, lengthening)
     cut = section.layer_curves == "cut"

@@ -44,7 +44,7 @@ def check_layer_curves(surface: Surface[Any], pattern: Pattern) -> None:
             'layer_curves = "lamella" shifts u + v by a constant, and lines of a given normal curvature have no such '
             "coordinates",
             'write layer_curves = "cut", or "offset"',
-            "lamella.layer_curves",
+            "section.layer_curves",
         )
 
 

@@ -69,5 +69,5 @@ def find_material(name: str, own: dict[str, Material] | None = None) -> Material
         f"unknown material {name!r}" + (f", did you mean {near[0]!r}?" if near else ""),
         f"use one of {', '.join(known)}, or add a table [materials.{name!r}] with density, youngs_modulus, "
         "shear_modulus and strength",
-        "lamella.material",
+        "name",
     )

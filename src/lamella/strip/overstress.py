@@ -84,7 +84,7 @@ def _of_known(network: Network, lamellas: Lamellas, kind: Mapping[str, Material]
     first = sorted(kind, key=lambda name: -kind[name].strength / kind[name].youngs_modulus)[:MOST_TRIED]
     share = {name: used(section, kind[name]) for name in first}
     best = min(first, key=share.__getitem__)
-    name = f"lamella.material = {best!r}"
+    name = f"material = {best!r}"
     if share[best] <= 1:
         return name
     utilisation = partial(_of, used, kind[best])

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from lamella import InputError
 from lamella.files.read.mesh import read_mesh
-from lamella.files.read.polygons import split_polygons
+from lamella.surface.from_mesh.split_polygons import split_polygons
 from surface.from_mesh.meshes import grid, obj_text, ply_bytes, rhino_bytes, stl_bytes, triangles
 
 POINTS, QUADS = grid()
@@ -186,10 +186,10 @@ def test_units(read):
     for factor, unit in ((1200, "m"), (1000, "m")):
         with pytest.raises(InputError) as caught:
             read("a.obj", obj_text(factor * POINTS, FACES))
-        assert caught.value.where == "surface.unit"
+        assert caught.value.where == "unit"
         assert f'unit = "{unit}"' in caught.value.remedy
         assert len(read("a.obj", obj_text(factor * POINTS, FACES), unit).points) == len(POINTS)
-    with pytest.raises(InputError, match=r"surface.unit: unit 'furlong' is not known\n.*mm, cm"):
+    with pytest.raises(InputError, match=r"unit: unit 'furlong' is not known\n.*mm, cm"):
         read("a.obj", text, "furlong")
     # a metre drawn where the file says millimetres: the project's word counts, and is the remedy
     with pytest.raises(InputError) as caught:
@@ -207,7 +207,7 @@ def test_what_is_wrong_is_said(read, tmp_path):
     def refused(match, name, content):
         with pytest.raises(InputError, match=match) as caught:
             read(name, content)
-        assert caught.value.where == "surface.file"
+        assert caught.value.where == "path"
 
     with pytest.raises(InputError, match="does not exist"):
         read_mesh(tmp_path / "none.obj")

@@ -13,7 +13,6 @@ import pytest
 
 from conftest import EXAMPLES
 from lamella import InputError, compute, parse_project
-from lamella.network.adjust.adjust import Adjusted, adjust_boundary
 from lamella.network.adjust.adjustable_films import Films
 from lamella.network.adjust.transition_sensitivities import curvature_rates_of_volume
 from lamella.network.elements.element_network import ElementNetwork, element_network
@@ -21,8 +20,9 @@ from lamella.network.network import SEAM, SINGULAR
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.project.read import read_project
 from lamella.project.tables import FormFoundTable
+from lamella.stages.adjusted_table import AdjustedTable, adjust_table
+from lamella.stages.boundary_of_tables import adjustable_film, boundary_loops
 from lamella.stages.pipeline import write
-from lamella.surface.boundary import boundary_loops
 from lamella.surface.boundary.freedom import Freedom
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.find import find_film
@@ -67,36 +67,36 @@ def table_of(tables: dict[str, Any]) -> FormFoundTable:
 
 def test_parameters_change_what_they_name() -> None:
     table = table_of(sketch(0, move=0.3, scale=0.1, tilt=5.0))
-    freedom = Freedom(table)
+    freedom = Freedom(adjustable_film(table))
     assert freedom.names == ("points of 'rim'", "place of 'oculus'", "size of 'oculus'", "tilt of 'oculus'")
     # an even shift and four waves, each with cosine and sine, in x, y, z; three, one and three for the ring
     assert freedom.count == 3 * 9 + 3 + 1 + 3
-    assert np.allclose(freedom.changed(np.zeros(freedom.count)).boundary[0].points, table.boundary[0].points)
+    assert np.allclose(freedom.changed(np.zeros(freedom.count)).curves[0].points, table.boundary[0].points)
     shares = np.zeros(freedom.count)
     shares[1], shares[-7], shares[-4], shares[-3] = 1, -1, 0.5, 1
     changed = freedom.changed(shares)
-    moved = np.array(changed.boundary[0].points) - np.array(table.boundary[0].points)
+    moved = np.array(changed.curves[0].points) - np.array(table.boundary[0].points)
     assert np.allclose(moved, [0, 0.4, 0])
-    ring = changed.boundary[1].circle
+    ring = changed.curves[1].circle
     assert ring is not None
     assert np.allclose(ring.center, [-0.3, 0, 2])
     assert ring.radius == pytest.approx(1.3 * 1.05)
     assert np.degrees(np.arccos(ring.normal[2])) == pytest.approx(5)
     # no wave shifts a point by more than its range
     for number in range(27):
-        there = np.array(freedom.changed(np.eye(freedom.count)[number]).boundary[0].points)
+        there = np.array(freedom.changed(np.eye(freedom.count)[number]).curves[0].points)
         assert 0.34 < np.abs(there - np.array(table.boundary[0].points)).max() < 0.4 + 1e-12
     # at their height: two parameters for each shift
     level = sketch(0)
     level["surface"]["boundary"][0]["adjust"] = {"points": 0.4, "move": 0.2, "keep_height": True}
-    in_plan = Freedom(table_of(level))
+    in_plan = Freedom(adjustable_film(table_of(level)))
     assert in_plan.count == 2 * 8 + 2
-    drawn = np.array(in_plan.table.boundary[0].points)
-    there = np.array(in_plan.changed(np.linspace(-1, 1, in_plan.count)).boundary[0].points)
+    drawn = np.array(in_plan.film.curves[0].points)
+    there = np.array(in_plan.changed(np.linspace(-1, 1, in_plan.count)).curves[0].points)
     assert np.abs(there - drawn)[:, 2].max() < 1e-12
     assert np.abs(there - drawn).max() > 0.2
     # without a word both loops may change by a twentieth of their size
-    assert Freedom(table_of(sketch(0))).count == 3 * 8 + 3 + 1 + 3 + 1
+    assert Freedom(adjustable_film(table_of(sketch(0)))).count == 3 * 8 + 3 + 1 + 3 + 1
 
 
 @pytest.mark.parametrize("keep_height", [False, True])
@@ -104,9 +104,9 @@ def test_limits_bound_what_moves(keep_height: bool) -> None:
     """No point of a loop goes further than its limit by all waves together, nor a ring's middle, nor its axis."""
     tables = sketch(2, move=0.25, tilt=4.0)
     tables["surface"]["boundary"][0]["adjust"] = {"points": 0.4, "keep_height": keep_height}
-    freedom = Freedom(table_of(tables))
+    freedom = Freedom(adjustable_film(table_of(tables)))
     fine = np.arange(2000) / 2000
-    drawn = boundary_loops(freedom.table, HERE)[0].at(fine)
+    drawn = freedom.film.loops()[0].at(fine)
     rng = np.random.default_rng(0)
     farthest = []
     for _ in range(12):
@@ -118,9 +118,9 @@ def test_limits_bound_what_moves(keep_height: bool) -> None:
         )
         shares[-3:] /= max(1e-9, freedom.used(np.append(np.zeros(freedom.count - 3), shares[-3:])))
         changed = freedom.changed(shares)
-        away = np.linalg.norm(boundary_loops(changed, HERE)[0].at(fine)[:, None] - drawn[::10], axis=2).min(0)
+        away = np.linalg.norm(changed.loops()[0].at(fine)[:, None] - drawn[::10], axis=2).min(0)
         farthest.append(away.max())
-        ring = changed.boundary[1].circle
+        ring = changed.curves[1].circle
         assert ring is not None
         assert np.linalg.norm(np.array(ring.center) - (0, 0, 2)) < 0.25 * (1 + 1e-9)
         assert np.degrees(np.arccos(min(1.0, ring.normal[2]))) < 4 * (1 + 1e-6)
@@ -145,7 +145,7 @@ def test_the_change_that_a_refusal_offers_does(monkeypatch: pytest.MonkeyPatch) 
     rim = tables["surface"]["boundary"][0]
     rim["adjust"] = {"points": 0.04}
     with pytest.raises(InputError) as refused:
-        adjust_boundary(table_of(tables), HERE, cells=24, spacing=None, progress=lambda _: None)
+        adjust_table(table_of(tables), HERE, cells=24, spacing=None, progress=lambda _: None)
     assert refused.value.where == "network.closing"
     offered = re.search(r"adjust = \{[^}]*\}(?= in the table of 'rim')", refused.value.remedy)
     assert offered is not None, refused.value.remedy
@@ -159,21 +159,21 @@ def test_the_change_that_a_refusal_offers_does(monkeypatch: pytest.MonkeyPatch) 
 def test_what_allows_a_change_is_written_loop_by_loop() -> None:
     """Limits that are kept stay; where no loop has a table, each is written: one would turn the others off."""
     tables = sketch(1)
-    freedom = Freedom(table_of(tables))
+    freedom = Freedom(adjustable_film(table_of(tables)))
     shares = np.zeros(freedom.count)
     assert freedom.enough(shares) == ""
     shares[0] = 2
     assert [name in freedom.enough(shares) for name in ("'rim'", "'oculus'")] == [True, True]
     rim, ring = tables["surface"]["boundary"]
     rim["adjust"], ring["adjust"] = {"points": 0.04, "move": 0.02, "keep_height": True}, {"tilt": 30.0}
-    freedom = Freedom(table_of(tables))
+    freedom = Freedom(adjustable_film(table_of(tables)))
     shares = np.zeros(freedom.count)
     shares[0] = 2
     (offered,) = re.findall(r"adjust = \{[^}]*\}(?= in the table of 'rim')", freedom.enough(shares))
     assert "'oculus'" not in freedom.enough(shares)
     rim["adjust"] = tomllib.loads(offered)["adjust"]
     assert rim["adjust"] == {"points": pytest.approx(0.086), "move": 0.02, "keep_height": True}
-    assert Freedom(table_of(tables)).used(shares * 0.04 / rim["adjust"]["points"]) < 1
+    assert Freedom(adjustable_film(table_of(tables))).used(shares * 0.04 / rim["adjust"]["points"]) < 1
     # a ring turns by 45 degrees at most
     shares[-1] = 2
     assert freedom.enough(shares) == ""
@@ -189,8 +189,8 @@ def of_volume(tables: dict[str, Any], mean_curvature: float) -> dict[str, Any]:
 def test_rates_are_those_of_films_found_anew(held: str) -> None:
     """First order by one Jacobi field each, against differences of shifts on both sides."""
     tables = sketch(1, move=0.3, scale=0.1, tilt=5.0)
-    freedom = Freedom(table_of(of_volume(tables, -0.03) if held == "volume" else tables))
-    films = Films(freedom.table, HERE, freedom, LAMELLAS)
+    freedom = Freedom(adjustable_film(table_of(of_volume(tables, -0.03) if held == "volume" else tables)))
+    films = Films(freedom, LAMELLAS)
     net = films.first(5e-2)
     step = 0.35
     rates = films.cell_rates(net, step)
@@ -223,11 +223,11 @@ def test_rates_are_those_of_films_found_anew(held: str) -> None:
 
 def closed(
     tables: dict[str, Any], *, folder: Path = HERE, pattern: Pattern = LAMELLAS
-) -> tuple[Adjusted, ElementNetwork]:
+) -> tuple[AdjustedTable, ElementNetwork]:
     """What holds of every boundary that was adjusted."""
     told: list[str] = []
     cells = tables["network"]["cells"]
-    adjusted = adjust_boundary(
+    adjusted = adjust_table(
         table_of(tables),
         folder,
         cells=cells,
@@ -280,7 +280,7 @@ def test_an_uneven_sketch_with_two_holes_is_closed() -> None:
 def test_an_uneven_sketch_with_three_holes_is_closed() -> None:
     """Nine hexagonal nodes, 22 conditions: two are 0.8 m apart, and nearer whole numbers would have them meet."""
     table = table_of(sketch(1, rings=3, move=0.3, scale=0.1, tilt=5.0))
-    adjusted = adjust_boundary(table, HERE, cells=24, spacing=None, progress=lambda _: None)
+    adjusted = adjust_table(table, HERE, cells=24, spacing=None, progress=lambda _: None)
     assert adjusted.figures["missed_after"] < 1e-3
     net = element_network(adjusted.surface, cells=24, step=adjusted.step)
     assert all(joint.closed for joint in net.joints)
@@ -331,7 +331,7 @@ def test_a_curve_from_a_file_is_moved(tmp_path: Path) -> None:
 
 def test_what_may_not_change_enough_is_refused() -> None:
     with pytest.raises(InputError, match="could not be closed within what the boundary may change") as refused:
-        adjust_boundary(table_of(sketch(3, scale=1e-5)), HERE, cells=25, spacing=None, progress=lambda _: None)
+        adjust_table(table_of(sketch(3, scale=1e-5)), HERE, cells=25, spacing=None, progress=lambda _: None)
     assert refused.value.where == "network.closing"
     held = sketch(3)
     held["surface"]["boundary"][0]["slide"] = {"direction": [0.0, 0.0, 1.0]}
@@ -343,7 +343,7 @@ def test_what_may_not_change_enough_is_refused() -> None:
         {"arc": {"start": [-1.3, 0, 2], "middle": [0, -1.3, 2], "end": [1.3, 0, 2]}},
     ]
     with pytest.raises(InputError, match="nothing of the boundary may change"):
-        adjust_boundary(table_of(held), HERE, cells=24, spacing=None, progress=lambda _: None)
+        adjust_table(table_of(held), HERE, cells=24, spacing=None, progress=lambda _: None)
 
 
 @pytest.mark.slow

@@ -186,7 +186,7 @@ def test_spacing_needs_room_for_three_cells() -> None:
     for name in ("turned 4", "saddle 2", "tube 0"):
         with pytest.raises(InputError) as refused:
             laid(name, spacing=50.0)
-        assert refused.value.where == "network.spacing"
+        assert refused.value.where == "spacing"
         named = float(refused.value.remedy.split(" at most ")[1].split(" m")[0])
         assert laid(name, spacing=named).traced(closing="open", minimum_length=0.5).network.node_points.size
 

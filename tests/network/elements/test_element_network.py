@@ -390,8 +390,8 @@ def test_surfaces_of_elements_refuse_what_has_no_net() -> None:
     _, surface, net = woven("helicoid")
     with pytest.raises(InputError) as refused:
         element_network(surface, cells=2)
-    assert refused.value.where == "network.cells"
+    assert refused.value.where == "cells"
     with pytest.raises(InputError, match="nodes and take about") as refused:
         element_network(surface, cells=5000)
-    assert refused.value.where == "network.cells"
+    assert refused.value.where == "cells"
     assert BOUNDARY in net.network.node_kinds

@@ -33,4 +33,4 @@ def test_names_of_crossings_end_at_two_to_the_63(far: float) -> None:
         return
     with pytest.raises(InputError, match="names for the crossings") as refused:
         level_chains(small, cast(Any, nothing), 1)
-    assert refused.value.where == "network.cells"
+    assert refused.value.where == "cells"

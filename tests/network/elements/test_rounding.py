@@ -22,7 +22,7 @@ def test_the_number_of_cells_that_is_offered_rounds_the_net(seed: int) -> None:
     surface = found.surface("form-found")
     with pytest.raises(InputError) as error:
         element_network(surface, cells=case.cells, closing="round", minimum_length=0.0)
-    assert error.value.where == "network.closing"
+    assert error.value.where == "closing"
     offered = re.match(r"write cells = (\d+)", error.value.remedy)
     assert offered
     cells = int(offered[1])

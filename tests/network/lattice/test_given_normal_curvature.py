@@ -117,7 +117,7 @@ def test_normal_curvatures_that_are_refused(surface: Any, wanted: float, told: s
     """The catenoid's principal curvatures at the rim: +-1 / cosh(0.5)^2 = 0.7864; Enneper's are 2 in the middle."""
     with pytest.raises(InputError, match=told) as refused:
         lamella.net(surface, cells=24, normal_curvature=wanted)
-    assert refused.value.where == "network.normal_curvature"
+    assert refused.value.where == "normal_curvature"
 
 
 def test_the_remedy_of_a_refused_normal_curvature_works() -> None:

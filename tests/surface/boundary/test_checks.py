@@ -63,7 +63,7 @@ def test_self_crossing_is_named_with_its_place(turn: float) -> None:
     points = eight(0.0) @ np.array([[c, s, 0], [0, 0, 1], [-s, c, 0]]) + [5, 6, 7]
     error = refused(spline(points, "eight"))
     assert "the loop 'eight' crosses or touches itself at (5, 6, 7) m" in error.message
-    assert error.where == "surface.boundary[0]"
+    assert error.where == "loops[0]"
     first, second = map(float, re.findall(r"([\d.e+-]+) m (?:and|along)", error.message))
     length = spline(points).length
     # halfway round the other branch passes
@@ -104,7 +104,7 @@ def test_loops_that_cross_or_touch_each_other() -> None:
     assert at
     assert (abs(float(at[1])), float(at[2])) == pytest.approx((x, y), abs=1e-5)
     assert "'outer' and 'hole 1' cross or touch" in error.message
-    assert error.where == "surface.boundary[1]"
+    assert error.where == "loops[1]"
     # tangent from inside, far from any vertex of either
     assert "touch each other at (2, 0, 0)" in refused(ring(2.0), ring(0.5, (1.5, 0, 0), "b")).message
     check_loops([ring(2.0), ring(0.5, (1.49998, 0, 0), "b")])
@@ -133,7 +133,7 @@ def test_sizes() -> None:
     assert "(limit 1e-06 m)" in refused(ring(1e-7)).message
     error = refused(ring(20.0, name="outer"), ring(1e-3, name="tiny"))
     assert "'tiny' is 0.002828 m large and 'outer' 56.57 m: over 10,000 times" in error.message
-    assert error.where == "surface.boundary[1]"
+    assert error.where == "loops[1]"
     check_loops([ring(20.0), ring(2.1e-3, name="small")])
 
 
@@ -142,7 +142,7 @@ def test_slides_off_their_plane_or_along_themselves() -> None:
     error = refused(make_loop("foot", pieces, [Sliding(0, 4, 0 * Z, Z)]))
     assert "slides on a plane but leaves it" in error.message
     assert "it is 0.2 m away" in error.message
-    assert error.where == "surface.boundary[0].slide"
+    assert error.where == "loops[0].slide"
     check_loops([make_loop("foot", pieces, [Sliding(0, 4, 0.2 * Z, -Z)])])
     check_loops([make_loop("foot", pieces, [Sliding(0, 4, direction=Z)])])
     sides = lines(np.array([[0, 0, 0], [4, 0, 0], [4, 3, 0], [0, 3, 0.0]]), closed=True)
@@ -166,10 +166,10 @@ def test_slides_off_their_plane_or_along_themselves() -> None:
 )
 def test_lists_of_points(points: list[list[float]], message: str, remedy: str) -> None:
     with pytest.raises(InputError) as error:
-        clean_points(points, closed=True, where="surface.boundary[0].points")
+        clean_points(points, closed=True, where="loops[0].points")
     assert message in error.value.message
     assert remedy in error.value.remedy
-    assert error.value.where == "surface.boundary[0].points"
+    assert error.value.where == "loops[0].points"
 
 
 def test_the_first_point_may_be_repeated_at_the_end() -> None:

@@ -80,7 +80,7 @@ def test_curves_without_a_knot(name: str) -> None:
 def test_a_knotted_boundary_is_refused(name: str) -> None:
     with pytest.raises(InputError) as error:
         check_loops([make_loop("x", closed_spline(KNOTS[name][0]))])
-    assert error.value.where == "surface.boundary[0]"
+    assert error.value.where == "loops[0]"
     assert "knotted" in error.value.message
 
 

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from lamella import parse_project
+from lamella.base.units import METRES
 from lamella.files.write.curves_3dm import write_curves_3dm
 from lamella.files.write.rhino_file import Frame
 from lamella.project.tables import FormFoundTable
+from lamella.stages.boundary_of_tables import adjustable_film, boundary_loops, drawing_unit
 from lamella.surface.boundary.arcs import circle
 from lamella.surface.boundary.curve import Loop, make_loop
 from lamella.surface.boundary.freedom import Freedom
 from lamella.surface.boundary.pieces import lines
 from lamella.surface.boundary.splines import closed_spline
-from lamella.surface.boundary.tables import boundary_loops, drawing_unit
-from lamella.surface.boundary.units import METRES
 from lamella.surface.boundary.waves import wave_rows, waved
 
 TURNS = 2 * np.pi * np.arange(6) / 6
@@ -70,13 +70,13 @@ def tables(**adjust: float | bool) -> FormFoundTable:
 @pytest.mark.slow
 def test_curves_of_parts_and_circles_have_waves() -> None:
     table = tables(points=0.2, keep_height=True, move=0.1)
-    freedom = Freedom(table)
+    freedom = Freedom(adjustable_film(table))
     # four waves with cosine and sine and a shift, in x and y, of two loops
     assert freedom.count == 2 * (2 * 8 + 2)
     t = np.arange(400) / 400
     old = boundary_loops(table, Path())
     for number in range(freedom.count):
-        new = boundary_loops(freedom.changed(np.eye(freedom.count)[number]), Path())
+        new = freedom.changed(np.eye(freedom.count)[number]).loops()
         moved = [np.linalg.norm(a.at(t)[:, None] - b.at(np.arange(4000) / 4000), axis=2).min(1).max()
                  for a, b in zip(new, old, strict=True)]  # fmt: skip
         assert 0.03 < max(moved) < 0.2 + 1e-3
@@ -85,12 +85,13 @@ def test_curves_of_parts_and_circles_have_waves() -> None:
 
 def test_waves_add_to_those_that_are_given() -> None:
     table = tables(points=0.2)
-    shares = np.linspace(-1, 1, Freedom(table).count)
-    once = Freedom(table).changed(shares / 2)
+    freedom = Freedom(adjustable_film(table))
+    shares = np.linspace(-1, 1, freedom.count)
+    once = freedom.changed(shares / 2)
     twice = Freedom(once).changed(shares / 2)
-    direct = Freedom(table).changed(shares)
+    direct = freedom.changed(shares)
     t = np.arange(50) / 50
-    for a, b in zip(boundary_loops(twice, Path()), boundary_loops(direct, Path()), strict=True):
+    for a, b in zip(twice.loops(), direct.loops(), strict=True):
         np.testing.assert_allclose(a.at(t), b.at(t), atol=1e-12)
 
 
@@ -117,9 +118,8 @@ def test_a_file_is_read_once_where_a_boundary_is_built_many_times(tmp_path: Path
     boundary = [{"file": "a.3dm", "adjust": {"points": 0.1}}]
     table = parse_project({"surface": {"kind": "form-found", "boundary": boundary}}).surface
     assert isinstance(table, FormFoundTable)
-    drawn: dict[object, Loop] = {}
-    freedom = Freedom(table)
-    (first,) = boundary_loops(table, tmp_path, drawn)  # type: ignore[arg-type]
+    freedom = Freedom(adjustable_film(table, tmp_path))
+    (first,) = freedom.film.loops()
     (tmp_path / "a.3dm").unlink()
-    (there,) = boundary_loops(freedom.changed(np.ones(freedom.count)), tmp_path, drawn)  # type: ignore[arg-type]
+    (there,) = freedom.changed(np.ones(freedom.count)).loops()
     assert np.abs(there.at(0.3) - first.at(0.3)).max() > 0.05

@@ -97,7 +97,7 @@ def test_largest_volume_is_reported() -> None:
     volumes = [end_of_meridian(inner, h, np.radians(psi), length)[3] for psi, h, length in family(inner)]
     with pytest.raises(InputError, match=r"turns back at about 0\.74") as error:
         find_film((ring(1.0, 0.0), ring(inner, 0.0)), volume=1.08 * max(volumes))
-    assert error.value.where == "surface.volume"
+    assert error.value.where == "volume"
     offered = float(error.value.remedy.split(" m3")[0].split()[-1])
     assert 0.95 * max(volumes) < offered < max(volumes)
 

@@ -147,7 +147,7 @@ class TestCap:
     def test_refused_beyond_it(self) -> None:
         with pytest.raises(InputError, match=r"\|H\| <= length / \(2 area\) = 1 ") as error:
             find_film((ring(1.0, 0.0),), 1.001)
-        assert error.value.where == "surface.mean_curvature"
+        assert error.value.where == "mean_curvature"
 
     @pytest.mark.parametrize("mean_curvature", [0.999999, -0.999999])
     def test_bound_is_exact(self, mean_curvature) -> None:

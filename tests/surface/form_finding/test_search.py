@@ -88,7 +88,7 @@ def test_unstable_film_that_the_search_does_not_find() -> None:
         InputError, match="the search did not arrive at an unstable surface; no bound is broken"
     ) as error:
         find_film((waisted(),), branch="unstable")
-    assert error.value.where == "surface.branch"
+    assert error.value.where == "branch"
 
 
 def test_tangent_joints_of_lines_and_arcs_keep_the_tolerance() -> None:

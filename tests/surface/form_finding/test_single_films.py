@@ -37,7 +37,7 @@ def test_no_unstable_film_in_a_loop_of_convex_plan(pieces, monkeypatch) -> None:
     monkeypatch.setattr(finding.Tries, "curvature_of_bubble", lambda self: None)
     with pytest.raises(InputError, match=r"seen along .* convex curve.*Rado") as error:
         find_film((make_loop("saddle", pieces),), branch="unstable")
-    assert error.value.where == "surface.branch"
+    assert error.value.where == "branch"
 
 
 def test_other_boundaries_are_searched() -> None:

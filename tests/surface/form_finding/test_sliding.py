@@ -143,7 +143,7 @@ def test_no_film_down_to_the_ground_beyond_half_the_limit() -> None:
     """0.6627434 radii, half of 1.3254868: the search says that it ended, no bound for sliding loops is known here."""
     with pytest.raises(InputError, match="did not arrive") as error:
         find_film(foot(0.7))
-    assert error.value.where == "surface.boundary"
+    assert error.value.where == "loops"
 
 
 def test_foot_of_given_volume() -> None:
@@ -159,4 +159,4 @@ def test_nothing_held_is_refused(volume) -> None:
     loop = foot(1.0)[1]
     with pytest.raises(InputError, match=r"nothing holds the surface: 'foot' slides") as error:
         find_film((loop,), volume=volume)
-    assert error.value.where == "surface.boundary"
+    assert error.value.where == "loops"

@@ -144,7 +144,7 @@ def test_bent_tube_of_given_volume() -> None:
 def test_volume_of_the_wrong_sign_is_told() -> None:
     with pytest.raises(InputError, match=r"there is one of 100 m3") as error:
         find_film(between(3.0, 4.0)[::-1], volume=-100)
-    assert error.value.where == "surface.volume"
+    assert error.value.where == "volume"
 
 
 def test_family_runs_through_a_fold_of_its_volume() -> None:

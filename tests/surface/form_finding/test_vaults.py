@@ -87,7 +87,7 @@ def test_where_no_stable_film_is_the_unstable_one_is_told() -> None:
     with pytest.raises(InputError, match="there is an unstable surface") as error:
         find_film(vault(length), 1 / (2 * R))
     assert 'branch = "unstable"' in error.value.remedy
-    assert error.value.where == "surface.branch"
+    assert error.value.where == "branch"
     own = float(error.value.remedy.split("its own is ")[1].split()[0])
     assert own == pytest.approx(-np.pi * R**2 * length / 2, rel=1e-3)
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from lamella.files.read.raw_mesh import RawMesh
 from lamella.surface.boundary.corners import find_corners, turning_angles
 from lamella.surface.from_mesh.border import border_curve, border_curves
 from lamella.surface.from_mesh.border_zigzag import is_zigzag
 from lamella.surface.from_mesh.clean import clean
+from lamella.surface.from_mesh.raw_mesh import RawMesh
 from surface.from_mesh.meshes import disc, grid, triangles
 
 UP = np.array([0.0, 0.0, 1.0])

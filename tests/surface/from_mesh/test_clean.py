@@ -8,9 +8,9 @@ from scipy.spatial import cKDTree
 
 from lamella import InputError
 from lamella.files.read.mesh import read_mesh
-from lamella.files.read.raw_mesh import RawMesh
 from lamella.surface.from_mesh.clean import CleanMesh, clean
 from lamella.surface.from_mesh.edges import face_normals, find_edges
+from lamella.surface.from_mesh.raw_mesh import RawMesh
 from lamella.surface.from_mesh.slivers import OF_EDGE
 from surface.from_mesh.meshes import disc, grid, irregular, moebius, sphere, stl_bytes, torus, triangles
 
@@ -46,7 +46,7 @@ def area(mesh):
 def refused(match, points, faces):
     with pytest.raises(InputError, match=match) as caught:
         clean(RawMesh(np.asarray(points, dtype=float), np.asarray(faces)))
-    assert caught.value.where == "surface.file"
+    assert caught.value.where == "faces"
     assert caught.value.remedy
     return caught.value
 

@@ -100,5 +100,5 @@ def test_damaged_off_files(tmp_path: Path, text: str) -> None:
     (tmp_path / "m.off").write_text(text)
     with pytest.raises(InputError) as error:
         read_mesh(tmp_path / "m.off", "m")
-    assert error.value.where == "surface.file"
+    assert error.value.where == "path"
     assert error.value.remedy

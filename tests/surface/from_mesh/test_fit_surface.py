@@ -12,8 +12,8 @@ from scipy.spatial import Delaunay
 
 from lamella import parse_project
 from lamella.base.arrays import Floats
+from lamella.stages.surface_of_table import surface_of_mesh_table
 from lamella.surface.element.varying import VaryingSurface
-from lamella.surface.from_mesh.fit_cmc import surface_of_table
 
 Graph = Callable[[Floats, Floats], Floats]
 
@@ -57,7 +57,7 @@ def kept(folder: Path, points: Floats, faces: NDArray[np.int64]) -> VaryingSurfa
     text += "".join(f"f {a} {b} {c}\n" for a, b, c in (faces + 1).tolist())
     (folder / "m.obj").write_text(text)
     table = {"kind": "mesh", "file": "m.obj", "unit": "m", "mean_curvature": "varying"}
-    surface = surface_of_table(parse_project({"surface": table}).surface, folder)  # type: ignore[arg-type]
+    surface = surface_of_mesh_table(parse_project({"surface": table}).surface, folder)  # type: ignore[arg-type]
     assert isinstance(surface, VaryingSurface)
     return surface
 

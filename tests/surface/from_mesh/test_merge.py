@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from lamella import InputError
-from lamella.files.read.raw_mesh import RawMesh
 from lamella.surface.from_mesh.clean import clean
 from lamella.surface.from_mesh.merge import OF_EDGE, OF_SIZE
+from lamella.surface.from_mesh.raw_mesh import RawMesh
 from surface.from_mesh.meshes import grid, triangles
 
 

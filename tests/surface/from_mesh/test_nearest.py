@@ -152,4 +152,4 @@ def test_crumpled_meshes_are_refused_with_figures_before_elements_are_laid(adopt
     told = []
     with pytest.raises(InputError, match=r"H = .* fits best, its vertices are off by 0.\d+ of the curvature scale"):
         adopt(points, faces, told.append)
-    assert not any("laying elements" in line for line in told)
+    assert not any("laying elements" in line.text for line in told)

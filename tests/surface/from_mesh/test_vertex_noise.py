@@ -12,9 +12,9 @@ from scipy.spatial import Delaunay
 
 from lamella import InputError, compute, parse_project
 from lamella.base.arrays import Floats, Integers
+from lamella.stages.surface_of_table import surface_of_mesh_table
 from lamella.surface.element.varying import VaryingSurface
 from lamella.surface.from_mesh.edges import find_edges
-from lamella.surface.from_mesh.fit_cmc import surface_of_table
 from lamella.surface.from_mesh.vertex_fits import fit_vertices
 from lamella.surface.from_mesh.vertex_noise import without_scatter
 from network.streamlines.test_streamline_network import lamellas
@@ -94,7 +94,7 @@ def written(folder: Path, points: Floats, faces: Integers) -> Path:
 
 def adopted(folder: Path, mean_curvature: str = "varying") -> VaryingSurface:
     table = {"kind": "mesh", "file": "m.obj", "unit": "m", "mean_curvature": mean_curvature}
-    surface = surface_of_table(parse_project({"surface": table}).surface, folder)  # type: ignore[arg-type]
+    surface = surface_of_mesh_table(parse_project({"surface": table}).surface, folder)  # type: ignore[arg-type]
     assert isinstance(surface, VaryingSurface)
     return surface
 

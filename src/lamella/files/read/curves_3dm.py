@@ -10,26 +10,13 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
+from lamella.base.units import RHINO_METRES
 from lamella.files.read.file_curves import MOST_NESTED, CurveFile, FileCurve, Gathering
 from lamella.files.read.rhino_model import RhinoCurve, RhinoModel, RhinoObject, read_rhino
 from lamella.surface.boundary.arc_length import Course
 from lamella.surface.boundary.joining import find_chains
 from lamella.surface.boundary.pieces import Pieces
 from lamella.surface.boundary.splines import bezier
-
-_METRES = {
-    "Millimeters": 1e-3,
-    "Centimeters": 1e-2,
-    "Decimeters": 0.1,
-    "Meters": 1.0,
-    "Kilometers": 1000.0,
-    "Inches": 0.0254,
-    "Feet": 0.3048,
-    "Yards": 0.9144,
-    "Miles": 1609.344,
-    "Microns": 1e-6,
-}
-
 
 _OTHERS = {
     "Mesh": "mesh",
@@ -63,7 +50,7 @@ def read_3dm(path: Path, where: str) -> CurveFile:
         if not item.in_block:
             reading.add(item, np.eye(4), None, 0)
     tolerance = model.tolerance if model.tolerance > 0 else None
-    return CurveFile(tuple(reading.curves), _METRES.get(model.unit), tolerance, reading.others)
+    return CurveFile(tuple(reading.curves), RHINO_METRES.get(model.unit), tolerance, reading.others)
 
 
 class _Instance(NamedTuple):

@@ -13,16 +13,13 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
+from lamella.base.units import DXF_METRES
 from lamella.base.wording import cut
 from lamella.files.read.dxf_document import dxf_damage, open_dxf
 from lamella.files.read.file_curves import MOST_NESTED, CurveFile, FileCurve, Gathering
 from lamella.surface.boundary.arcs import bulge_arc, ellipse_arc
 from lamella.surface.boundary.pieces import Pieces, lines, stack
 from lamella.surface.boundary.splines import bezier, closed_spline, open_spline
-
-# $INSUNITS; inch, foot, mile, mm, cm, m, km, mil, yard, micron, dm, dam, hm, US survey foot
-_METRES = {1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1000.0, 9: 2.54e-5, 10: 0.9144}
-_METRES |= {13: 1e-6, 14: 0.1, 15: 10.0, 16: 100.0, 21: 1200 / 3937}
 
 _SPLINE_FRAME = 16
 """Flag of a vertex that is a control point, which the polyline does not run through."""
@@ -70,7 +67,7 @@ def read_dxf(path: Path, where: str) -> CurveFile:
                 kinds = [entity.dxftype() for entity in layout]
                 drawn = sum(kind in _CURVES or kind == "INSERT" for kind in kinds)
                 reading.others.update({"paper space curve": drawn} if drawn else {})
-        metres = _METRES.get(int(drawing.header.get("$INSUNITS", 0)))
+        metres = DXF_METRES.get(int(drawing.header.get("$INSUNITS", 0)))
     return CurveFile(tuple(reading.curves), metres, others=reading.others)
 
 

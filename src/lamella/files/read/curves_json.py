@@ -22,10 +22,10 @@ import orjson
 
 from lamella.base.byte_order import unmarked
 from lamella.base.errors import InputError
+from lamella.base.number_lists import Refusal, read_points
+from lamella.base.units import METRES, PROJECT_UNITS
 from lamella.base.wording import cut, shown
 from lamella.files.read.file_curves import CurveFile, FileCurve
-from lamella.project.tables import Refusal, read_points
-from lamella.project.values import METRES
 from lamella.surface.boundary.pieces import lines
 from lamella.surface.boundary.point_list import clean_points
 from lamella.surface.boundary.splines import closed_spline
@@ -52,8 +52,10 @@ def read_json(path: Path, where: str) -> CurveFile:
     if unknown:
         raise InputError(f"{path}: unknown key {shown(min(unknown))}", "keys: unit, curves", where)
     unit = content.get("unit")
-    if unit is not None and not (isinstance(unit, str) and unit in METRES):
-        raise InputError(f"{path}: unit {shown(unit)} is not one of {', '.join(METRES)}", "write one of them", where)
+    if unit is not None and not (isinstance(unit, str) and unit in PROJECT_UNITS):
+        raise InputError(
+            f"{path}: unit {shown(unit)} is not one of {', '.join(PROJECT_UNITS)}", "write one of them", where
+        )
     curves = tuple(_curve(path, name, curve, where) for name, curve in given.items())
     return CurveFile(curves, None if unit is None else METRES[unit])
 

@@ -8,18 +8,19 @@ import numpy as np
 
 from lamella.base.byte_order import unmarked
 from lamella.base.drawing_origin import Origin, origin_of
+from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.plausible_size import refuse_doubtful
+from lamella.base.units import METRES, metres_of, unit_name
 from lamella.base.wording import counted
+from lamella.files.read.file_mesh import MAXIMUM_FACES, Polygons, mesh_error
 from lamella.files.read.mesh_3dm import read_3dm
 from lamella.files.read.mesh_obj import read_obj
 from lamella.files.read.mesh_off import read_off
 from lamella.files.read.mesh_ply import read_ply
 from lamella.files.read.mesh_stl import read_stl
-from lamella.files.read.mesh_units import METRES, metres_of, name_of
-from lamella.files.read.polygons import split_polygons
-from lamella.files.read.raw_mesh import MAXIMUM_FACES, Polygons, RawMesh, mesh_error
-from lamella.surface.from_mesh.covering import covered_faces, second_diagonals
+from lamella.surface.from_mesh.raw_mesh import RawMesh
+from lamella.surface.from_mesh.split_polygons import split_faces
 
 READERS = {".obj": read_obj, ".off": read_off, ".ply": read_ply, ".stl": read_stl, ".3dm": read_3dm}
 LARGEST_FILE = 250_000_000
@@ -64,22 +65,18 @@ def read_mesh(path: Path, unit: str | None = None, origin: Origin | None = None)
     _check_size(points[found.corners], metres)
     size = float(np.ptp(points[found.corners], axis=0).max())
     if asked is None:
-        refuse_doubtful("the mesh", size, metres, name_of(metres), "surface.unit")
+        refuse_doubtful("the mesh", size, metres, unit_name(metres), "unit")
     origin = origin_of(points[found.corners]) if origin is None else origin
     points = points - np.array(origin)
-    covered = covered_faces(points, found.sizes, found.corners)
-    faces = split_polygons(points, found.sizes[~covered], found.corners[np.repeat(~covered, found.sizes)])
-    twice = second_diagonals(np.unique(points, axis=0, return_inverse=True)[1].reshape(-1)[faces])
-    faces = faces[~twice]
-    if covered.any() or twice.any():
-        notes += (
-            Message(
-                "faces_covered", f"{counted(int(covered.sum() + twice.sum()), 'face')} that lie on others left out"
-            ),
-        )
+    try:
+        faces, left_out = split_faces(points, found.sizes, found.corners)
+    except InputError as error:
+        raise mesh_error(error.message, error.remedy) from None
+    if left_out:
+        notes += (Message("faces_covered", f"{counted(left_out, 'face')} that lie on others left out"),)
     source = (
         f"{path.name}: {len(points)} vertices, {len(found.sizes)} faces"
-        f"{_kinds(found)}, unit {name_of(metres)}, {size:.4g} m large"
+        f"{_kinds(found)}, unit {unit_name(metres)}, {size:.4g} m large"
     )
     return RawMesh(points, faces, source, found.notes + notes, origin)
 
@@ -139,7 +136,9 @@ def _metres(found: Polygons, asked: float | None) -> tuple[float, tuple[Message,
     told = found.metres_per_unit
     if told is not None and asked is not None and abs(told / asked - 1) > 1e-9:
         return asked, (
-            Message("unit_overruled", f"unit {name_of(asked)} of the project, not {name_of(told)} as the file says"),
+            Message(
+                "unit_overruled", f"unit {unit_name(asked)} of the project, not {unit_name(told)} as the file says"
+            ),
         )
     if told is None and asked is None:
         return 1.0, (Message("unit_assumed", "the file says no unit: taken as metres"),)

@@ -11,30 +11,12 @@ from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Floats, Integers
 from lamella.base.message import Message
+from lamella.base.units import RHINO_METRES
 from lamella.base.wording import cut
-from lamella.files.read.raw_mesh import FILE_KEY, Polygons, mesh_error
+from lamella.files.read.file_mesh import FILE, Polygons, mesh_error
 from lamella.files.read.rhino_model import MAGIC, RhinoLayer, RhinoModel, RhinoObject, read_rhino
 
 MESH_IT = "mesh it in Rhino (command Mesh), save the mesh alone, or hide everything else"
-
-METRES = {
-    "Angstroms": 1e-10,
-    "Nanometers": 1e-9,
-    "Microns": 1e-6,
-    "Millimeters": 1e-3,
-    "Centimeters": 1e-2,
-    "Decimeters": 0.1,
-    "Meters": 1.0,
-    "Dekameters": 10.0,
-    "Hectometers": 100.0,
-    "Kilometers": 1000.0,
-    "Mils": 2.54e-5,
-    "Inches": 0.0254,
-    "Feet": 0.3048,
-    "Yards": 0.9144,
-    "Miles": 1609.344,
-}
-"""Metres of openNURBS' units; those it leaves to the user (None, CustomUnits) are not here."""
 
 SHARED_VERTICES = 2
 """Two objects that have this many places in common share a border (a single one is a touch)."""
@@ -49,7 +31,7 @@ def read_3dm(data: bytes) -> Polygons:
     Several mesh objects are one mesh if their borders connect them; otherwise nobody can know which one is meant.
     """
     _require_whole(data)
-    model = read_rhino(data, "meshes", FILE_KEY)
+    model = read_rhino(data, "meshes", FILE)
     shown, hidden = _shown_objects(model)
     parts = [_part(item, number) for number, item in enumerate(shown) if item.kind == "Mesh"]
     notes = [Message("objects_hidden", f"{hidden} hidden objects left out")] if hidden else []
@@ -66,7 +48,7 @@ def read_3dm(data: bytes) -> Polygons:
     faces = np.concatenate([faces + start for (_, _, faces), start in zip(parts, starts, strict=False)])
     sizes = np.where(faces[:, 2] == faces[:, 3], 3, 4).astype(np.int64)
     corners = faces[np.arange(4) < sizes[:, None]]
-    unit = METRES.get(model.unit)
+    unit = RHINO_METRES.get(model.unit)
     return Polygons(points, sizes, corners, tuple(notes), unit)
 
 

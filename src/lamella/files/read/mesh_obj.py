@@ -8,7 +8,7 @@ from itertools import chain
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
-from lamella.files.read.raw_mesh import MAXIMUM_FACES, Polygons, blocks, mesh_error
+from lamella.files.read.file_mesh import MAXIMUM_FACES, Polygons, blocks, mesh_error
 
 FREE_FORM = (b"curv", b"surf", b"curv2", b"bzp", b"bsp", b"cstype")
 

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from lamella.base.arrays import Integers
-from lamella.files.read.raw_mesh import Polygons, mesh_error
+from lamella.files.read.file_mesh import Polygons, mesh_error
 
 AGAIN = "is the file cut off or damaged? Export it again"
 

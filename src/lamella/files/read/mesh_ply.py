@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
-from lamella.files.read.raw_mesh import MAXIMUM_FACES, Polygons, blocks, mesh_error
+from lamella.files.read.file_mesh import MAXIMUM_FACES, Polygons, blocks, mesh_error
 
 TYPES = {
     **dict.fromkeys(("char", "int8"), "i1"),

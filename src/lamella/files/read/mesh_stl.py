@@ -8,7 +8,7 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
-from lamella.files.read.raw_mesh import MAXIMUM_FACES, Polygons, blocks, mesh_error
+from lamella.files.read.file_mesh import MAXIMUM_FACES, Polygons, blocks, mesh_error
 
 HEADER = 84
 """Bytes before the first facet of a binary file: 80 of comment, 4 of count."""

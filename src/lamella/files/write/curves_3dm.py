@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import rhino3dm
 
+from lamella.base.units import METRES
 from lamella.files.whole import write_whole
 from lamella.files.write.rhino_file import Frame, RhinoFile
 from lamella.files.write.text import require_finite
-from lamella.project.values import METRES
 from lamella.surface.boundary.curve import Loop
 
 COLOUR = (60, 60, 60)

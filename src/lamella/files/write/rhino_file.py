@@ -12,8 +12,8 @@ import rhino3dm
 
 from lamella.base.arrays import Floats
 from lamella.base.drawing_origin import NOWHERE, Origin
+from lamella.base.units import METRES
 from lamella.base.wording import one_line
-from lamella.project.values import METRES
 from lamella.surface.mesh import SurfaceMesh
 
 TOLERANCE = 1e-5
@@ -31,7 +31,7 @@ class Frame:
     Attributes
     ----------
     unit : str
-        One of `METRES`.
+        One of `lamella.base.units.PROJECT_UNITS`.
     origin : (3,) of float
         Point of the drawing that what is written is measured from, m.
     """

@@ -8,16 +8,14 @@ of what each parameter is allowed, that makes the misses nought. The spacing of 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Complexes, Floats
-from lamella.base.drawing_origin import NOWHERE, measured_from, told_from
 from lamella.base.errors import InputError
-from lamella.base.progress import Progress, Report, patient
+from lamella.base.progress import Progress, Report, patient, silent
 from lamella.base.wording import counted
 from lamella.network.adjust.adjustable_films import Films, FollowError
 from lamella.network.adjust.aim import Aim, LostError, StuckError, worst
@@ -30,14 +28,10 @@ from lamella.network.isothermic.between_umbilics import between_umbilics, keeps_
 from lamella.network.isothermic.holonomy import around_holes, holonomies
 from lamella.network.isothermic.match_transitions import Carrier
 from lamella.network.pattern import LAMELLAS, Pattern
+from lamella.surface.boundary.adjustable_film import AdjustableFilm
 from lamella.surface.boundary.curve import Loop, farthest_move
 from lamella.surface.boundary.freedom import Freedom, refuse_held
-from lamella.surface.boundary.tables import boundary_loops, with_origin
 from lamella.surface.element.surface import ElementSurface
-
-if TYPE_CHECKING:
-    from lamella.project.tables import FormFoundTable
-
 
 # cells: misses below it end the search; a tenth of what counts as closed
 CLOSED = 1e-4
@@ -85,7 +79,7 @@ class Adjusted:
 
     Attributes
     ----------
-    table : FormFoundTable
+    film : AdjustableFilm
         The changed boundary and H.
     surface : ElementSurface
     step : float
@@ -94,29 +88,26 @@ class Adjusted:
         What was done, for the summary.
     """
 
-    table: FormFoundTable
+    film: AdjustableFilm
     surface: ElementSurface
     step: float
     figures: dict[str, Any]
 
 
 def adjust_boundary(
-    table: FormFoundTable,
-    folder: Path,
+    film: AdjustableFilm,
     *,
-    cells: int | None,
-    spacing: float | None,
-    progress: Progress,
+    cells: int | None = None,
+    spacing: float | None = None,
     pattern: Pattern = LAMELLAS,
+    progress: Progress = silent,
 ) -> Adjusted:
     """Change a boundary as little as can be until the net of its film closes, umbilics on nodes.
 
     Parameters
     ----------
-    table : FormFoundTable
+    film : AdjustableFilm
         With what may change, see `lamella.surface.boundary.freedom`.
-    folder : Path
-        Where relative paths of boundary files begin.
     cells, spacing, pattern
         See `element_network`.
     progress : callable
@@ -126,39 +117,22 @@ def adjust_boundary(
     InputError
         There is no such film, nothing may change, or the net does not close within what is allowed.
     """
-    table = with_origin(table, folder)
-    with told_from(table.origin or NOWHERE):
-        return _adjusted(table, folder, DensityRequest.of(cells, spacing), progress, pattern)
-
-
-def _adjusted(
-    table: FormFoundTable,
-    folder: Path,
-    request: DensityRequest,
-    progress: Progress,
-    pattern: Pattern,
-) -> Adjusted:
-    if table.origin:
-        progress(Report.step(measured_from(table.origin)))
-    freedom = Freedom(table)
+    freedom = Freedom(film)
     refuse_held(freedom)
     progress = patient(progress)
-    films = Films(table, folder, freedom, pattern, progress)
+    films = Films(freedom, pattern, progress)
     progress(Report.step(f"adjusting {', '.join(freedom.names)}: {freedom.count} parameters"))
     first = films.first(COARSE)
-    names = tuple(loop.name for loop in table.boundary)
+    names = tuple(curve.name for curve in film.curves)
     around = holonomies(first.iso)
-    lattice = choose_lattice(first.iso, around, request, pattern=pattern, names=names, seams=False)
+    lattice = choose_lattice(
+        first.iso, around, DensityRequest.of(cells, spacing), pattern=pattern, names=names, seams=False
+    )
     before = worst(first.whole.nearest(first.cells(lattice.step))[0] - first.cells(lattice.step))
     search = _Search(films, progress)
     state, step, after = search.closed(first, lattice)
     final = freedom.changed(state.shares)
-    moved = {
-        loop.name: _moved(old, new)
-        for loop, old, new in zip(
-            final.boundary, boundary_loops(table, folder), boundary_loops(final, folder), strict=True
-        )
-    }
+    moved = {name: _moved(old, new) for name, old, new in zip(names, film.loops(), final.loops(), strict=True)}
     farthest = max(moved.values())
     figures: dict[str, Any] = {
         "missed_before": before,
@@ -173,7 +147,7 @@ def _adjusted(
 
 
 class _Search:
-    """Gauss-Newton's method on one project's boundary."""
+    """Gauss-Newton's method on one boundary."""
 
     def __init__(self, films: Films, progress: Progress) -> None:
         self.films, self.progress = films, progress
@@ -216,7 +190,7 @@ class _Search:
             message,
             (f"write {enough}" if enough else "allow more change (adjust of the loops, adjust_mean_curvature)")
             + ', choose other cells, or closing = "open"',
-            "network.closing",
+            "film",
         )
 
     def _ways(self, first: FilmNet, lattice: Lattice) -> tuple[list[Aim], list[LostError]]:
@@ -233,7 +207,7 @@ class _Search:
         return ways, [LostError(aim, why) for aim, is_far in zip(aims, far, strict=True) if is_far]
 
     def _enough(self, aims: list[Aim]) -> str:
-        """What a project writes to allow a change with which the net closes, found by going there; empty: not found."""
+        """What is written to allow a change with which the net closes, found by going there; empty: not found."""
         used = self.films.freedom.used
         wanted = [
             (reach, aim)
@@ -405,7 +379,7 @@ class _Search:
         for _ in range(MOST_POLISHING):
             self.progress(Report.detail("the film as fine as asked for"))
             try:
-                found = self.films.found(aim.net.shares + move[:-1], min(self.films.table.tolerance, COARSE))
+                found = self.films.found(aim.net.shares + move[:-1], min(self.films.freedom.film.tolerance, COARSE))
                 there = self._carried(aim, found, rates, move)
             except FollowError as error:
                 raise LostError(aim, str(error)) from None

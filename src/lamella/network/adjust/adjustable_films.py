@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -21,7 +19,6 @@ from lamella.network.adjust.transition_sensitivities import (
 from lamella.network.pattern import Pattern
 from lamella.surface.boundary.curve import Loop, farthest_move
 from lamella.surface.boundary.freedom import Freedom
-from lamella.surface.boundary.tables import Drawn, boundary_loops, unchecked_loop
 from lamella.surface.element.placing import rim_parameters
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.boundary_homotopy import BreakError, along_loops
@@ -29,9 +26,6 @@ from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.find import find_film, notes_on, remarks_on
 from lamella.surface.form_finding.newton import Equilibrium
 from lamella.surface.umbilic import refuse_umbilic
-
-if TYPE_CHECKING:
-    from lamella.project.tables import FormFoundTable
 
 # difference of shares for the loops' movement
 SHARE = 1e-5
@@ -44,49 +38,43 @@ class FollowError(ArithmeticError):
 
 
 class Films:
-    """The films of one project's boundary at any shares of what may change.
+    """The films of one boundary at any shares of what may change.
 
     Parameters
     ----------
-    table : FormFoundTable
-    folder : Path
-        Where relative paths of boundary files begin.
     freedom : Freedom
-        What may change of the table.
+        What may change of a film.
     pattern : Pattern
         Which curves the nets have.
     progress : callable
         Is told details while films are found and followed.
     """
 
-    def __init__(
-        self, table: FormFoundTable, folder: Path, freedom: Freedom, pattern: Pattern, progress: Progress = silent
-    ) -> None:
-        self.table, self.folder, self.freedom, self.pattern = table, folder, freedom, pattern
+    def __init__(self, freedom: Freedom, pattern: Pattern, progress: Progress = silent) -> None:
+        self.freedom, self.pattern = freedom, pattern
         self._progress: Progress = as_details(progress)
-        self._drawn: Drawn = {}
         self._rates: WeakKeyDictionary[FilmNet, Rates] = WeakKeyDictionary()
 
     def loops(self, shares: Floats) -> tuple[Loop, ...]:
         """The boundary at some shares."""
-        return boundary_loops(self.freedom.changed(shares), self.folder, self._drawn)
+        return self.freedom.changed(shares).loops()
 
     def found(self, shares: Floats, tolerance: float) -> FilmNet:
         """The film of some shares from nothing, to a tolerance."""
-        table = self.freedom.changed(shares)
-        loops = self.loops(shares)
+        film = self.freedom.changed(shares)
+        loops = film.loops()
         found = find_film(
             loops,
-            table.mean_curvature or 0.0,
-            volume=table.volume,
-            order=table.order,
+            film.mean_curvature or 0.0,
+            volume=film.volume,
+            order=film.order,
             tolerance=tolerance,
-            branch=table.branch,
-            most_nodes=table.most_nodes,
+            branch=film.branch,
+            most_nodes=film.most_nodes,
             progress=self._progress,
         )
-        notes = remarks_on(loops) + notes_on(found, given_curvature=table.volume is None)
-        surface = found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
+        notes = remarks_on(loops) + notes_on(found, given_curvature=film.volume is None)
+        surface = found.surface("form-found", notes, tolerance=film.tolerance, **origin_figure(film.origin))
         return FilmNet.of(shares, found.equilibrium, surface, self.pattern)
 
     def first(self, tolerance: float) -> FilmNet:
@@ -97,9 +85,9 @@ class Films:
 
     def moved(self, net: FilmNet, shares: Floats) -> FilmNet:
         """The film followed to other shares; its umbilics stay as many, of the same orders."""
-        start, table = net.shares, self.freedom.changed(shares)
-        curvature = net.surface.mean_curvature if table.mean_curvature is None else table.mean_curvature
-        loops = self.loops(shares)
+        start, changed = net.shares, self.freedom.changed(shares)
+        curvature = net.surface.mean_curvature if changed.mean_curvature is None else changed.mean_curvature
+        loops = changed.loops()
         far = farthest_move(self.loops(start), loops)
         try:
             reached = along_loops(
@@ -108,8 +96,8 @@ class Films:
                 0.0,
                 loops,
                 self._progress,
-                volume=table.volume,
-                stable=table.branch == "stable",
+                volume=changed.volume,
+                stable=changed.branch == "stable",
                 stride=min(1.0, STRIDE * net.equilibrium.film.size / max(far, 1e-300)),
             )
         except BreakError as error:
@@ -141,7 +129,7 @@ class Films:
             film, h = net.equilibrium.film, net.surface.mean_curvature
             rim = self.rim_shifts(film, net.shares)
             curvature = self.freedom.curvature_rates()
-            if self.table.volume is not None:
+            if self.freedom.film.volume is not None:
                 curvature = curvature_rates_of_volume(film, h, rim)
             fields = jacobi_fields(film, h, rim, curvature)
             self._rates[net] = shift_rates(net.surface, film, net.iso, fields, rim, curvature, self._progress)
@@ -153,17 +141,17 @@ class Films:
         t = rim_parameters(film.connectivity, film.mesh.parameter)
         of_loop = film.mesh.loop[nodes[:, 0]]
         result = np.zeros((self.freedom.count, len(film.nodes), 3))
-        begin, tables = self.loops(shares), self.freedom.changed(shares).boundary
+        begin, curves = self.loops(shares), self.freedom.changed(shares).curves
         here = [loop.at(t[of_loop == index]) for index, loop in enumerate(begin)]
         for number in range(self.freedom.count):
             ahead = shares.copy()
             ahead[number] += SHARE
             moved = self.freedom.changed(ahead)
-            for index, table in enumerate(moved.boundary):
-                if table == tables[index]:
+            for index, curve in enumerate(moved.curves):
+                if curve == curves[index]:
                     continue
                 mine = of_loop == index
                 # so small a change needs no check of its own
-                there = unchecked_loop(moved, index, self.folder, self._drawn)
+                there = curve.loop()
                 result[number, nodes[mine]] = (there.at(t[mine]) - here[index]) / SHARE
         return result

@@ -270,7 +270,7 @@ class ElementNetwork:
         corner = self.corners.nearest(worst, AT_CORNER * float(np.median(self.network.cell_edges)))
         if corner >= 0:
             return "the boundary has a corner there, which concentrates curvature; " + self.rounding(corner)
-        return "the surface's directions are not told well enough there; write a smaller surface.tolerance"
+        return "the surface's directions are not told well enough there; write a smaller tolerance"
 
 
 @dataclass(frozen=True)

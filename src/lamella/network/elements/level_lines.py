@@ -304,8 +304,8 @@ def _refuse_unnameable(points: int, width: int, links: int) -> None:
         raise InputError(
             f"a net {width:,} cells wide on elements cut at {points:,} places has {float(names):.2g} names for the "
             f"crossings of its lamellas (limit {float(np.iinfo(np.int64).max):.2g})",
-            "choose fewer cells (or a larger spacing), or a larger surface.tolerance",
-            "network.cells",
+            "choose fewer cells (or a larger spacing), or a larger tolerance of the surface",
+            "cells",
         )
 
 

@@ -56,7 +56,7 @@ def rounded_coordinates(
                 else f"write cells = {cells}, "
             )
             + 'change the boundary, or choose closing = "open"',
-            "network.closing",
+            "closing",
         ) from None
 
 

@@ -162,14 +162,14 @@ def _none_cross(
         return InputError(
             f"no two lamellas cross: {short.sum()} of {len(short)} are shorter than minimum_length = "
             f"{minimum_length:g} median cell edges of {median:.3g} m, the longest has {edges.max():.2g}",
-            "write minimum_length = 0, with which none is left out, or raise network.cells",
-            "network.minimum_length",
+            "write minimum_length = 0, with which none is left out, or raise cells",
+            "minimum_length",
         )
     longest = float(np.bincount(found.owner, found.span, len(short)).max(initial=0.0))
     return InputError(
         f"no two lamellas cross: with {count} cells the longest one runs over {longest:.2g} cells",
-        f"raise network.cells to about {np.ceil(2 * count / max(longest, 1e-3)):.0f}, or lower network.spacing",
-        "network.cells",
+        f"raise cells to about {np.ceil(2 * count / max(longest, 1e-3)):.0f}, or lower spacing",
+        "cells",
     )
 
 

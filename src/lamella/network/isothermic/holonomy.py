@@ -83,7 +83,7 @@ def vertex_relations(
                 f"the principal directions of the surface are not told well enough for a net: near "
                 f"({coordinates(mesh.nodes[vertex])}) m they turn differently on both sides",
                 "round the corners of its boundary (a spline or an arc), or write a smaller tolerance",
-                "surface.boundary",
+                "surface",
             )
         result[vertex] = factors
     return result

@@ -45,10 +45,10 @@ def less_stretched(surface: ClosedForm, density: Density, trace: Callable[[Close
 
     counts = (int(np.ceil(density.cells * CELLS_BY**k)) for k in range(1, MOST_TRIALS + 1))
     cells = next((count for count in counts if makes(surface, count)), None)
-    ways = [f"write network.cells = {cells}"] if cells else []
+    ways = [f"write cells = {cells}"] if cells else []
     if isinstance(surface, Scherk):
         left = np.pi / 2 - surface.extent
         extents = (float(f"{np.pi / 2 - left * DISTANCE_BY**k:.9g}") for k in range(1, MOST_TRIALS + 1))
         extent = next((value for value in extents if makes(Scherk(value, surface.scale), density.cells)), None)
-        ways += [f"end the surface earlier: surface.extent = {extent:.9g}"] if extent else []
+        ways += [f"end the surface earlier: extent = {extent:.9g}"] if extent else []
     return ", or ".join(ways) or "end the surface earlier"

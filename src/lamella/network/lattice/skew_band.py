@@ -43,7 +43,7 @@ def check_normal_curvature(surface: ClosedForm, wanted: float) -> None:
     ------
     InputError
     """
-    key = "network.normal_curvature"
+    key = "normal_curvature"
     if wanted == surface.mean_curvature:
         return
     # on other surfaces lines are traced (`lamella.network.streamlines.applicability`)

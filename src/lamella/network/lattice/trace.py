@@ -164,7 +164,7 @@ def _long_enough(domain: Domain, density: Density, minimum_length: float) -> tup
             raise InputError(
                 f"all {len(short)} lamellas are shorter than minimum_length = {minimum_length:g} cell edges",
                 "write minimum_length = 0, with which none is left out",
-                "network.minimum_length",
+                "minimum_length",
             )
         left_out += int(short.sum())
         lines = lines.take(~short)
@@ -177,13 +177,13 @@ def _none_cross(lines: Lines, density: Density, minimum_length: float, left_out:
             f"no two lamellas cross once the {left_out} shorter than minimum_length = {minimum_length:g} cell "
             "edges are left out",
             "write minimum_length = 0, with which none is left out",
-            "network.minimum_length",
+            "minimum_length",
         )
     reach = float((lines.end - lines.start).max(initial=0.0))
     return InputError(
         f"no two lamellas cross: with {density.cells} cells the longest one runs over {reach:.2g} cells",
-        f"raise network.cells to about {np.ceil(2 * density.cells / max(reach, 1e-3)):.0f}, or lower network.spacing",
-        "network.cells",
+        f"raise cells to about {np.ceil(2 * density.cells / max(reach, 1e-3)):.0f}, or lower spacing",
+        "cells",
     )
 
 

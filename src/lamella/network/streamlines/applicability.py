@@ -35,8 +35,8 @@ def check_traced(surface: Surface[Any], pattern: Pattern, closing: Literal["open
         raise InputError(
             "the surface's mean curvature varies: no lamellas of one normal curvature cross at 90 deg on it",
             'write normal_curvature (0 for asymptotic lines), or kind = "principal"; or let the mesh become a surface '
-            'of constant mean curvature: surface.mean_curvature = "fit"',
-            "network.normal_curvature",
+            'of constant mean curvature: mean_curvature = "fit"',
+            "normal_curvature",
         )
     refuse_lattice_wishes(pattern, closing)
 
@@ -53,12 +53,12 @@ def refuse_lattice_wishes(pattern: Pattern, closing: Literal["open", "round", "a
         raise InputError(
             f"every = {p if p == q else [p, q]} leaves out curves of an isothermic lattice, and these lines have none",
             "leave every out and take a larger spacing, or fewer cells",
-            "network.every",
+            "every",
         )
     if closing != "open":
         raise InputError(
             f'closing = "{closing}" moves a net whose lines follow from one another; lines of a given normal curvature '
             "start from seeds, and there is nothing to close",
             'leave closing out, or write closing = "open"',
-            "network.closing",
+            "closing",
         )

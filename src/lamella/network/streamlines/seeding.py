@@ -168,7 +168,7 @@ def seeded_lines(ground: Ground, field: LineField, guide: Guide, distance: float
         guides += len(found)
     if lines is None:
         raise InputError(
-            "no line could be traced on this surface", "choose another normal_curvature", "network.normal_curvature"
+            "no line could be traced on this surface", "choose another normal_curvature", "normal_curvature"
         )
     return Seeded(finished(lines.take(np.argsort(~lines.is_a, kind="stable"))), guides, count)
 

@@ -133,7 +133,7 @@ class TracedNetwork:
                 "lamellas_off",
                 f"the normal curvature of the lamellas is off by up to {most:.2g} 1/m, "
                 f"{most / self.scale:.1e} of the curvature scale (at 95 % of the samples by {usual / self.scale:.1e}; "
-                f"limit {PROMISED:g}): a finer and smoother mesh, or a smaller surface.tolerance where there "
+                f"limit {PROMISED:g}): a finer and smoother mesh, or a smaller tolerance where there "
                 "are vertices enough for it, tells directions better",
             )
 
@@ -226,7 +226,7 @@ def _none_cross(
             f"no two lamellas cross: {short} of {count} are shorter than minimum_length = {minimum_length:g} median "
             f"cell edges, the longest of them {longest:.3g} m",
             "write minimum_length = 0, with which none is left out",
-            "network.minimum_length",
+            "minimum_length",
         )
     return InputError(
         f"no two lamellas cross: the longest of {count} is {longest:.3g} m, and they are {distance:.3g} m apart",

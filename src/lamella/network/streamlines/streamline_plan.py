@@ -133,7 +133,7 @@ def _refuse_nowhere(reach: Reach, usable: Booleans, mean: Floats, half: Floats, 
         + f", its normal curvatures run from k2 = {reach.k2_min:.4g} to k1 = {reach.k1_max:.4g} 1/m",
         f"choose a value from {rounded(low, up=True):g} to {rounded(high, up=False):g} 1/m (the sign is that of the "
         "surface's normal)",
-        "network.normal_curvature",
+        "normal_curvature",
     )
 
 

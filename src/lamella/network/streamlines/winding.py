@@ -48,5 +48,5 @@ def refuse_winding(ground: Ground, field: LineField, flow: Flow, pattern: Patter
         f"{winding.sum()} of {flow.count} lines wind around without reaching the rim, one of them through "
         f"({coordinates(through)}) m: closed lines are offered on surfaces of constant mean curvature only",
         "; or ".join(ways) or "cut the surface open where they go around",
-        "network.kind" if principal else "network.normal_curvature",
+        "kind" if principal else "normal_curvature",
     )

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from lamella.base.errors import InputError
-from lamella.project.tables import LEAST_LENGTH
+from lamella.base.limits import LEAST_LENGTH
 from lamella.surface.boundary.crossings import Touch, closest_touch
 from lamella.surface.boundary.curve import Loop, Slide, place
 from lamella.surface.boundary.knots import is_knotted
@@ -59,7 +59,7 @@ def check_loops(loops: Sequence[Loop]) -> None:
     Raises
     ------
     InputError
-        What is wrong, with the place; `where` is the key of the loop, "surface.boundary[1]".
+        What is wrong, with the place; `where` is the number of the loop, "loops[1]".
     """
     for k, loop in enumerate(loops):
         where = _key(k)
@@ -124,7 +124,7 @@ def check_corner_count(loops: Sequence[Loop], most_nodes: int, tolerance: float)
 
 
 def _key(k: int) -> str:
-    return f"surface.boundary[{k}]"
+    return f"loops[{k}]"
 
 
 def _check_size(loop: Loop, where: str) -> None:

@@ -32,7 +32,7 @@ class Delaunay(SurfaceOfRevolution):
                 "tiny catenoids",
                 f"write neck_radius = {rounded(LEAST_RATIO * bulge_radius, up=True):g} or more; for a piece near the "
                 "neck alone, a catenoid",
-                "surface.neck_radius",
+                "neck_radius",
             )
         self.neck_radius, self.bulge_radius = neck_radius, bulge_radius
         self.mean_curvature = 1.0 / (bulge_radius + flux_sign * neck_radius)
@@ -79,7 +79,7 @@ class Unduloid(Delaunay):
             raise InputError(
                 f"neck_radius = {neck_radius:g} m is above bulge_radius = {bulge_radius:g} m",
                 "the neck is the smallest radius, the bulge the largest: swap them",
-                "surface.neck_radius",
+                "neck_radius",
             )
         super().__init__(neck_radius, bulge_radius, 1)
         self.outline = self.between(*height)
@@ -108,7 +108,7 @@ class Nodoid(Delaunay):
                 f"neck_radius = {neck_radius:g} m is not below bulge_radius = {bulge_radius:g} m "
                 "(H = 1 / (bulge_radius - neck_radius) has to be positive and finite)",
                 "the neck is the smallest radius, the bulge the largest",
-                "surface.neck_radius",
+                "neck_radius",
             )
         super().__init__(neck_radius, bulge_radius, -1)
         fold = self.fold
@@ -118,7 +118,7 @@ class Nodoid(Delaunay):
                     f"z = {z:g} m lies at or beyond the nodoid's fold: |z| < {fold:.6g} m for these radii",
                     "only the branch around the neck is offered: keep height within "
                     f"[{-rounded(0.99 * fold, up=False):g}, {rounded(0.99 * fold, up=False):g}], or widen the radii",
-                    "surface.height",
+                    "height",
                 )
         self.outline = self.between(*height)
 

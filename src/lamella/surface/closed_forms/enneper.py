@@ -34,7 +34,9 @@ class Enneper(ClosedForm):
     def __init__(self, order: int, radius: float, scale: float = 1.0) -> None:
         require_positive(radius=radius, scale=scale)
         if int(order) != order or order < 2:
-            raise InputError(f"order = {order!r} is no whole number of at least 2", "2 is the classical surface")
+            raise InputError(
+                f"order = {order!r} is no whole number of at least 2", "2 is the classical surface", "order"
+            )
         self.order, self.scale = order, scale
         self.outline = Disc(radius)
         self.hopf_order = order - 2
@@ -50,7 +52,7 @@ class Enneper(ClosedForm):
         return (
             Message(
                 "surface_crosses",
-                f"surface.radius = {self.outline.radius:g}: Enneper's surface of order {self.order} cuts through "
+                f"radius = {self.outline.radius:g}: Enneper's surface of order {self.order} cuts through "
                 f"itself from a parameter radius of {self.crossing_radius:.4g} on; it cannot be built there",
             ),
         )

@@ -34,7 +34,7 @@ class Helicoid(ClosedForm):
             raise InputError(
                 f"inner_radius = {inner_radius:g} m has to be at least 0 and below outer_radius = {outer_radius:g} m",
                 "swap or change them",
-                "surface.inner_radius",
+                "inner_radius",
             )
         self._c = abs(pitch) / (2 * np.pi)
         self._sense = float(np.sign(pitch))

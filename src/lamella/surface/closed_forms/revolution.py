@@ -74,9 +74,7 @@ class SurfaceOfRevolution(ClosedForm):
             The range is reversed, empty or not finite.
         """
         if not -np.inf < z0 < z1 < np.inf:
-            raise InputError(
-                f"height = ({z0:g}, {z1:g}) m is no range", "z0 has to be below z1, both finite", "surface.height"
-            )
+            raise InputError(f"height = ({z0:g}, {z1:g}) m is no range", "z0 has to be below z1, both finite", "height")
         ends = sorted(self.parameter_at_height(z) for z in (z0, z1))
         return Ring(*ends)
 

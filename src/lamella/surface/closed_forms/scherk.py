@@ -45,7 +45,7 @@ class Scherk(ClosedForm):
             raise InputError(
                 f"extent = {extent:g}: the surface runs to infinity at pi / 2 = 1.5708",
                 "choose a smaller extent",
-                "surface.extent",
+                "extent",
             )
         self.extent, self.scale = extent, scale
         self.outline = Square(float(np.arcsinh(np.tan(extent))))

@@ -285,7 +285,7 @@ def _triangulated(kind: str, rims: Sequence[Complexes], parameters: Sequence[Flo
         mesh.erase_outer_triangles_and_holes()
     except Exception as error:
         raise InputError(
-            f"the boundary loops cannot be meshed: {error}", "check the loops for crossings", "surface.boundary"
+            f"the boundary loops cannot be meshed: {error}", "check the loops for crossings", "loops"
         ) from None
     found = mesh.vertices_array()
     points = np.column_stack([found["x"], found["y"]])

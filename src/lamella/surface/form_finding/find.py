@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from lamella.base.drawing_origin import NOWHERE, coordinates, measured_from, origin_figure, told_from
+from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, patient, silent
-from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.film import Film, Loop
 from lamella.surface.form_finding.first_film import FirstFilm
@@ -30,7 +28,6 @@ from lamella.surface.form_finding.search_error import SearchError
 from lamella.surface.form_finding.self_crossing import self_crossing
 
 if TYPE_CHECKING:
-    from lamella.project.tables import FormFoundTable
     from lamella.surface.boundary import Loop as BoundaryLoop
 
 # of the film's size: a film of the same mean curvature this near is told
@@ -42,53 +39,7 @@ MOST_TRIED = 120
 # of the film's size: it hangs where it is this much lower than its whole boundary, and nowhere higher by as much
 HANGS = 0.01
 
-__all__ = ["Found", "adapted", "find_film", "notes_on", "remarks_on", "surface_of_table"]
-
-
-def surface_of_table(table: FormFoundTable, folder: Path, progress: Progress = silent) -> ElementSurface:
-    """The surface of a project's table.
-
-    Parameters
-    ----------
-    table : FormFoundTable
-    folder : Path
-        Where relative paths of boundary files begin.
-    progress : callable
-
-    Raises
-    ------
-    InputError
-    """
-    from lamella.surface.boundary import with_origin
-
-    table = with_origin(table, folder)
-    with told_from(table.origin or NOWHERE):
-        return _of_table(table, folder, progress)
-
-
-def _of_table(table: FormFoundTable, folder: Path, progress: Progress) -> ElementSurface:
-    from lamella.surface.boundary import boundary_loops
-    from lamella.surface.boundary.corner_cost import corner_cost
-
-    if table.origin:
-        progress(Report.step(measured_from(table.origin)))
-    loops = boundary_loops(table, folder)
-    remarks = remarks_on(loops)
-    for remark in (*remarks, corner_cost(loops, table.most_nodes, table.tolerance)):
-        if remark:
-            progress(Report.step(remark))
-    found = find_film(
-        loops,
-        table.mean_curvature or 0.0,
-        volume=table.volume,
-        order=table.order,
-        tolerance=table.tolerance,
-        branch=table.branch,
-        most_nodes=table.most_nodes,
-        progress=progress,
-    )
-    notes = remarks + notes_on(found, given_curvature=table.volume is None)
-    return found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
+__all__ = ["Found", "adapted", "find_film", "notes_on", "remarks_on"]
 
 
 def remarks_on(loops: tuple[BoundaryLoop, ...]) -> tuple[Message, ...]:
@@ -268,6 +219,6 @@ def _found(
         raise InputError(
             f"the surface found is {verdict.verdict} ({verdict.negative} negative eigenvalues), not {branch} as asked",
             f'write branch = "{verdict.verdict}" to take it',
-            "surface.branch",
+            "branch",
         )
     return found

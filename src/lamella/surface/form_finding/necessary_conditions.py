@@ -59,8 +59,8 @@ def refuse_afloat(loops: Sequence[Loop]) -> None:
         names = " and ".join(f"{loop.name!r}" for loop in loops)
         raise InputError(
             f"nothing holds the surface: {names} {'slides' if len(loops) == 1 else 'slide'} as a whole",
-            "hold one loop, or a part of one ([[surface.boundary.part]] tables without slide)",
-            "surface.boundary",
+            "hold one loop, or a part of one",
+            "loops",
         )
 
 
@@ -78,7 +78,7 @@ def refuse_single(loops: Sequence[Curve], mean_curvature: float) -> None:
     if length[2] <= FLAT * length[0]:
         raise ImpossibleError(
             "there is no unstable surface: the boundary is flat, and without pressure its only surface is the plane",
-            "surface.branch",
+            "branch",
         )
     for axis in (vector_area(points), *axes):
         if is_convex_along(points, axis):
@@ -86,7 +86,7 @@ def refuse_single(loops: Sequence[Curve], mean_curvature: float) -> None:
             raise ImpossibleError(
                 f"there is no unstable surface: seen along ({x:g}, {y:g}, {z:g}) the boundary is a convex curve, and "
                 "without pressure the only surface in such a boundary is the stable one (Rado 1932)",
-                "surface.branch",
+                "branch",
             )
 
 
@@ -123,7 +123,7 @@ def refuse_flux(loops: Sequence[Curve], mean_curvature: float) -> None:
         raise ImpossibleError(
             f"mean_curvature = {mean_curvature:.6g} 1/m: no surface in this boundary bends that much. Its length is "
             f"{length:.5g} m and its vector area {enclosed:.5g} m2, so that |H| <= length / (2 area) = {limit:.6g} 1/m",
-            "surface.mean_curvature",
+            "mean_curvature",
             limit,
         )
 
@@ -159,7 +159,7 @@ def refuse_apart(loops: Sequence[Curve]) -> None:
                 f"the two rings are {distance:.6g} m apart, which is {told}"
                 if same
                 else f"the two rings are {distance:.6g} m apart; {told}",
-                "surface.boundary",
+                "loops",
                 limit,
             )
         return
@@ -178,7 +178,7 @@ def refuse_apart(loops: Sequence[Curve]) -> None:
                 f"the two loops are too far apart ({distance:.5g} m between their middles) for one film: seen from a "
                 f"point between them both lie in a double cone of half opening "
                 f"{np.degrees(np.arctan(max(ratios))):.3g} deg (limit {np.degrees(np.arctan(CONE)):.4g} deg)",
-                "surface.boundary",
+                "loops",
             )
 
 

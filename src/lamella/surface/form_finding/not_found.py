@@ -35,7 +35,7 @@ def not_found(
         return InputError(
             f"{wanted}: the search did not arrive at an unstable surface; {MAY_EXIST}. {went}",
             'leave branch out, or write branch = "stable"',
-            "surface.branch",
+            "branch",
         )
     if search.unstable:
         inside = enclosed_volume(search.unstable.film)
@@ -43,7 +43,7 @@ def not_found(
             f"{wanted}: there is an unstable surface ({search.unstable.negative} negative eigenvalues of its second "
             f"variation: a soap film would leave it), but the search did not arrive at a stable one. {went}",
             f'write branch = "unstable" to take it, or give a volume instead (its own is {inside:.6g} m3)',
-            "surface.branch",
+            "branch",
         )
     if not mean_curvature:
         return InputError(
@@ -51,7 +51,7 @@ def not_found(
             _of_vault(tries, error.fold)
             if any(loop.slides for loop in search.loops)
             else _of_tube(tries, 0.0) or "bring the loops closer together, or make them less bent",
-            "surface.boundary",
+            "loops",
         )
     if _again(search).exists(-mean_curvature):
         return InputError(
@@ -59,25 +59,25 @@ def not_found(
             "surface bends towards its normal where H is above 0, and the normal follows the first loop by the "
             "right-hand rule",
             f"write mean_curvature = {-mean_curvature:.6g}, or reverse the first loop",
-            "surface.mean_curvature",
+            "mean_curvature",
         )
     near = tries.nearest_curvature(mean_curvature, error.fold)
     if near is not None:
         return InputError(
             f"{wanted}: the search did not arrive at a stable surface that bends that much; {MAY_EXIST}. {went}",
             _smaller(near, mean_curvature),
-            "surface.mean_curvature",
+            "mean_curvature",
         )
     return InputError(
         f"{wanted}: the search did not arrive at a surface; {MAY_EXIST}. {went}",
         _of_tube(tries, mean_curvature) or "give a volume instead: more films can be followed by their volume",
-        "surface.mean_curvature",
+        "mean_curvature",
     )
 
 
 def impossible(error: ImpossibleError, tries: Tries, mean_curvature: float, unstable: bool) -> InputError:
     """The error of a bound that is broken, with what exists instead."""
-    if error.where == "surface.branch":
+    if error.where == "branch":
         value = tries.curvature_of_bubble()
         other = "" if value is None else f", or write mean_curvature = {value:g}"
         return InputError(error.message, f"leave branch out{other}", error.where)
@@ -131,13 +131,13 @@ def _no_volume(search: FirstFilm, went: str, volume: float) -> InputError:
                 "above 0 where the normal points out of it, and the normal follows the first loop by the right-hand "
                 "rule",
                 f"write volume = {-volume:.6g}, or reverse the first loop",
-                "surface.volume",
+                "volume",
             )
     if search.most is not None:
         return InputError(
             f"{wanted}: the search did not arrive at a surface. {went}",
             f"choose a volume of up to {NEXT_TO_FOLD * search.most:.3g} m3 in size",
-            "surface.volume",
+            "volume",
         )
     return InputError(
         f"{wanted}: the search did not arrive at a surface; {MAY_EXIST}. {went}",
@@ -148,5 +148,5 @@ def _no_volume(search: FirstFilm, went: str, volume: float) -> InputError:
             else ", or bring the held curves closer together"
         )
         + "; it is above 0 where the normal points out of it",
-        "surface.volume",
+        "volume",
     )

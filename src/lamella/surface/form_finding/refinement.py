@@ -65,7 +65,7 @@ def adapted(
         raise InputError(
             f"the surface found on coarse elements breaks on finer ones: {error}",
             "make the boundary less bent, or allow a larger tolerance",
-            "surface",
+            "loops",
         ) from None
     shortfall = f"it was not reached in {MOST_ROUNDS} rounds of refinement"
     best: tuple[float, Equilibrium] | None = None
@@ -109,7 +109,7 @@ def adapted(
             if deviation.largest < WRONG
             else "make the boundary less bent or less narrow there"
             + (", or raise most_nodes" if "most_nodes" in shortfall else ""),
-            "surface.tolerance",
+            "tolerance",
         )
     return Found(
         here,

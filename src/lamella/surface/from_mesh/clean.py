@@ -12,11 +12,11 @@ from scipy.spatial import cKDTree
 from lamella.base.arrays import Floats, Integers
 from lamella.base.message import Message
 from lamella.base.wording import counted
-from lamella.files.read.raw_mesh import RawMesh, mesh_error, place
 from lamella.surface.from_mesh.cracks import NEAR_EDGE, close_t_junctions, near_border
 from lamella.surface.from_mesh.edges import Edges, face_normals, find_edges
 from lamella.surface.from_mesh.merge import drop_collapsed, drop_repeated, drop_unused, merge_vertices
 from lamella.surface.from_mesh.orient import orient
+from lamella.surface.from_mesh.raw_mesh import RawMesh, mesh_error, place
 from lamella.surface.from_mesh.slivers import remove_slivers
 
 FRAGMENT = 1e-3

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lamella.base.arrays import Floats
-from lamella.base.drawing_origin import measured_from, origin_figure, told_from
+from lamella.base.drawing_origin import origin_figure
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
-from lamella.files.read.mesh import read_mesh
-from lamella.files.read.raw_mesh import RawMesh
-from lamella.surface.boundary import Loop, check_loops
+from lamella.surface.boundary import Loop
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.film import Film, harmonic_over_itself
 from lamella.surface.form_finding.find import adapted, notes_on
@@ -24,14 +22,12 @@ from lamella.surface.form_finding.meshing import on_surface
 from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, find_equilibrium
 from lamella.surface.from_mesh.clean import CleanMesh, clean
 from lamella.surface.from_mesh.edges import face_normals, find_edges, vertex_areas
-from lamella.surface.from_mesh.fit_surface import distances, kept_surface
+from lamella.surface.from_mesh.fit_options import FitOptions
+from lamella.surface.from_mesh.fit_surface import distances
 from lamella.surface.from_mesh.mean_curvature_fit import Fit, fit_mean_curvature
 from lamella.surface.from_mesh.nearest import nearest_of_family
-from lamella.surface.from_mesh.to_elements import as_film, border_loops
-
-if TYPE_CHECKING:
-    from lamella.project.tables import MeshTable
-
+from lamella.surface.from_mesh.raw_mesh import RawMesh, mesh_of_arrays
+from lamella.surface.from_mesh.to_elements import as_film, checked_loops
 
 # of the curvature scale: an H below it, and below what a mesh can tell, is that of a minimal surface; above the other
 # the user is warned of it
@@ -46,66 +42,68 @@ CRUMPLED = 0.8
 FAR = 0.05
 # typical distance between them, over the size, that the user is warned of
 OFF = 2e-4
-# the way that a mesh of varying mean curvature has
-KEEP = (
-    'to keep the mesh\'s own surface write mean_curvature = "varying", and under [network] kind = "principal" (lines '
-    "of principal curvature) or a normal_curvature"
-)
 
 
-def surface_of_table(table: MeshTable, folder: Path, progress: Progress = silent) -> ElementSurface:
-    """The surface of a project's table.
+class NotConstantError(InputError):
+    """A mesh that means no surface of constant mean curvature, while its own surface may do (`fit_surface`).
 
     Parameters
     ----------
-    table : MeshTable
-    folder : Path
-        Where a relative path of the mesh begins.
+    message, where : str
+        See `InputError`.
+    otherwise : str
+        What to change where the mesh's own surface is not wanted.
+    """
+
+    def __init__(self, message: str, otherwise: str, where: str) -> None:
+        super().__init__(message, f"take the mesh's own surface (fit_surface); or {otherwise}", where)
+        self.otherwise = otherwise
+
+
+def fit_cmc(
+    points: ArrayLike,
+    faces: ArrayLike,
+    *,
+    mean_curvature: Literal["fit"] | float = "fit",
+    corner_angle: float = 40.0,
+    order: int = 4,
+    tolerance: float = 2e-3,
+    most_nodes: int = 100_000,
+    deviation: float = 0.1,
+    progress: Progress = silent,
+) -> ElementSurface:
+    """The surface of constant mean curvature that a mesh means, its border kept.
+
+    Parameters
+    ----------
+    points : (n, 3)
+        m.
+    faces : (m, 3) or (m, 4) int
+        Triangles or quads, counter-clockwise about the normal.
+    mean_curvature, corner_angle, order, tolerance, most_nodes, deviation
+        See `FitOptions`.
     progress : callable
 
     Raises
     ------
     InputError
-        The mesh cannot be read, or does not mean a surface of constant mean curvature.
+        No disc with holes, or one that does not mean a surface of constant mean curvature.
     """
-    raw = read_mesh(folder / table.file, table.unit, table.origin)
-    if any(raw.origin):
-        progress(Report.step(measured_from(raw.origin)))
-    with told_from(raw.origin):
-        return _meant(raw, table, progress)
+    options = FitOptions(mean_curvature, corner_angle, order, tolerance, most_nodes, deviation)
+    return cmc_surface(mesh_of_arrays(points, faces), options, progress)
 
 
-def _meant(raw: RawMesh, table: MeshTable, progress: Progress) -> ElementSurface:
+def cmc_surface(raw: RawMesh, options: FitOptions, progress: Progress = silent) -> ElementSurface:
+    """`fit_cmc` of a mesh from a file."""
     mesh = clean(raw)
     progress(Report.step(f"{raw.source}: {len(mesh.points):,} vertices, {len(mesh.faces):,} triangles"))
-    loops, notes = border_loops(mesh, table.corner_angle)
-    check_loops(loops)
-    if table.mean_curvature == "varying":
-        kept = kept_surface(mesh, loops, table, raw.source, notes, progress)
-        return replace(kept, figures=kept.figures | origin_figure(raw.origin))
+    loops, notes = checked_loops(mesh, options.corner_angle)
     try:
-        return _constant(raw, mesh, loops, notes, table, progress)
-    except InputError as error:
-        if not error.remedy.startswith(KEEP):
-            raise
-        raise _with_open_ways(error, mesh, loops, table, raw.source) from None
-
-
-def _with_open_ways(
-    error: InputError, mesh: CleanMesh, loops: tuple[Loop, ...], table: MeshTable, source: str
-) -> InputError:
-    """An error that offers to keep the mesh's own surface; without that offer where this is refused too."""
-    if _crumpled(mesh):
-        return InputError(error.message, error.remedy.removeprefix(f"{KEEP}; or "), error.where)
-    try:
-        kept_surface(mesh, loops, table, source, (), silent)
-    except InputError as refused:
-        return InputError(
-            f'{error.message}; with mean_curvature = "varying" {refused.message}',
-            f"{refused.remedy}{error.remedy.removeprefix(KEEP)}",
-            refused.where,
-        )
-    return error
+        return _constant(raw, mesh, loops, notes, options, progress)
+    except NotConstantError as error:
+        if _crumpled(mesh):
+            raise InputError(error.message, error.otherwise, error.where) from None
+        raise
 
 
 def _constant(
@@ -113,12 +111,12 @@ def _constant(
     mesh: CleanMesh,
     loops: tuple[Loop, ...],
     notes: tuple[Message, ...],
-    table: MeshTable,
+    options: FitOptions,
     progress: Progress,
 ) -> ElementSurface:
     """The surface of constant mean curvature that a mesh means."""
     fit = fit_mean_curvature(mesh.points, mesh.faces)
-    given = None if table.mean_curvature == "fit" else float(table.mean_curvature)
+    given = None if options.mean_curvature == "fit" else float(options.mean_curvature)
     progress(
         Report.step(
             f"curvature at the vertices: H = {fit.mean_curvature:.6g} 1/m, off by {fit.deviation:.2g} of the curvature "
@@ -126,7 +124,7 @@ def _constant(
         )
     )
     areas = vertex_areas(mesh.points, mesh.faces)
-    first, exact = _coarse(mesh, loops, fit, areas, table, progress)
+    first, exact = _coarse(mesh, loops, fit, areas, options, progress)
     nearest = first.mean_curvature
     if given is None:
         first = _without_curvature(first, fit.scale, progress)
@@ -139,7 +137,7 @@ def _constant(
         here = find_equilibrium(film, first.mean_curvature, volume=0.0, stable=False, progress=progress)
         return nearest_of_family(here, mesh.points, areas, progress)
 
-    found = adapted(first, settled, table.tolerance, table.most_nodes, first.steps, False, progress)
+    found = adapted(first, settled, options.tolerance, options.most_nodes, first.steps, False, progress)
     mean_curvature = found.equilibrium.mean_curvature
     distance = distances(found.equilibrium.film, mesh.points)
     _refuse_far(distance, found.equilibrium)
@@ -159,13 +157,13 @@ def _constant(
         fitted_deviation=fit.deviation,
         distance_max=float(distance.max()),
         distance_rms=float(np.sqrt((distance**2).mean())),
-        tolerance=table.tolerance,
+        tolerance=options.tolerance,
         **origin_figure(raw.origin),
     )
 
 
 def _coarse(
-    mesh: CleanMesh, loops: tuple[Loop, ...], fit: Fit, areas: Floats, table: MeshTable, progress: Progress
+    mesh: CleanMesh, loops: tuple[Loop, ...], fit: Fit, areas: Floats, options: FitOptions, progress: Progress
 ) -> tuple[Equilibrium, bool]:
     """The surface a mesh means on coarse elements, and whether its vertices lie on it but for their coarseness.
 
@@ -174,17 +172,17 @@ def _coarse(
     InputError
         There is none, or the mesh is too far from it.
     """
-    free = table.mean_curvature == "fit"
-    start = fit.mean_curvature if free else float(table.mean_curvature)
-    uneven = fit.deviation > table.deviation
+    free = options.mean_curvature == "fit"
+    start = fit.mean_curvature if free else float(options.mean_curvature)
+    uneven = fit.deviation > options.deviation
     if uneven and (len(mesh.points) > COARSE or _crumpled(mesh)):
-        raise _not_constant(fit, table.deviation)
+        raise _not_constant(fit, options.deviation)
     progress(Report.step("laying elements on the mesh"))
     try:
-        first = _near(_film(mesh, loops, table.order, start), start, free, progress)
+        first = _near(_film(mesh, loops, options.order, start), start, free, progress)
     except InputError:
         if uneven:
-            raise _not_constant(fit, table.deviation) from None
+            raise _not_constant(fit, options.deviation) from None
         raise
     if free:
         first = nearest_of_family(first, mesh.points, areas, progress)
@@ -193,10 +191,10 @@ def _coarse(
     progress(Report.step(f"nearest to the vertices: H = {first.mean_curvature:.6g} 1/m, {1000 * typical:.3g} mm off"))
     # vertices off by d change the curvature of edges of length h by up to 8 d / h^2
     edge = float(np.median(find_edges(mesh.faces).lengths(mesh.points)))
-    exact = 8 * typical / edge**2 <= table.deviation * fit.scale
+    exact = 8 * typical / edge**2 <= options.deviation * fit.scale
     if uneven and not exact:
         raise _not_constant(
-            fit, table.deviation, f", about H = {first.mean_curvature:.2g} 1/m and {1000 * typical:.2g} mm off"
+            fit, options.deviation, f", about H = {first.mean_curvature:.2g} 1/m and {1000 * typical:.2g} mm off"
         )
     _refuse_far(distance, first)
     return first, exact
@@ -204,12 +202,12 @@ def _coarse(
 
 def _not_constant(fit: Fit, limit: float, nearest: str = "") -> InputError:
     """The refusal of a mesh whose curvature varies, with words on the nearest surface where it is known."""
-    return InputError(
+    return NotConstantError(
         f"the mesh is not of constant mean curvature: H = {fit.mean_curvature:.4g} 1/m fits best, its vertices are "
         f"off by {fit.deviation:.2g} of the curvature scale {fit.scale:.4g} 1/m (limit {limit:g}, "
         f"largest {fit.deviation_max:.2g})",
-        f"{KEEP}; or mend the mesh, or raise deviation to take the nearest surface{nearest}",
-        "surface.file",
+        f"mend the mesh, or raise deviation to take the nearest surface{nearest}",
+        "faces",
     )
 
 
@@ -224,11 +222,11 @@ def _crumpled(mesh: CleanMesh) -> bool:
 def _refuse_far(distance: Floats, here: Equilibrium) -> None:
     size = here.film.size
     if distance.max() > FAR * size:
-        raise InputError(
+        raise NotConstantError(
             f"the nearest surface of H = {here.mean_curvature:.4g} 1/m is up to {distance.max():.4g} m away from the "
             f"mesh (limit {FAR * size:.4g} m, {FAR:.0%} of its size): the mesh does not mean it",
-            f"{KEEP}; or give another mean_curvature, or mend the mesh",
-            "surface.file",
+            "give another mean_curvature, or mend the mesh",
+            "faces",
         )
 
 
@@ -309,7 +307,7 @@ def _film(mesh: CleanMesh, loops: tuple[Loop, ...], order: int, mean_curvature: 
         raise InputError(
             f"no elements could be laid on the mesh: {error}",
             "mend the mesh where it overlaps, folds or is very thin",
-            "surface.file",
+            "faces",
         ) from None
 
 
@@ -322,11 +320,13 @@ def _near(film: Film, mean_curvature: float, free: bool, progress: Progress) -> 
         except NoFilmError as error:
             progress(Report.detail(f"{error}"))
             reasons.append(str(error))
+    message = (
+        f"no surface of constant mean curvature {mean_curvature:.4g} 1/m was found near the mesh ({'; '.join(reasons)})"
+    )
+    if free:
+        raise NotConstantError(message, "give mean_curvature, or mend the mesh", "mean_curvature")
     raise InputError(
-        f"no surface of constant mean curvature {mean_curvature:.4g} 1/m was found near the mesh "
-        f"({'; '.join(reasons)})",
-        "give another mean_curvature (its sign is that of the mesh's normals, see the fit above), or mend the mesh"
-        if not free
-        else f"{KEEP}; or give mean_curvature, or mend the mesh",
-        "surface.mean_curvature",
+        message,
+        "give another mean_curvature (its sign is that of the mesh's normals, see the fit above), or mend the mesh",
+        "mean_curvature",
     )

@@ -14,17 +14,19 @@ doi:10.1016/j.cma.2003.12.032.)
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.drawing_origin import origin_figure
 from lamella.base.errors import InputError
 from lamella.base.message import Message
-from lamella.base.progress import Progress, Report
-from lamella.surface.boundary import Loop, check_loops
+from lamella.base.progress import Progress, Report, silent
+from lamella.surface.boundary import Loop
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.curvature import element_points, frames
 from lamella.surface.element.edge_basis import edge_rule
@@ -32,16 +34,14 @@ from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.varying import VaryingSurface
 from lamella.surface.form_finding.film import Film, NoFilmError
 from lamella.surface.form_finding.meshing import start_sizes, with_sizes
-from lamella.surface.from_mesh.clean import CleanMesh
+from lamella.surface.from_mesh.clean import CleanMesh, clean
 from lamella.surface.from_mesh.edges import vertex_areas, vertex_normals
-from lamella.surface.from_mesh.to_elements import as_film, border_loops
+from lamella.surface.from_mesh.fit_options import FitOptions
+from lamella.surface.from_mesh.raw_mesh import RawMesh, mesh_of_arrays
+from lamella.surface.from_mesh.to_elements import as_film, checked_loops
 from lamella.surface.from_mesh.vertex_fits import VertexFits, disagreement, fit_vertices, through_vertices
 from lamella.surface.from_mesh.vertex_noise import READING, Smoothed, without_scatter
 from lamella.surface.remesh.size_field import SizeField
-
-if TYPE_CHECKING:
-    from lamella.project.tables import MeshTable
-
 
 # weights of the jumps of slope and of curvature
 SLOPE, CURVATURE = 1e-3, 1e-5
@@ -205,7 +205,7 @@ def kept_film(
             raise InputError(
                 f"no elements could be laid on the mesh: {error}",
                 "mend the mesh where it overlaps, folds or is very thin",
-                "surface.file",
+                "faces",
             ) from None
         if film.connectivity.node_count > most_nodes and best is not None:
             break
@@ -246,19 +246,19 @@ def _scale(film: Film) -> float:
 
 
 def through_film(
-    mesh: CleanMesh, flat: Film, loops: tuple[Loop, ...], fits: VertexFits, table: MeshTable, progress: Progress
+    mesh: CleanMesh, flat: Film, loops: tuple[Loop, ...], fits: VertexFits, options: FitOptions, progress: Progress
 ) -> Kept | None:
     """Elements on the mesh's own triangles, through its vertices; None: these scatter, or are too many.
 
     They are blended from the fits around the vertices. Where the mesh is so coarse that these disagree, the nodes
     between the vertices move to the least jumps of slope and curvature.
     """
-    if len(mesh.faces) * table.order**2 / 2 > table.most_nodes:
+    if len(mesh.faces) * options.order**2 / 2 > options.most_nodes:
         return None
-    film = through_vertices(flat, loops, fits, table.order)
+    film = through_vertices(flat, loops, fits, options.order)
     jump = curvature_jump(film)
     if jump > SMOOTH:
-        film = through_vertices(flat, loops, fits, min(table.order, RELAXED_ORDER))
+        film = through_vertices(flat, loops, fits, min(options.order, RELAXED_ORDER))
         film = _relaxed(film, len(mesh.points), progress)
         jump = curvature_jump(film)
     progress(
@@ -318,10 +318,50 @@ def _seen_at_vertices(film: Film, points: Floats, faces: Integers) -> tuple[Inte
     return np.arange(len(points)), places.element, places.local
 
 
+def fit_surface(
+    points: ArrayLike,
+    faces: ArrayLike,
+    *,
+    corner_angle: float = 40.0,
+    order: int = 4,
+    tolerance: float = 2e-3,
+    most_nodes: int = 100_000,
+    progress: Progress = silent,
+) -> VaryingSurface:
+    """The surface of a mesh as it is, whatever its mean curvature: smooth elements nearest to its vertices.
+
+    Parameters
+    ----------
+    points : (n, 3)
+        m.
+    faces : (m, 3) or (m, 4) int
+        Triangles or quads, counter-clockwise about the normal.
+    corner_angle, order, tolerance, most_nodes
+        See `FitOptions`.
+    progress : callable
+
+    Raises
+    ------
+    InputError
+        No disc with holes, or a mesh so rough that it tells no curvature.
+    """
+    options = FitOptions(corner_angle=corner_angle, order=order, tolerance=tolerance, most_nodes=most_nodes)
+    return varying_surface(mesh_of_arrays(points, faces), options, progress)
+
+
+def varying_surface(raw: RawMesh, options: FitOptions, progress: Progress = silent) -> VaryingSurface:
+    """`fit_surface` of a mesh from a file."""
+    mesh = clean(raw)
+    progress(Report.step(f"{raw.source}: {len(mesh.points):,} vertices, {len(mesh.faces):,} triangles"))
+    loops, notes = checked_loops(mesh, options.corner_angle)
+    kept = kept_surface(mesh, loops, options, raw.source, notes, progress)
+    return replace(kept, figures=kept.figures | origin_figure(raw.origin))
+
+
 def kept_surface(
     mesh: CleanMesh,
     loops: tuple[Loop, ...],
-    table: MeshTable,
+    options: FitOptions,
     source: str,
     notes: tuple[Message, ...],
     progress: Progress,
@@ -338,28 +378,27 @@ def kept_surface(
     flat = as_film(mesh, loops)
     # the border's vertices are where their curves are
     fits = fit_vertices(flat.nodes, mesh.faces)
-    kept = through_film(mesh, flat, loops, fits, table, progress)
+    kept = through_film(mesh, flat, loops, fits, options, progress)
     smoothed = None
     uneven = float(np.sqrt((disagreement(fits, mesh.faces) ** 2).mean()))
     if kept is None or uneven > ROUGH * _scale(kept.film):
         smoothed = without_scatter(given, mesh.faces, flat.mesh.loop >= 0)
     if smoothed is not None:
         mesh = replace(mesh, points=smoothed.points)
-        loops, notes = border_loops(mesh, table.corner_angle)
-        check_loops(loops)
+        loops, notes = checked_loops(mesh, options.corner_angle)
         notes += (_moved(smoothed, given, flat.mesh.loop >= 0),)
         flat = as_film(mesh, loops)
         fits = fit_vertices(flat.nodes, mesh.faces, READING)
-        kept = through_film(mesh, flat, loops, fits, table, progress)
+        kept = through_film(mesh, flat, loops, fits, options, progress)
     if kept is None:
-        kept = kept_film(mesh, loops, table.order, table.tolerance, table.most_nodes, progress)
+        kept = kept_film(mesh, loops, options.order, options.tolerance, options.most_nodes, progress)
     film, scale = kept.film, _scale(kept.film)
     if kept.jump > ROUGHEST:
         raise InputError(
             f"the mesh is too rough, or too coarse, to tell a curvature: between smooth elements through its vertices "
             f"it still jumps by {kept.jump:.2g} of the curvature scale {scale:.4g} 1/m (limit {ROUGHEST:g})",
             "give a smoother or a finer mesh, its vertices on the surface",
-            "surface.file",
+            "faces",
         )
     for note in (*mesh.notes, *notes):
         progress(Report.step(note))
@@ -369,12 +408,12 @@ def kept_surface(
         raise _too_scattered(smoothed, mesh.faces, flat.mesh.loop >= 0, float(np.median(errors)) / scale, scale)
     distance = distances(film, given)
     doubts: tuple[Message, ...] = ()
-    if typical > table.tolerance:
+    if typical > options.tolerance:
         doubts = (
             Message(
                 "mesh_rough",
-                f"the mesh tells its curvature to {typical:.2g} of the curvature scale only (surface.tolerance = "
-                f"{table.tolerance:g}): by so much the surfaces around neighbouring vertices differ; a smoother or "
+                f"the mesh tells its curvature to {typical:.2g} of the curvature scale only (tolerance = "
+                f"{options.tolerance:g}): by so much the surfaces around neighbouring vertices differ; a smoother or "
                 "a finer mesh tells more",
             ),
         )
@@ -391,7 +430,7 @@ def kept_surface(
         "vertex_scatter": smoothed.scatter if smoothed else 0.0,
         "distance_max": float(distance.max()),
         "distance_rms": float(np.sqrt((distance**2).mean())),
-        "tolerance": table.tolerance,
+        "tolerance": options.tolerance,
     }
     mean = _mean(film)
     basis = film.connectivity
@@ -421,7 +460,7 @@ def _too_scattered(smoothed: Smoothed, faces: Integers, border: Booleans, error:
         f"with these edges vertices have to be known to {1000 * enough:.2g} mm (standard deviation)"
         if enough
         else "give a finer mesh: with these edges no scatter is small enough",
-        "surface.file",
+        "faces",
     )
 
 

@@ -9,8 +9,8 @@ from scipy.sparse import csr_array, eye_array
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ties import least_axis
-from lamella.files.read.raw_mesh import mesh_error
 from lamella.surface.from_mesh.edges import find_edges, vertex_areas, vertex_normals
+from lamella.surface.from_mesh.raw_mesh import mesh_error
 
 NEIGHBOURS = 30
 """Fewest neighbours a quartic with its 15 coefficients should have: three rings around a regular inner vertex."""
@@ -80,7 +80,7 @@ def fit_mean_curvature(points: Floats, faces: Integers) -> Fit:
     if len(points) < FEWEST_VERTICES:
         raise mesh_error(
             f"the mesh has {len(points)} vertices; its curvature cannot be read from fewer than {FEWEST_VERTICES}",
-            "give a finer mesh, or set surface.mean_curvature to a value",
+            "give a finer mesh, or set mean_curvature to a value",
         )
     mean, gaussian = vertex_curvatures(points, faces)
     areas = vertex_areas(points, faces)

@@ -8,8 +8,8 @@ from scipy.sparse.csgraph import connected_components
 
 from lamella.base.arrays import Floats, Integers
 from lamella.base.message import Message
-from lamella.files.read.raw_mesh import mesh_error
 from lamella.surface.from_mesh.edges import Edges, face_normals
+from lamella.surface.from_mesh.raw_mesh import mesh_error
 
 LEVEL = 1e-3
 """Below this part of the flux of a sphere of the same area, a surface has no side that is "outwards"."""

@@ -9,7 +9,7 @@ from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.wording import loop_names
-from lamella.surface.boundary import Loop, make_loop
+from lamella.surface.boundary import Loop, check_loops, make_loop
 from lamella.surface.boundary.smooth_polyline import through_points
 from lamella.surface.form_finding.film import Film
 from lamella.surface.from_mesh.border import BorderCurve, border_curves
@@ -31,9 +31,23 @@ def border_loops(mesh: CleanMesh, corner_angle: float) -> tuple[tuple[Loop, ...]
     return loops, tuple(note for curve in curves for note in curve.notes)
 
 
+def checked_loops(mesh: CleanMesh, corner_angle: float) -> tuple[tuple[Loop, ...], tuple[Message, ...]]:
+    """`border_loops`, refused where they are no boundary of a surface.
+
+    Raises
+    ------
+    InputError
+    """
+    loops, notes = border_loops(mesh, corner_angle)
+    try:
+        check_loops(loops)
+    except InputError as error:
+        raise InputError(error.message, error.remedy, "faces") from None
+    return loops, notes
+
+
 def _loop(curve: BorderCurve, name: str) -> Loop:
-    where = "surface.file"
-    return make_loop(name, through_points(curve.points, curve.corner, where), where=where)
+    return make_loop(name, through_points(curve.points, curve.corner, "faces"), where="faces")
 
 
 def as_film(mesh: CleanMesh, loops: tuple[Loop, ...]) -> Film:
@@ -57,7 +71,7 @@ def _parameters(points: Floats, loop: Loop) -> Floats:
         t = t + np.clip(step, -1 / len(fine), 1 / len(fine))
     t = np.unwrap(t, period=1.0)
     if t[-1] < t[0]:
-        raise InputError("a border runs against its own curve", "mend the mesh's border", "surface.file")
+        raise InputError("a border runs against its own curve", "mend the mesh's border", "faces")
     # where the curve passes near itself, or was smoothed, a vertex may be out of order: it goes between its neighbours
     step = np.linalg.norm(np.roll(points, -1, 0) - points, axis=1)
     guess = t[0] + np.concatenate([[0], np.cumsum(step)[:-1]]) / step.sum()

@@ -1,19 +1,16 @@
-"""What a mesh file holds, before and after its faces are split into triangles."""
+"""What a mesh file holds, before its faces are split into triangles."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-
 from lamella.base.arrays import Floats, Integers
-from lamella.base.drawing_origin import NOWHERE, Origin, coordinates
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 
-FILE_KEY = "surface.file"
-"""Key of the project file that errors about a mesh are about."""
+FILE = "path"
+"""Parameter that errors about a mesh file are about."""
 
 MAXIMUM_FACES = 2_000_000
 """Curvature needs a few thousand faces; beyond this reading takes minutes and gigabytes."""
@@ -48,34 +45,9 @@ class Polygons:
     metres_per_unit: float | None = None
 
 
-@dataclass(frozen=True)
-class RawMesh:
-    """Triangles read from a file, nothing mended yet.
-
-    Attributes
-    ----------
-    points : (n, 3)
-        m, measured from `origin`.
-    faces : (m, 3) int
-        Vertex indices, in the file's own orientation.
-    source : str
-        File name, format, numbers of vertices and faces, unit: for the summary.
-    notes : tuple of Message
-        What the reader left out or decided.
-    origin : tuple of float
-        Point of the drawing, m.
-    """
-
-    points: Floats
-    faces: Integers
-    source: str = ""
-    notes: tuple[Message, ...] = ()
-    origin: Origin = NOWHERE
-
-
 def mesh_error(message: str, remedy: str = "") -> InputError:
-    """Return the error about the project's mesh file, to be raised."""
-    return InputError(message, remedy, where=FILE_KEY)
+    """The error about a mesh file, to be raised."""
+    return InputError(message, remedy, FILE)
 
 
 def blocks(text: bytes, ends: bytes) -> Iterator[bytes]:
@@ -99,8 +71,3 @@ def blocks(text: bytes, ends: bytes) -> Iterator[bytes]:
                 )
         yield text[start:end]
         start = end
-
-
-def place(point: Floats) -> str:
-    """A point (3,) in m, for messages."""
-    return f"({coordinates(np.round(point, 4) + 0.0, 6)})"

@@ -5,14 +5,29 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
+from lamella.base.errors import InputError
 from lamella.base.ties import MARGIN
-from lamella.files.read.raw_mesh import mesh_error
+from lamella.surface.from_mesh.covering import covered_faces, second_diagonals
 
 MAXIMUM_CORNERS = 256
 """A face with more corners says nothing about the surface inside it."""
 
 EQUALLY_FLAT = np.radians(1.0)
 """Two diagonals that fold a quad alike to this are told apart by their lengths."""
+
+
+def split_faces(points: Floats, sizes: Integers, corners: Integers) -> tuple[Integers, int]:
+    """Triangles of faces that cover a surface once, and the number of those left out because they lie on others.
+
+    Parameters
+    ----------
+    points, sizes, corners
+        See `split_polygons`.
+    """
+    covered = covered_faces(points, sizes, corners)
+    faces = split_polygons(points, sizes[~covered], corners[np.repeat(~covered, sizes)])
+    twice = second_diagonals(np.unique(points, axis=0, return_inverse=True)[1].reshape(-1)[faces])
+    return faces[~twice], int(covered.sum() + twice.sum())
 
 
 def split_polygons(points: Floats, sizes: Integers, corners: Integers) -> Integers:
@@ -39,10 +54,11 @@ def split_polygons(points: Floats, sizes: Integers, corners: Integers) -> Intege
     """
     largest = int(sizes.max(initial=3))
     if largest > MAXIMUM_CORNERS:
-        raise mesh_error(
+        raise InputError(
             f"a face has {largest} corners (at most {MAXIMUM_CORNERS} are read): a mesh says nothing of the surface "
             "inside such a face",
             "mesh the surface with triangles or quads of about one size",
+            "faces",
         )
     first_corner = np.concatenate(([0], np.cumsum(sizes)))[:-1]
     first_triangle = np.concatenate(([0], np.cumsum(sizes - 2)))

@@ -1,0 +1,14 @@
+"""Limits that the project file's schema and the functions of the library have in common."""
+
+from __future__ import annotations
+
+# m; a thousand times smaller and larger than any model or building, so that no figure can overflow
+LEAST_LENGTH, MOST_LENGTH = 1e-6, 1e6
+# in the unit of a table: survey coordinates in millimetres
+MOST_COORDINATE = 1e11
+# of one list; a curve drawn by hand has hundreds
+MOST_POINTS = 10_000
+# waves along a boundary curve
+MOST_WAVES = 4
+# how far a boundary curve may be changed: shifts in m, a change of size as a share, a tilt in degrees
+MOST_MOVE, MOST_SCALE, MOST_TILT = 1000, 0.5, 45
