@@ -46,7 +46,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "projection.problems": ("base", "projection", "projection.constraints", "strip"),
     "project": ("base", "network", "network.streamlines", "strip"),
     "files": ("base", "files.read", "files.write", *PROJECTIONS, "version"),
-    "files.read": ("base", *FILMS, "surface.from_mesh"),
+    "files.read": ("base", *FILMS, "surface.from_mesh", "network"),
     "files.write": ("base", "files", *FILMS, "network", "strip", *PROJECTIONS, "version"),
     "fabrication": ("base", "network", "strip", "files.write"),
     "view": ("base", *SURFACES, "surface.boundary", "network", "strip", "fabrication", *FILES, *PROJECTIONS),

@@ -7,6 +7,9 @@ from lamella.base.errors import InputError as InputError
 from lamella.files.compas_json import compas_at as compas_at
 from lamella.files.compas_json import quad_mesh_of_compas as quad_mesh_of_compas
 from lamella.files.quad_mesh_files import read_quad_mesh as read_quad_mesh
+from lamella.files.read.network_json import network_of_compas as network_of_compas
+from lamella.files.read.network_json import read_network as read_network
+from lamella.files.write.compas_graph import write_compas as write_compas
 from lamella.network.net import net as net
 from lamella.network.network import Network as Network
 from lamella.project.read import parse_project as parse_project

@@ -90,23 +90,46 @@ def compas_bytes(
     name: str,
 ) -> bytes:
     """A mesh as COMPAS 2 reads it, with figures as attributes of vertices and faces; a figure not known is null."""
+    units = "coordinates in the unit of the given file; figures in m, degrees, 1/m"
+    data = mesh_data(
+        points,
+        mesh.faces.tolist(),
+        vertex_figures=vertex_figures,
+        face_figures=face_figures,
+        vertex_keys=vertex_keys,
+        face_keys=face_keys,
+        attributes={"name": name, "units": units},
+    )
+    return orjson.dumps({"lamella": __version__, "dtype": DTYPE, "data": data, "name": name})
+
+
+def mesh_data(
+    points: Floats,
+    faces: list[list[int]],
+    *,
+    vertex_figures: dict[str, Floats],
+    face_figures: dict[str, Floats],
+    vertex_keys: Sequence[str] = (),
+    face_keys: Sequence[str] = (),
+    attributes: dict[str, str],
+) -> dict[str, Any]:
+    """The tables of a `Mesh` in the JSON of COMPAS 2."""
     vertices = list(vertex_keys) or [str(k) for k in range(len(points))]
-    faces = list(face_keys) or [str(k) for k in range(len(mesh.faces))]
+    keys = list(face_keys) or [str(k) for k in range(len(faces))]
     columns = {"x": points[:, 0], "y": points[:, 1], "z": points[:, 2], **vertex_figures}
     number = [int(key) if key.lstrip("-").isdigit() else key for key in vertices]
-    data = {
-        "attributes": {"name": name, "units": "coordinates in the unit of the given file; figures in m, degrees, 1/m"},
+    return {
+        "attributes": attributes,
         "default_vertex_attributes": {"x": 0.0, "y": 0.0, "z": 0.0},
         "default_edge_attributes": {},
         "default_face_attributes": {},
         "vertex": _rows(vertices, columns),
-        "face": {key: [number[k] for k in face] for key, face in zip(faces, mesh.faces.tolist(), strict=True)},
-        "facedata": _rows(faces, face_figures),
+        "face": {key: [number[k] for k in face] for key, face in zip(keys, faces, strict=True)},
+        "facedata": _rows(keys, face_figures),
         "edgedata": {},
         "max_vertex": max((key for key in number if isinstance(key, int)), default=-1),
-        "max_face": max((int(key) for key in faces if key.isdigit()), default=-1),
+        "max_face": max((int(key) for key in keys if key.isdigit()), default=-1),
     }
-    return orjson.dumps({"lamella": __version__, "dtype": DTYPE, "data": data, "name": name})
 
 
 def _rows(keys: Sequence[str], columns: dict[str, Floats]) -> dict[str, dict[str, float]]:

@@ -16,6 +16,7 @@ from lamella.base.arrays import Floats, Integers
 from lamella.base.blocks import blocks
 from lamella.base.vectors import dots, lengths
 from lamella.network.network import Network
+from lamella.surface.darboux import Darboux
 
 # samples to either side of one through which a polynomial is laid, and its degree
 BESIDE, DEGREE = 3, 4
@@ -52,14 +53,8 @@ class WrittenLines:
         Golay, Anal. Chem. 36 (1964), 1627-1639, doi:10.1021/ac60214a047), the nearest seven at the ends. Off by the
         fourth power of the samples' distance; a kink reads as curvature over the samples beside it.
         """
-        chords = np.r_[0.0, lengths(np.diff(network.sample_points, axis=0))]
-        chords[network.sample_offsets[:-1]] = 0.0
-        bends = lengths(_derivatives(network, chords)[1])
-        # the arc over a chord, by the circle through its ends
-        bends[1:] = (bends[1:] + bends[:-1]) / 2
-        first, second = _derivatives(network, chords * (1 + (bends * chords) ** 2 / 24))
-        tangents = first / np.maximum(lengths(first), np.finfo(float).tiny)[:, None]
-        return cls(tangents, dots(second, network.sample_normals), _inner(network))
+        first, second = _derivatives(network, network.sample_points, _steps(network))
+        return cls(_unit(first), dots(second, network.sample_normals), _inner(network))
 
     def bend_off(self, network: Network, wanted: float) -> Floats:
         """Difference of the normal curvature at the samples from a wanted one, 1/m: the larger of both, (k,)."""
@@ -83,18 +78,45 @@ def angle_figures(angles: Floats) -> dict[str, float]:
     }
 
 
-def _derivatives(network: Network, steps: Floats) -> tuple[Floats, Floats]:
-    """First and second derivatives at all samples, (k, 3) each, by the length of the steps to them, (k,) m."""
+def written_darboux(network: Network) -> tuple[Floats, Darboux]:
+    """Unit tangents (k, 3) and Darboux curvatures of a network's lines, from their points and normals alone.
+
+    By the same polynomials as `WrittenLines`: kn = t' . n, kg = t' . u, tg = -n' . u.
+    """
+    steps, normals = _steps(network), network.sample_normals
+    first, second = _derivatives(network, network.sample_points, steps)
+    tangents = _unit(first - dots(first, normals)[:, None] * normals)
+    sideways = np.cross(normals, tangents)
+    turned, _ = _derivatives(network, normals, steps)
+    return tangents, Darboux(dots(second, normals), dots(second, sideways), -dots(turned, sideways))
+
+
+def _steps(network: Network) -> Floats:
+    """Arc lengths from each sample's predecessor, (k,) m; 0 at the start of a line."""
+    chords = np.r_[0.0, lengths(np.diff(network.sample_points, axis=0))]
+    chords[network.sample_offsets[:-1]] = 0.0
+    bends = lengths(_derivatives(network, network.sample_points, chords)[1])
+    # the arc over a chord, by the circle through its ends
+    bends[1:] = (bends[1:] + bends[:-1]) / 2
+    return np.asarray(chords * (1 + (bends * chords) ** 2 / 24))
+
+
+def _unit(vectors: Floats) -> Floats:
+    return np.asarray(vectors / np.maximum(lengths(vectors), np.finfo(float).tiny)[:, None])
+
+
+def _derivatives(network: Network, values: Floats, steps: Floats) -> tuple[Floats, Floats]:
+    """First and second derivatives of values (k, 3) at all samples, by the length of the steps to them, (k,) m."""
     along, count = np.cumsum(steps), np.diff(network.sample_offsets)
     half = np.minimum(BESIDE, (count - 1) // 2)
-    first, second = np.zeros((2, *network.sample_points.shape))
+    first, second = np.zeros((2, *values.shape))
     for reach in np.unique(half[half > 0]).tolist():
         samples = np.flatnonzero(np.repeat(half == reach, count))
         for block in blocks(len(samples)):
             at = samples[block]
             window, away = _windows(network, at, reach, along)
             # numbers that differ little are fitted: from the sample itself
-            apart = network.sample_points[window] - network.sample_points[at][:, None]
+            apart = values[window] - values[at][:, None]
             first[at], second[at] = _fitted(away, apart)
     return first, second
 
