@@ -4,9 +4,13 @@ Type checkers read this file; the package itself imports each name from where it
 """
 
 from lamella.base.errors import InputError as InputError
+from lamella.fabrication.part import Part as Part
+from lamella.fabrication.part import Parts as Parts
+from lamella.fabrication.sheet import Nesting as Nesting
 from lamella.files.compas_json import compas_at as compas_at
 from lamella.files.compas_json import quad_mesh_of_compas as quad_mesh_of_compas
 from lamella.files.quad_mesh_files import read_quad_mesh as read_quad_mesh
+from lamella.files.read.loop import read_loop as read_loop
 from lamella.files.read.network_json import network_of_compas as network_of_compas
 from lamella.files.read.network_json import read_network as read_network
 from lamella.files.write.compas_graph import write_compas as write_compas
@@ -49,5 +53,9 @@ from lamella.surface.closed_forms.scherk import Scherk as Scherk
 from lamella.surface.element.places import Places as Places
 from lamella.surface.element.surface import ElementSurface as ElementSurface
 from lamella.surface.form_finding.film_in_loops import film as film
+from lamella.surface.from_mesh.fit_cmc import fit_cmc as fit_cmc
+from lamella.surface.from_mesh.fit_surface import fit_surface as fit_surface
+from lamella.surface.mesh import SurfaceMesh as SurfaceMesh
+from lamella.surface.points import SurfacePoints as SurfacePoints
 
 __version__: str

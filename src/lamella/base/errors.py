@@ -20,6 +20,16 @@ class InputError(ValueError):
         What to change.
     where : str, optional
         File and key the message is about, put in front.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> try:
+    ...     lamella.circle((0, 0, 0), -1.0)
+    ... except lamella.InputError as error:
+    ...     print(error)
+    radius = -1.0 is out of range
+      remedy: radius has to be a finite number above 0
     """
 
     def __init__(self, message: str, remedy: str = "", where: str = "") -> None:

@@ -70,6 +70,13 @@ class Part(Shown):
         Of the outline, m2.
     mass : float
         Of one piece, kg.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> part = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12).strips().parts().parts[0]
+    >>> print(part.id, len(part.slots), f"{part.area:.3f} m2")
+    A1 16 0.847 m2
     """
 
     id: str
@@ -163,6 +170,15 @@ class Parts(Shown):
         What the user should know about them.
     colliding : bool
         Whether strips meet beyond the rim.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> parts = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12).strips().parts()
+    >>> parts.parts[0]
+    Part(A1: 8.497 m, 16 slots, 10.04 kg)
+    >>> print(f"{parts.mass:.1f} kg")
+    481.9 kg
     """
 
     parts: tuple[Part, ...]
@@ -187,7 +203,7 @@ class Parts(Shown):
         >>> import lamella
         >>> parts = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12).strips().parts()
         >>> parts.nest(sheet=(12.0, 1.5))
-        Nesting(48 pieces on 2 sheets)
+        Nesting(48 pieces on 4 sheets)
         """
         nesting: Nesting = onward("lamella.fabrication.sheet.nest")(self, sheet=sheet, gap=gap)
         return nesting

@@ -37,6 +37,16 @@ class Nesting(Shown):
         Between pieces and to the sheet's edge, m.
     source : Parts
         The parts.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> parts = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12).strips().parts()
+    >>> nesting = parts.nest(sheet=(12.0, 1.5))
+    >>> nesting
+    Nesting(48 pieces on 4 sheets)
+    >>> print(nesting.sizes[0], nesting.sheets[:3])
+    [12.   1.5] [0 0 0]
     """
 
     parts: Integers

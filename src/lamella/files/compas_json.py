@@ -150,6 +150,18 @@ def quad_mesh_of_compas(mesh: Any) -> QuadMesh:
     ------
     InputError
         Faces that are no quads, and what `lamella.projection.quad_mesh.quad_mesh` refuses.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> class Mesh:
+    ...     # as much of compas.datastructures.Mesh as is used
+    ...     def vertices(self): return [7, 8, 9, 4]
+    ...     def vertex_coordinates(self, key): return {7: [0, 0, 0], 8: [1, 0, 0], 9: [1, 1, 0], 4: [0, 1, 0]}[key]
+    ...     def faces(self): return [0]
+    ...     def face_vertices(self, face): return [7, 8, 9, 4]
+    >>> lamella.quad_mesh_of_compas(Mesh())
+    QuadMesh(4 vertices, 1 face)
     """
     keys = list(mesh.vertices())
     number = {key: k for k, key in enumerate(keys)}
@@ -162,7 +174,25 @@ def quad_mesh_of_compas(mesh: Any) -> QuadMesh:
 
 
 def compas_at(mesh: Any, moved: QuadMesh) -> Any:
-    """A copy of a COMPAS `Mesh` with its vertices where those of `moved`, from `quad_mesh_of_compas`, are."""
+    """A copy of a COMPAS `Mesh` with its vertices where those of `moved`, from `quad_mesh_of_compas`, are.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> class Mesh:
+    ...     # as much of a COMPAS mesh as is used
+    ...     at = {7: [0, 0, 0], 8: [1, 0, 0], 9: [1, 1, 0], 4: [0, 1, 0]}
+    ...     def vertices(self): return list(self.at)
+    ...     def vertex_coordinates(self, key): return self.at[key]
+    ...     def faces(self): return [0]
+    ...     def face_vertices(self, face): return [7, 8, 9, 4]
+    ...     def vertex_attributes(self, key, names, values): self.at[key] = values
+    ...     def copy(self): return self
+    >>> quads = lamella.quad_mesh_of_compas(Mesh())
+    >>> moved = lamella.quad_mesh(quads.vertices + [0, 0, 2.5], quads.faces)
+    >>> lamella.compas_at(Mesh(), moved).at[7]
+    [0.0, 0.0, 2.5]
+    """
     copy = mesh.copy()
     for key, place in zip(mesh.vertices(), moved.vertices.tolist(), strict=True):
         copy.vertex_attributes(key, "xyz", place)

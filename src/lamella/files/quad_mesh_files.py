@@ -57,7 +57,7 @@ class QuadFile:
 
 
 def read_quad_mesh(path: str | Path, unit: str | None = None) -> QuadFile:
-    """Read a quad mesh; nothing is merged, turned or left out.
+    r"""Read a quad mesh; nothing is merged, turned or left out.
 
     Parameters
     ----------
@@ -70,6 +70,15 @@ def read_quad_mesh(path: str | Path, unit: str | None = None) -> QuadFile:
     ------
     InputError
         The file cannot be read, or is no connected manifold mesh of quads of a believable size.
+
+    Examples
+    --------
+    >>> import lamella, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "net.obj"
+    ...     _ = file.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    ...     print(lamella.read_quad_mesh(file).mesh)
+    QuadMesh(4 vertices, 1 face)
     """
     try:
         return _read(Path(path), unit)

@@ -37,7 +37,8 @@ def net(
     Parameters
     ----------
     surface : Surface
-        A closed form, or a surface of elements: a film (`lamella.film`) or one of a mesh (`lamella.mesh_surface`).
+        A closed form, or a surface of elements: a film (`lamella.film`) or one of a mesh (`lamella.fit_cmc`,
+        `fit_surface`).
     cells : int, optional
         A lamellas crossed once around the axis, or around the first hole; on a simply connected surface, cells along
         its longest principal line. 24 when spacing is not given either.
@@ -77,14 +78,14 @@ def net(
     >>> import lamella
     >>> net = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12)
     >>> net
-    Network(12 cells: 24 lamellas, 108 nodes, 84 faces)
+    Network(12 cells: 24 lamellas, 144 nodes, 120 faces)
     >>> print(f"{net.node_angles.min():.6f} to {net.node_angles.max():.6f} degrees")
     90.000000 to 90.000000 degrees
     """
     if not isinstance(surface, ClosedForm | ElementSurface):
         raise InputError(
             f"a net needs a surface, not a {type(surface).__name__}",
-            "take a closed form, or what lamella.film, mesh_surface or make_surface returns",
+            "take a closed form, or what lamella.film, fit_cmc, fit_surface or make_surface returns",
         )
     DensityRequest.of(cells, spacing)
     pattern = Pattern(kind, every, normal_curvature)

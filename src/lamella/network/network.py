@@ -103,6 +103,18 @@ class Network(Shown):
         What `describe` returns.
     notes : tuple of str
         What `warnings` returns.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> net = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12)
+    >>> net.node_points.shape, net.ids[:2]
+    ((144, 3), ('A1', 'A2'))
+    >>> print(f"{net.lengths.max():.3f} m")
+    8.477 m
+    >>> first = slice(*net.sample_offsets[:2])
+    >>> net.sample_points[first].shape
+    (124, 3)
     """
 
     mean_curvature: float
@@ -174,7 +186,7 @@ class Network(Shown):
         >>> import lamella
         >>> net = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12)
         >>> net.strips((0.1, 0.0015), "S355")
-        Lamellas(24 lamellas of 2 x 100 x 1.5 mm, 174.4 m, utilisation up to 0.40)
+        Lamellas(24 lamellas of 2 x 100 x 1.5 mm, 203.4 m, utilisation up to 0.27)
         """
         lamellas: Lamellas = onward("lamella.strip.lamellas.strips_of")(self, section, material)
         return lamellas

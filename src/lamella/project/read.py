@@ -28,7 +28,7 @@ MOST_TOLD = 6
 
 
 def read_project(path: str | Path) -> Project:
-    """Read and check a project file.
+    r"""Read and check a project file.
 
     Parameters
     ----------
@@ -38,6 +38,15 @@ def read_project(path: str | Path) -> Project:
     ------
     InputError
         Whatever is wrong with it, with file, line and key.
+
+    Examples
+    --------
+    >>> import lamella, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "roof.toml"
+    ...     _ = file.write_text('[surface]\nkind = "catenoid"\nneck_radius = 2.5\nheight = [-2.0, 3.0]\n')
+    ...     print(lamella.read_project(file).surface.kind)
+    catenoid
     """
     path = Path(path)
     try:
@@ -114,6 +123,13 @@ def parse_project(values: dict[str, Any], *, source: str = "", text: str = "") -
     Raises
     ------
     InputError
+
+    Examples
+    --------
+    >>> import lamella
+    >>> project = lamella.parse_project({"surface": {"kind": "catenoid", "neck_radius": 2.5, "height": [-2.0, 3.0]}})
+    >>> project.lamella.material
+    '1.4301'
     """
     if not isinstance(values, dict):
         raise InputError(

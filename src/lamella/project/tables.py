@@ -307,7 +307,15 @@ FURTHER_TABLES: dict[str, type[Table]] = {
 
 
 class Project(Table):
-    """A whole project file."""
+    """A whole project file.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> project = lamella.parse_project({"surface": {"kind": "cylinder", "radius": 2.0, "height": [0.0, 3.0]}})
+    >>> project.network.cells, project.fabrication.sheet
+    (24, (12.0, 2.0))
+    """
 
     name: Name = Field(default="", description="Name of the project; the file's name when not given.", max_length=200)
     surface: Annotated[SurfaceTable, Field(discriminator="kind")]

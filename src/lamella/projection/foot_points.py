@@ -42,7 +42,15 @@ class DirectedSurface(FootSurface, Protocol):
 
 
 def foot_surface(surface: ClosedForm | ElementSurface) -> DirectedSurface:
-    """Foot points on a surface of ours."""
+    """Foot points on a surface of ours.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> foot = lamella.foot_surface(lamella.Cylinder(2.0, (0.0, 3.0))).foot([[4.0, 0.0, 1.0]])
+    >>> foot.position.round(6) + 0.0
+    array([[2., 0., 1.]])
+    """
     return ElementFeet(surface) if isinstance(surface, ElementSurface) else ClosedFormFeet(surface)
 
 

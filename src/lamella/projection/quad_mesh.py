@@ -37,6 +37,13 @@ class QuadMesh(Shown):
     faces : (f, 4) int
     twin : (4 f,) int
         -1: boundary.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> mesh = lamella.quad_mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]])
+    >>> mesh.edges.tolist()
+    [[0, 1], [1, 2], [2, 3], [3, 0]]
     """
 
     vertices: Floats
@@ -234,6 +241,12 @@ def quad_mesh(vertices: ArrayLike, faces: ArrayLike) -> QuadMesh:
     InputError
         Wrong shapes, coordinates that are no numbers, indices outside, a vertex twice in a quad, edges with more than
         two faces or with faces of opposite sense, fans that only touch in a vertex.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> lamella.quad_mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]])
+    QuadMesh(4 vertices, 1 face)
     """
     points = np.asarray(vertices, np.float64)
     quads = np.asarray(faces)

@@ -70,6 +70,16 @@ class Results:
         Where the files the project names were looked for.
     adjusted : AdjustedTable or None
         The boundary as it was changed for a net that closes.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> project = lamella.parse_project(
+    ...     {"surface": {"kind": "catenoid", "neck_radius": 2.5, "height": [-2.0, 3.0]}, "network": {"cells": 12}}
+    ... )
+    >>> results = lamella.compute(project)
+    >>> results.network, results.parts
+    (Network(12 cells: 24 lamellas, 144 nodes, 120 faces), Parts(24 parts, 48 pieces, 481.9 kg))
     """
 
     project: Project
@@ -235,6 +245,16 @@ def compute(
     Raises
     ------
     InputError
+
+    Examples
+    --------
+    >>> import lamella
+    >>> project = lamella.parse_project(
+    ...     {"surface": {"kind": "catenoid", "neck_radius": 2.5, "height": [-2.0, 3.0]}, "network": {"cells": 12}}
+    ... )
+    >>> results = lamella.compute(project, until="network")
+    >>> results.network
+    Network(12 cells: 24 lamellas, 144 nodes, 120 faces)
     """
     clock = Clock(progress)
     _last_of(project, until)
@@ -418,7 +438,7 @@ def run(
     progress: Progress = silent,
     warn: Callable[[str], None] | None = None,
 ) -> Path:
-    """Run a project file and write its folder.
+    r"""Run a project file and write its folder.
 
     Parameters
     ----------
@@ -441,6 +461,16 @@ def run(
         What the user can mend; nothing has been written then.
     OSError
         The disk is full, for instance; an earlier folder is whole still.
+
+    Examples
+    --------
+    >>> import lamella, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "roof.toml"
+    ...     _ = file.write_text('[surface]\nkind = "catenoid"\nneck_radius = 2.5\nheight = [-2.0, 3.0]\n')
+    ...     written = lamella.run(file, out=pathlib.Path(folder) / "roof", until="surface")
+    ...     print((written / "summary.json").exists())
+    True
     """
     from lamella.files.folder import check_target
 
@@ -469,6 +499,16 @@ def write(results: Results, target: str | Path, *, progress: Progress = silent) 
     target : str or Path
         Made if it is not there; an earlier run's folder is replaced.
     progress : callable
+
+    Examples
+    --------
+    >>> import lamella, pathlib, tempfile
+    >>> project = lamella.parse_project({"surface": {"kind": "cylinder", "radius": 2.0, "height": [0.0, 3.0]}})
+    >>> results = lamella.compute(project, until="surface")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     lamella.write(results, pathlib.Path(folder) / "roof")
+    ...     print((pathlib.Path(folder) / "roof" / "summary.json").exists())
+    True
     """
     from lamella.files.folder import staged_folder
     from lamella.files.own import write_summary

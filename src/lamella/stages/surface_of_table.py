@@ -43,6 +43,13 @@ def make_surface(project: Project, folder: str | Path = Path(), progress: Progre
     ------
     InputError
         No such surface.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> project = lamella.parse_project({"surface": {"kind": "cylinder", "radius": 2.0, "height": [0.0, 3.0]}})
+    >>> lamella.make_surface(project)
+    Cylinder(mean curvature 0.25 1/m, 37.7 m2)
     """
     table, folder = project.surface, Path(folder)
     if not isinstance(table, FormFoundTable | MeshTable):

@@ -47,6 +47,13 @@ class Section:
         d to the side of the centre line, where an element is sqrt((1 - d kg)^2 + (d tg)^2) ds long.
     layer_curves : str
         "offset", "cut" or "lamella", see `lamella.strip.layers`; with the last two layers have their own lengths.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> section = lamella.Section(height=0.08, thickness=0.001, layers=3, offset=0.02)
+    >>> section.layer_offsets
+    array([-0.02,  0.  ,  0.02])
     """
 
     height: float = 0.1
@@ -121,6 +128,13 @@ class Lamellas(Shown):
         The layers beside it.
     developed_lengths : (m,)
         Length of the developed centre line from first to last node, m.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> strips = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12).strips()
+    >>> print(f"{strips.utilisation.max():.2f}, {strips.developed_lengths.sum():.1f} m")
+    0.40, 203.4 m
     """
 
     network: Network = field(compare=False)
@@ -175,7 +189,7 @@ class Lamellas(Shown):
         >>> import lamella
         >>> strips = lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12).strips()
         >>> strips.parts()
-        Parts(24 parts, 48 pieces, 414.3 kg)
+        Parts(24 parts, 48 pieces, 481.9 kg)
         """
         parts: Parts = onward("lamella.fabrication.parts.make_parts")(
             self.network,

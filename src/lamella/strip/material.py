@@ -23,6 +23,13 @@ class Material:
     shear_strength : float or None
         Limit of shear stress, Pa, where it is not that of von Mises (timber).
     source : str
+
+    Examples
+    --------
+    >>> import lamella
+    >>> steel = lamella.Material(7850, 210e9, 81e9, 550e6, source="mill certificate")
+    >>> lamella.net(lamella.Catenoid(2.5, (-2.0, 3.0)), cells=12).strips(material=steel)
+    Lamellas(24 lamellas of 2 x 100 x 1.5 mm, 203.4 m, utilisation up to 0.18)
     """
 
     density: float
@@ -58,6 +65,12 @@ def find_material(name: str, own: dict[str, Material] | None = None) -> Material
     ------
     InputError
         Unknown name; the message lists what there is.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> lamella.find_material("S355").strength
+    355000000.0
     """
     known = MATERIALS | (own or {})
     if name in known:

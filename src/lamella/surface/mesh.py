@@ -23,6 +23,12 @@ class SurfaceMesh(Shown):
         Vertex indices, counter-clockwise about the normal; a triangle repeats its last index.
     mean_curvature, gaussian_curvature, k1, k2 : (n,)
         H, K and the principal curvatures k1 >= k2 at the vertices, 1/m (K in 1/m^2).
+
+    Examples
+    --------
+    >>> import lamella
+    >>> lamella.Catenoid(2.5, (-2.0, 3.0)).mesh(0.02)
+    SurfaceMesh(576 points, 552 faces)
     """
 
     points: Floats

@@ -28,6 +28,14 @@ class SurfacePoints(Result):
         Trace-free shape operator [[Re, -Im], [-Im, -Re]] in (e_u, e_v), 1/m; its size is (k1 - k2) / 2.
     log_mu_gradient : (n,) complex
         Tangent vector grad ln mu = grad ln(H^2 - K) / 4, 1/m.
+
+    Examples
+    --------
+    >>> import lamella, numpy as np
+    >>> points = lamella.Catenoid(2.0, (-1.0, 1.0)).at(np.array([0.0 + 0.0j]))
+    >>> k1, k2 = points.principal_curvatures
+    >>> print(points.position.round(6) + 0.0, k1.round(6), k2.round(6))
+    [[2. 0. 0.]] [0.5] [-0.5]
     """
 
     position: Floats

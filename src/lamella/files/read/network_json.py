@@ -48,7 +48,7 @@ def read_network(path: str | Path) -> Network:
     ...     lamella.write_compas(net, file)
     ...     again = lamella.read_network(file)
     >>> again
-    Network(12 cells: 24 lamellas, 108 nodes, 84 faces)
+    Network(12 cells: 24 lamellas, 144 nodes, 120 faces)
     >>> bool(abs(again.sample_darboux.tg - net.sample_darboux.tg).max() < 1e-3)
     True
     """

@@ -57,7 +57,7 @@ def write_compas(
     ...     lamella.write_compas(net, file)
     ...     content = json.loads(file.read_text())
     >>> content["dtype"], len(content["data"]["node"])
-    ('compas.datastructures/Graph', 108)
+    ('compas.datastructures/Graph', 144)
     """
     if isinstance(what, Network) and not mesh:
         write_whole(Path(path), _dumped(GRAPH, graph_data(what, name), name))

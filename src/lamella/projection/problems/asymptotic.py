@@ -47,6 +47,16 @@ def asymptotic(
     ------
     InputError
         See `star_net`.
+
+    Examples
+    --------
+    >>> import lamella, numpy as np
+    >>> x, y = np.mgrid[0:4, 0:4].reshape(2, -1) / 3
+    >>> k = np.arange(16).reshape(4, 4)
+    >>> faces = np.stack([k[:-1, :-1], k[1:, :-1], k[1:, 1:], k[:-1, 1:]], -1).reshape(-1, 4)
+    >>> net = lamella.asymptotic(lamella.quad_mesh(np.stack([x, y, 0.1 * x * y], 1), faces))
+    >>> net.solution.verdict
+    'solved'
     """
     return star_net(
         mesh,

@@ -100,6 +100,19 @@ def deform(
     ------
     InputError
         A ring with too few vertices, with one twice or with an edge; a share, a step or a radius out of range.
+
+    Examples
+    --------
+    >>> import lamella, numpy as np
+    >>> turn, row = np.mgrid[0:12, 0:5].reshape(2, -1)
+    >>> angle, z = (turn + row / 2) * np.pi / 6, 0.5 * row
+    >>> points = np.stack([3 * np.cos(angle), 3 * np.sin(angle), z], 1)
+    >>> k = np.arange(60).reshape(12, 5)
+    >>> right = np.roll(k, -1, 0)
+    >>> faces = np.stack([k[:, 1:-1], right[:, :-2], right[:, 1:-1], k[:, 2:]], -1).reshape(-1, 4)
+    >>> states = lamella.deform(lamella.quad_mesh(points, faces), k[:, 2], 0.95)
+    >>> print(len(states), round(states[-1].share, 2))
+    4 0.95
     """
     vertices = np.asarray(ring)
     _check(mesh, vertices, share, step)

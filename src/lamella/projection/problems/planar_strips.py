@@ -125,6 +125,16 @@ def planar_strips(
     ------
     InputError
         Curves with too few points; a height of 0, beyond the centres of curvature, or larger than the curves.
+
+    Examples
+    --------
+    >>> import lamella, numpy as np
+    >>> surface = lamella.Catenoid(2.0, (-2.0, 2.0))
+    >>> steps = np.linspace(-0.3, 0.3, 9)
+    >>> curve = surface.at(steps + 1j * steps).position
+    >>> strips = lamella.planar_strips([curve], lamella.foot_surface(surface), 0.05, rounds=1)
+    >>> bool(strips.after[0].max() < strips.before[0].max())
+    True
     """
     lower = [_curve(curve, number) for number, curve in enumerate(curves)]
     if not lower:

@@ -48,6 +48,18 @@ def sphere_stars(
     ------
     InputError
         See `star_net`.
+
+    Examples
+    --------
+    >>> import lamella, numpy as np
+    >>> U, V = np.mgrid[0:4, 0:4].reshape(2, -1) / 8
+    >>> turn, height = U + V, U - V  # on a cylinder of radius 2, along curves at 45 degrees
+    >>> k = np.arange(16).reshape(4, 4)
+    >>> faces = np.stack([k[:-1, :-1], k[1:, :-1], k[1:, 1:], k[:-1, 1:]], -1).reshape(-1, 4)
+    >>> points = 2 * np.stack([np.cos(turn), np.sin(turn), height], 1)
+    >>> net = lamella.sphere_stars(lamella.quad_mesh(points, faces))
+    >>> print(f"{net.solution.verdict}, radius {abs(net.radius):.1f} m")
+    solved, radius 4.0 m
     """
     return star_net(
         mesh,

@@ -79,6 +79,17 @@ def straighten(
     ------
     InputError
         A mesh of a single face.
+
+    Examples
+    --------
+    >>> import lamella, numpy as np
+    >>> surface = lamella.Catenoid(2.0, (-2.0, 2.0))
+    >>> U, V = np.mgrid[0:5, 0:5].reshape(2, -1) / 5 - 0.4
+    >>> k = np.arange(25).reshape(5, 5)
+    >>> faces = np.stack([k[:-1, :-1], k[1:, :-1], k[1:, 1:], k[:-1, 1:]], -1).reshape(-1, 4)
+    >>> mesh = lamella.quad_mesh(surface.at(U + 1j * V).position, faces)
+    >>> lamella.straighten(mesh, lamella.foot_surface(surface)).solution.verdict
+    'solved'
     """
     if len(mesh.faces) < 2:
         raise InputError("the mesh has a single face: its middles make no net", "use a larger mesh")

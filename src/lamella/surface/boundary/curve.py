@@ -85,6 +85,15 @@ class Loop(Shown):
     slides : tuple of Slide
     remarks : tuple of Message
         What was done to a curve of a file.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> loop = lamella.circle((0, 0, 0), 2.0)
+    >>> loop.at(0.25).round(6) + 0.0
+    array([0., 2., 0.])
+    >>> print(f"{loop.curvature(0.1):.6f}")
+    0.500000
     """
 
     name: str
@@ -170,7 +179,7 @@ class Loop(Shown):
         >>> import lamella
         >>> square = lamella.polyline([[0, 0, 0], [6, 0, 2], [6, 6, 0], [0, 6, 2]])
         >>> square.rounded(0.4)
-        Loop(24.7199 m, 0 corners)
+        Loop(24.3243 m, 0 corners)
         """
         loop: Loop = onward("lamella.surface.boundary.fillets.rounded_loop")(self, radius, "radius")
         return loop

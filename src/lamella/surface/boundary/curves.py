@@ -64,7 +64,7 @@ def ellipse(center: ArrayLike, major: ArrayLike, minor: ArrayLike, *, name: str 
     --------
     >>> import lamella
     >>> lamella.ellipse((0, 0, 0), (6, 0, 0), (0, 4.5, 0))
-    Loop(33.1308 m, 0 corners)
+    Loop(33.1552 m, 0 corners)
     """
     half_axes = _vector("major", major), _vector("minor", minor)
     if not np.linalg.norm(np.cross(*half_axes)) > 0:
@@ -91,7 +91,7 @@ def spline(points: ArrayLike, *, name: str = "") -> Loop:
     --------
     >>> import lamella
     >>> lamella.spline([[3, 0, 0.5], [0, 2, -0.5], [-3, 0, 0.5], [0, -2, -0.5]])
-    Loop(16.3818 m, 0 corners)
+    Loop(16.2523 m, 0 corners)
     """
     return make_loop(name, splines.closed_spline(clean_points(points, closed=True, where="points"), where="points"))
 

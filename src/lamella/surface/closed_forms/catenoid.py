@@ -18,6 +18,12 @@ class Catenoid(SurfaceOfRevolution):
         c, m.
     height : (float, float)
         z0 < z1, m, z = 0 at the neck.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> lamella.Catenoid(neck_radius=2.5, height=(-2.0, 3.0))
+    Catenoid(mean curvature 0 1/m, 116.3 m2)
     """
 
     kind = "catenoid"

@@ -18,6 +18,12 @@ class Cylinder(SurfaceOfRevolution):
         R, m.
     height : (float, float)
         z0 < z1, m.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> lamella.Cylinder(radius=2.0, height=(0.0, 3.0))
+    Cylinder(mean curvature 0.25 1/m, 37.7 m2)
     """
 
     kind = "cylinder"

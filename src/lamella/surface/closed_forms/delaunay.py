@@ -70,6 +70,12 @@ class Unduloid(Delaunay):
         Smallest and largest radius r_m <= r_M, m; equal radii are a cylinder.
     height : (float, float)
         z0 < z1, m; several periods allowed.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> lamella.Unduloid(1.0, 2.0, (-2.0, 3.0))
+    Unduloid(mean curvature 0.333333 1/m, 41.73 m2)
     """
 
     kind = "unduloid"
@@ -98,6 +104,12 @@ class Nodoid(Delaunay):
         Smallest and largest radius r_m < r_M of the whole nodoid, m; H = 1 / (r_M - r_m).
     height : (float, float)
         z0 < z1, m, inside (-fold, fold), where r^2 = r_M r_m at the fold.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> lamella.Nodoid(0.5, 1.5, (-0.1, 0.1))
+    Nodoid(mean curvature 1 1/m, 0.6549 m2)
     """
 
     kind = "nodoid"

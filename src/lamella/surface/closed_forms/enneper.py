@@ -25,6 +25,12 @@ class Enneper(ClosedForm):
         Radius of the parameter disc, no unit.
     scale : float
         m per unit of the parametrisation.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> lamella.Enneper(order=3, radius=0.9, scale=2.0).singular_orders()
+    (1,)
     """
 
     kind = "enneper"

@@ -22,6 +22,12 @@ class Helicoid(ClosedForm):
         0 <= inner < outer, m.
     turns : float
         Number of full turns.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> lamella.Helicoid(5.0, 1.0, 4.0, 1.0)
+    Helicoid(mean curvature 0 1/m, 49.75 m2)
     """
 
     kind = "helicoid"

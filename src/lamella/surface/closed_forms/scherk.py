@@ -33,6 +33,12 @@ class Scherk(ClosedForm):
         Half side of the square |x|, |y| <= extent < pi / 2 (before scaling).
     scale : float
         m per unit of the parametrisation.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> lamella.Scherk(1.0, 1.0)
+    Scherk(mean curvature 0 1/m, 5.698 m2)
     """
 
     kind = "scherk"

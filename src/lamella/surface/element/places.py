@@ -20,6 +20,13 @@ class Places(Result):
     element : (n,) int
     local : (n, 2)
         Local coordinates (x, y) in the triangle x, y >= 0, x + y <= 1.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> places = lamella.Places.everywhere(2, [[0.25, 0.25], [0.5, 0.25]])
+    >>> places, places.element
+    (Places(4 places), array([0, 0, 1, 1]))
     """
 
     element: Integers

@@ -68,6 +68,13 @@ class ElementSurface(Shown):
         Where each boundary loop begins, m: what a net is numbered from. By itself with the first of its elements.
     slide_ends : (k, 3), optional
         Where parts of the boundary that slide begin and end, m.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> disc = lamella.film([lamella.circle((0, 0, 0), 1.0)], tolerance=0.02)
+    >>> print(f"{disc.area():.4f} m2, {disc.describe()['stability']}")
+    3.1416 m2, stable
     """
 
     kind: str

@@ -41,7 +41,7 @@ def film(
     ----------
     loops : sequence of Loop
         The outer one first, then those of the holes (`lamella.circle`, `spline`, `polyline`, `ellipse`, `joined`,
-        `read_curve`); points (n, 3), m, mean the spline through them. The surface's normal follows the outer loop by
+        `read_loop`); points (n, 3), m, mean the spline through them. The surface's normal follows the outer loop by
         the right-hand rule.
     mean_curvature : float
         H, 1/m.
@@ -76,7 +76,7 @@ def film(
     >>> film = lamella.film([lamella.circle((0, 0, z), 3.0) for z in (0.0, 3.2)], tolerance=0.02)
     >>> places, nearest = film.closest([[2.0, 0.0, 1.6]])
     >>> print(f"{film.describe()['stability']}, {nearest[0, 0]:.3f} m")
-    stable, 2.394 m
+    stable, 2.461 m
     """
     if volume is not None and mean_curvature:
         raise InputError(

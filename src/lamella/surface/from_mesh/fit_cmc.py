@@ -88,6 +88,14 @@ def fit_cmc(
     ------
     InputError
         No disc with holes, or one that does not mean a surface of constant mean curvature.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> mesh = lamella.Catenoid(2.0, (-1.0, 1.0)).mesh(0.02)
+    >>> surface = lamella.fit_cmc(mesh.points, mesh.faces, tolerance=0.02)
+    >>> abs(surface.mean_curvature) < 1e-3
+    True
     """
     options = FitOptions(mean_curvature, corner_angle, order, tolerance, most_nodes, deviation)
     return cmc_surface(mesh_of_arrays(points, faces), options, progress)

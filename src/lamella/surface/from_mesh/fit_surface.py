@@ -344,6 +344,16 @@ def fit_surface(
     ------
     InputError
         No disc with holes, or a mesh so rough that it tells no curvature.
+
+    Examples
+    --------
+    >>> import lamella, numpy as np
+    >>> x, y = np.mgrid[0:7, 0:7].reshape(2, -1) / 3 - 1
+    >>> k = np.arange(49).reshape(7, 7)
+    >>> faces = np.stack([k[:-1, :-1], k[1:, :-1], k[1:, 1:], k[:-1, 1:]], -1).reshape(-1, 4)
+    >>> surface = lamella.fit_surface(np.stack([x, y, x * y / 2], 1), faces, tolerance=0.05)
+    >>> lamella.net(surface, cells=6, normal_curvature=0.0).normal_curvature
+    0.0
     """
     options = FitOptions(corner_angle=corner_angle, order=order, tolerance=tolerance, most_nodes=most_nodes)
     return varying_surface(mesh_of_arrays(points, faces), options, progress)
