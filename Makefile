@@ -8,7 +8,7 @@ ONE := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1
 NUMERICS := tests/surface/element tests/surface/form_finding/test_last_bits.py tests/surface/form_finding/test_rings.py \
 	tests/surface/from_mesh/test_last_bits.py tests/projection/test_star_measures.py tests/base/test_sparse.py
 
-.PHONY: demo test slow kernels lint types bench docs clean
+.PHONY: demo test slow kernels lint types bench docs api clean
 
 demo: .venv/ready
 	$(BIN)/lamella run examples/01_unduloid.toml
@@ -39,6 +39,9 @@ bench: .venv/ready
 
 docs: .venv/ready
 	$(ONE) $(BIN)/python docs/build.py
+
+api: .venv/ready
+	$(BIN)/python docs/build_api.py
 
 clean:
 	rm -rf .venv out build dist

@@ -53,6 +53,25 @@ def test_library_example_of_the_readme_runs(capsys: pytest.CaptureFixture[str]) 
     assert said.splitlines()[1].startswith(f"Nesting({pieces} pieces on ")
 
 
+def test_examples_of_the_library_page_run(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("matplotlib").use("Agg")
+    monkeypatch.chdir(tmp_path)
+    chain, curves, alone, results = blocks((DOCS / "library.md").read_text(), "python")
+    exec(chain, {})
+    kinds = [line.partition("(")[0] for line in capsys.readouterr().out.splitlines()]
+    assert kinds == ["ElementSurface", "Network", "Lamellas", "Parts", "Nesting"]
+    exec(curves, {})
+    assert re.fullmatch(r"stable, H = -\d\.\d{3} 1/m, 6\.000 m3\n", capsys.readouterr().out)
+    exec(alone, {})
+    assert capsys.readouterr().out.startswith("Parts(48 parts, ")
+    assert (tmp_path / "net.json").exists()
+    exec(results, {})
+    assert capsys.readouterr().out == "True\n"
+    assert (tmp_path / "strips.png").stat().st_size > 10_000
+
+
 def test_library_example_of_getting_started_runs(capsys: pytest.CaptureFixture[str]) -> None:
     found, computed = blocks((DOCS / "getting-started.md").read_text(), "python")
     exec(found, {})

@@ -4,6 +4,8 @@ Type checkers read this file; the package itself imports each name from where it
 """
 
 from lamella.base.errors import InputError as InputError
+from lamella.base.result import Result as Result
+from lamella.base.result import Shown as Shown
 from lamella.fabrication.part import Part as Part
 from lamella.fabrication.part import Parts as Parts
 from lamella.fabrication.sheet import Nesting as Nesting

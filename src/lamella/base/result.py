@@ -23,9 +23,10 @@ class Lean:
 
 
 class Result(Lean):
-    """Mixin of what stages return, closed forms included: frozen, and compared by `allclose` instead of `==`.
+    """What every result is: it prints in a line, pickles and copies without its caches, and is compared by `allclose`.
 
-    A class gives `_line`, what is printed between the brackets behind its name.
+    Results are frozen; `==` asks whether two are the same object. A class gives `_line`, what is printed between the
+    brackets behind its name.
     """
 
     def _line(self) -> str:
@@ -59,7 +60,14 @@ class Result(Lean):
 
 
 class Shown(Result):
-    """A result with a picture: in a notebook, and by `plot`."""
+    """A result with a picture: in a notebook, and by `plot`.
+
+    Examples
+    --------
+    >>> import lamella
+    >>> lamella.circle((0, 0, 0), 2.0)._repr_html_()[:9]
+    '<div><svg'
+    """
 
     def _repr_html_(self) -> str:
         """What it prints below a picture, as notebooks show it."""
