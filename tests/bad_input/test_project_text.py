@@ -126,12 +126,14 @@ def test_unknown_keys_name_the_nearest(refused: Callable[..., str], text: str, a
 
 
 def test_several_errors_are_told_at_once_and_not_all_of_a_thousand(refused: Callable[..., str]) -> None:
-    told = refused(UNDULOID.replace("1.6", "-1").replace("2.8", '"2"'), at="p.toml:4", lines=4)
-    assert [line.split(": ")[0] for line in told.splitlines()[::2]] == ["lamella", "p.toml:5"]
-    told = refused(
+    reported = refused(UNDULOID.replace("1.6", "-1").replace("2.8", '"2"'), at="p.toml:4", lines=4)
+    assert [line.split(": ")[0] for line in reported.splitlines()[::2]] == ["lamella", "p.toml:5"]
+    reported = refused(
         UNDULOID + "".join(f"k{i} = 1\n" for i in range(1000)), "and 994 more errors", at="p.toml:7", lines=13
     )
-    told = refused(UNDULOID + "".join(f"k{i} = 1\n" for i in range(7)), "and 1 more error\n", at="p.toml:7", lines=13)
+    reported = refused(
+        UNDULOID + "".join(f"k{i} = 1\n" for i in range(7)), "and 1 more error\n", at="p.toml:7", lines=13
+    )
 
 
 @pytest.mark.parametrize("values", [UNDULOID, "", b"x", None, 3, ["surface"], Path("p.toml")], ids=repr)

@@ -16,7 +16,7 @@ from lamella import Places, Unduloid, parse_project, read_project
 from lamella.fabrication.schedule import COLUMNS
 from lamella.files.write.network_json import network_bytes
 from lamella.network.isothermic.holonomy import around_vertex, holonomies
-from lamella.network.isothermic.integration_mesh import make_net_mesh
+from lamella.network.isothermic.integration_mesh import make_integration_mesh
 from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.network import SINGULAR
 from lamella.project.tables import FURTHER_TABLES
@@ -298,7 +298,7 @@ def _gridshell(results):
     """
     umbilics = results.surface.umbilics
     assert umbilics.orders.tolist() == [1, 1]
-    mesh = make_net_mesh(results.surface, umbilics)
+    mesh = make_integration_mesh(results.surface, umbilics)
     iso = integrate(mesh, mesh.umbilics)
     shifts = np.array([piece.shift for piece in iso.transitions])
     places = [around_vertex(mesh, iso.transitions, iso.across, zero)[1] @ shifts / 2 for zero in mesh.umbilics]
@@ -435,8 +435,8 @@ def test_example(name):
     assert ruler["node_angle_measured"] == ruler["regular_nodes"] > 200
     assert ruler["normal_curvature_error_p95"] <= 1e-3 * ruler["curvature_scale"]
     if name in ASKEW:
-        told = figures["network"]["node_angle_deviation_max_deg"]
-        assert ruler["node_angle_deviation_max_deg"] == pytest.approx(told, abs=0.1)
+        reported = figures["network"]["node_angle_deviation_max_deg"]
+        assert ruler["node_angle_deviation_max_deg"] == pytest.approx(reported, abs=0.1)
     elif name not in OPEN:
         assert ruler["node_angle_deviation_max_deg"] <= 0.1
         assert all(joint["closed"] for joint in figures["network"]["joints"])

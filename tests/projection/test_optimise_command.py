@@ -229,9 +229,12 @@ def test_moves_are_told_and_a_mesh_that_was_no_such_net(tmp_path: Path, capsys: 
     given = noisy(lamella_patch(UNDULOID, 12, 1.2), 0.01, 5)
     net, _ = run(put(tmp_path / "a.ply", given), "sphere-stars", "--radius", 2)
     moved = np.linalg.norm(net.vertices - given.vertices, axis=1)
-    told = capsys.readouterr().err
-    assert f"vertices moved by {np.sqrt((moved**2).mean()):.3g} m root mean square, {moved.max():.3g} m at most" in told
-    assert "no such net by far" not in told
+    reported = capsys.readouterr().err
+    assert (
+        f"vertices moved by {np.sqrt((moved**2).mean()):.3g} m root mean square, {moved.max():.3g} m at most"
+        in reported
+    )
+    assert "no such net by far" not in reported
     path = put(tmp_path / "b.ply", rotational_net(UNDULOID, 24, 21, -10 * np.pi / 24))
     assert main(["optimise", str(path), "--as", "asymptotic", "--out", str(tmp_path / "c.ply")]) in (0, 1)
     assert "no such net by far" in capsys.readouterr().err
@@ -332,9 +335,9 @@ def test_targets_refused_before_anything_is_computed(tmp_path: Path, capsys: pyt
         (["--out", str(tmp_path / "b.json"), "--json", str(tmp_path / "b.json")], "in use already"),
     ):
         assert main(["optimise", str(path), "--as", "asymptotic", *options]) == 2
-        told = capsys.readouterr().err
-        assert match in told
-        assert "b.stl" not in match or told.count("b.stl") == 1
+        reported = capsys.readouterr().err
+        assert match in reported
+        assert "b.stl" not in match or reported.count("b.stl") == 1
     assert path.read_bytes() == content
     assert [item.name for item in tmp_path.iterdir()] == ["a.obj"]
 
@@ -349,7 +352,7 @@ def test_plane_has_no_radius(tmp_path: Path, capsys: pytest.CaptureFixture[str])
 def test_help_teaches(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit, match="0"):
         main(["optimise", "--help"])
-    told = capsys.readouterr().out
-    assert all(f"\n  {problem}  " in told for problem in USED)
+    reported = capsys.readouterr().out
+    assert all(f"\n  {problem}  " in reported for problem in USED)
     for word in ("exit codes", "examples:", "metres", "COMPAS", "counted\nfrom 0"):
-        assert word in told
+        assert word in reported

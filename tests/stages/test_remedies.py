@@ -195,8 +195,8 @@ def test_what_is_refused(tables: Tables, key: str, ways: list[Callable[[Tables, 
 
 def warned(tables: Tables, word: str) -> str:
     """The warning with a word; "" where there is none."""
-    told = compute(parse_project(tables)).summary["warnings"]
-    return next((message for message in told if word in message), "")
+    reported = compute(parse_project(tables)).summary["warnings"]
+    return next((message for message in reported if word in message), "")
 
 
 @pytest.mark.parametrize(
@@ -273,8 +273,8 @@ def test_strips_for_which_no_known_material_is_strong_enough(surface: Tables, st
 
 def test_cells_smaller_than_the_strip() -> None:
     tables = {"surface": UNDULOID, "network": {"cells": 120}, "lamella": ONE | {"height": 0.15, "thickness": 0.001}}
-    told = warned(tables, "cell edges")
-    cells, height = re.search(r"at most (\d+) cells, or a strip up to ([\d.]+) mm", told).groups()  # type: ignore[union-attr]
+    reported = warned(tables, "cell edges")
+    cells, height = re.search(r"at most (\d+) cells, or a strip up to ([\d.]+) mm", reported).groups()  # type: ignore[union-attr]
     assert not warned(tables | {"network": {"cells": int(cells)}}, "cell edges")
     assert not warned(tables | {"lamella": tables["lamella"] | {"height": float(height) / 1000}}, "cell edges")
 
@@ -350,10 +350,10 @@ def at_corners(boundary: Tables, mean_curvature: float) -> Tables:
     ("boundary", "mean_curvature"), [({"part": arches()}, 0.0), (PLAN, -0.12)], ids=["arches", "dome"]
 )
 def test_corners_that_concentrate_stress(boundary: Tables, mean_curvature: float) -> None:
-    """Told apart from the rest; the radius that is said brings the utilisation to what is said with it, below 1."""
+    """Reported apart from the rest; the radius that is said brings the utilisation to what is said with it, below 1."""
     boundary = boundary | {"name": "edge"}
     sharp = compute(parse_project(at_corners(boundary, mean_curvature))).summary
-    message = next(told for told in sharp["warnings"] if "utilisation reaches" in told)
+    message = next(reported for reported in sharp["warnings"] if "utilisation reaches" in reported)
     found = re.search(r"corner_radius = ([\d.]+) m in the table of 'edge' brings it to ([\d.]+)", message)
     assert found
     figures = sharp["lamellas"]
@@ -367,7 +367,7 @@ def test_corners_that_concentrate_stress(boundary: Tables, mean_curvature: float
     # three digits, up
     assert round_["lamellas"]["utilisation_max"] == pytest.approx(float(found[2]), rel=1e-2)
     assert not round_["network"]["corners"]
-    assert not any("utilisation reaches" in told for told in round_["warnings"])
+    assert not any("utilisation reaches" in reported for reported in round_["warnings"])
 
 
 @pytest.mark.slow
@@ -377,7 +377,9 @@ def test_corners_whose_loop_has_no_room_for_a_radius_that_does() -> None:
         "points": [*BEAMS["points"][:3], [3.5, 3, -0.2], [3.5, 3.5, -0.1], [3, 3.5, 0], *BEAMS["points"][4:]]
     }
     message = next(
-        told for told in compute(parse_project(at_corners(beams, 0.0))).summary["warnings"] if "utilisation" in told
+        reported
+        for reported in compute(parse_project(at_corners(beams, 0.0))).summary["warnings"]
+        if "utilisation" in reported
     )
     assert re.search(r"no corner_radius that was tried, up to the 0\.\d+ m its loop has room for", message)
     assert "corner_radius =" not in message

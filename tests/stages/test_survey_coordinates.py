@@ -16,7 +16,7 @@ import pytest
 import rhino3dm
 
 from lamella import __version__, compute, parse_project, write
-from lamella.base.drawing_origin import NOWHERE, coordinates, origin_of, told_from
+from lamella.base.drawing_origin import NOWHERE, coordinates, origin_of, reported_from
 from lamella.base.errors import InputError
 from lamella.base.units import METRES
 from lamella.files.write.curves_3dm import write_curves_3dm
@@ -228,8 +228,8 @@ def test_every_file_and_message_is_in_the_drawings_coordinates(tmp_path: Path) -
     again = read_project(there / "project.toml").surface
     assert isinstance(again, FormFoundTable)
     assert again.origin == project["there"].origin
-    told = f"{project['there'].origin[0]:.10g}, {project['there'].origin[1]:.10g}"
-    assert told in (there / "report.html").read_text()
+    reported = f"{project['there'].origin[0]:.10g}, {project['there'].origin[1]:.10g}"
+    assert reported in (there / "report.html").read_text()
 
 
 def corners_of(path: Path) -> np.ndarray:
@@ -241,8 +241,8 @@ def corners_of(path: Path) -> np.ndarray:
 @pytest.mark.slow
 def test_check_tells_places_in_the_drawings_coordinates(tmp_path: Path) -> None:
     tables = film(drawn_by_points(tmp_path, FAR)) | {"lamella": {"thickness": 0.004}}
-    told = " ".join(check_project(parse_project(tables), folder=tmp_path).warnings)
-    assert re.search(r"\(45000\d\d\.\d{3}, 53000\d\d\.\d{3}, 50\d\.\d{3}\) m", told)
+    reported = " ".join(check_project(parse_project(tables), folder=tmp_path).warnings)
+    assert re.search(r"\(45000\d\d\.\d{3}, 53000\d\d\.\d{3}, 50\d\.\d{3}\) m", reported)
 
 
 def test_refusals_of_loops_are_in_the_drawings_coordinates(tmp_path: Path) -> None:
@@ -271,7 +271,7 @@ def test_the_origin_is_round_and_only_where_the_drawing_is_far(away: float, size
 
 def test_places_in_messages() -> None:
     assert coordinates([1.23456, 0.0, -2.0], 3) == "1.23, 0, -2"
-    with told_from((4_500_000.0, 0.0, 0.0)):
+    with reported_from((4_500_000.0, 0.0, 0.0)):
         assert coordinates([1.23456, 0.0, -2.0], 3) == "4500001.235, 0.000, -2.000"
     assert coordinates([1.23456, 0.0, -2.0], 3) == "1.23, 0, -2"
 

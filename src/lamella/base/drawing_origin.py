@@ -28,7 +28,7 @@ LARGE = 1e4
 
 NOWHERE: Origin = (0.0, 0.0, 0.0)
 
-_told_from: ContextVar[Origin] = ContextVar("told_from", default=NOWHERE)
+_reported_from: ContextVar[Origin] = ContextVar("reported_from", default=NOWHERE)
 
 
 def origin_of(points: Floats) -> Origin:
@@ -48,18 +48,18 @@ def origin_of(points: Floats) -> Origin:
 
 
 @contextmanager
-def told_from(origin: Origin) -> Iterator[None]:
+def reported_from(origin: Origin) -> Iterator[None]:
     """Places in messages are in the drawing's coordinates, where the program measures from a point of it."""
-    token = _told_from.set(origin)
+    token = _reported_from.set(origin)
     try:
         yield
     finally:
-        _told_from.reset(token)
+        _reported_from.reset(token)
 
 
 def coordinates(point: ArrayLike, digits: int = 4) -> str:
     """A point (3,) of the drawing in a message, m: "x, y, z"."""
-    there = np.asarray(point, float) + _told_from.get()
+    there = np.asarray(point, float) + _reported_from.get()
     if np.abs(there).max() < LARGE:
         return ", ".join(f"{x:.{digits}g}" for x in there.tolist())
     return ", ".join(f"{x:.3f}" for x in there.tolist())

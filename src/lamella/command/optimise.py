@@ -12,7 +12,7 @@ from lamella import __version__
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, silent
 from lamella.base.wording import one_line, readable
-from lamella.command.optimise_options import USED, Wishes, driver_of
+from lamella.command.optimise_options import USED, Options, driver_of
 from lamella.command.screen import Screen
 from lamella.files.ours import is_ours
 
@@ -124,7 +124,7 @@ def add_optimise(commands: Any) -> None:
 
 def run_optimise(arguments: argparse.Namespace) -> int:
     """Do it; 0, or 1 where not all conditions hold."""
-    wishes = Wishes(
+    options = Options(
         radius=arguments.radius,
         angle=arguments.angle,
         form=arguments.form,
@@ -136,10 +136,10 @@ def run_optimise(arguments: argparse.Namespace) -> int:
         iterations=arguments.iterations,
         tolerance=arguments.tolerance,
     )
-    wishes.check(arguments.problem)
+    options.check(arguments.problem)
     _check_targets(arguments)
 
-    from lamella.command.optimise_mesh import optimise, told_mesh
+    from lamella.command.optimise_mesh import optimise, reported_mesh
     from lamella.files.quad_mesh_files import read_quad_mesh, require_format
     from lamella.files.whole import write_all_whole
     from lamella.projection.mesh_figures import mesh_figures
@@ -151,10 +151,10 @@ def run_optimise(arguments: argparse.Namespace) -> int:
     progress: Progress = silent if arguments.quiet else Screen(verbose=False)
     require_format(arguments.out)
     given = read_quad_mesh(arguments.mesh, arguments.unit)
-    say(f"{arguments.mesh}: {told_mesh(given.mesh)}")
+    say(f"{arguments.mesh}: {reported_mesh(given.mesh)}")
     for note in given.notes:
         say(f"  {note}")
-    result = optimise(given, arguments.problem, wishes, progress=progress)
+    result = optimise(given, arguments.problem, options, progress=progress)
     figures = mesh_figures(result.mesh, given.mesh if result.same else None)
     figures = replace(figures, faces={**figures.faces, **result.faces})
     files = _files(arguments, given, result, figures)
@@ -277,7 +277,7 @@ def _picture(arguments: argparse.Namespace, given: QuadFile, result: Optimised) 
     from lamella.view.net_picture import NetPanel, draw_nets
 
     colour = _colour(arguments)
-    ring = result.told.get("ring", [])
+    ring = result.reported.get("ring", [])
     if ring and not arguments.open_driver:
         ring = [*ring, ring[0]]
 

@@ -12,7 +12,7 @@ from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
-from lamella.command.optimise_options import Wishes
+from lamella.command.optimise_options import Options
 from lamella.files.quad_mesh_files import QuadFile
 from lamella.projection.foot_points import foot_surface
 from lamella.projection.polylines import diagonal_ring, polylines
@@ -51,7 +51,7 @@ class Optimised:
         Of "straighten": M2.
     solutions : tuple of Solution
         In the order they were reached; the last one is that of `mesh`.
-    told : dict
+    reported : dict
         What the problem says besides, for JSON.
     remarks : tuple of str
         What the user should know.
@@ -63,7 +63,7 @@ class Optimised:
     solutions: tuple[Solution, ...]
     same: bool = True
     lamellas: QuadMesh | None = None
-    told: dict[str, Any] = field(default_factory=dict)
+    reported: dict[str, Any] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     faces: dict[str, Floats] = field(default_factory=dict)
 
@@ -88,7 +88,7 @@ def about_mesh(mesh: QuadMesh) -> dict[str, Any]:
     }
 
 
-def told_mesh(mesh: QuadMesh) -> str:
+def reported_mesh(mesh: QuadMesh) -> str:
     """The same in a line."""
     singular = [f"{k} (valence {mesh.valence[k]})" for k in mesh.singular[:6]]
     more = f" and {len(mesh.singular) - 6} more" if len(mesh.singular) > 6 else ""
@@ -99,7 +99,7 @@ def told_mesh(mesh: QuadMesh) -> str:
     )
 
 
-def optimise(given: QuadFile, problem: str, wishes: Wishes, *, progress: Progress = silent) -> Optimised:
+def optimise(given: QuadFile, problem: str, options: Options, *, progress: Progress = silent) -> Optimised:
     """Optimise a mesh.
 
     Parameters
@@ -107,7 +107,7 @@ def optimise(given: QuadFile, problem: str, wishes: Wishes, *, progress: Progres
     given : QuadFile
     problem : str
         A key of `lamella.command.optimise_options.USED`.
-    wishes : Wishes
+    options : Options
         Those that are not None have to be of use to the problem.
     progress : callable
         Receives each iteration.
@@ -117,7 +117,7 @@ def optimise(given: QuadFile, problem: str, wishes: Wishes, *, progress: Progres
     InputError
         A wish that is missing, of no use or out of range, and what the problem refuses.
     """
-    wishes.check(problem)
+    options.check(problem)
     mesh, count = given.mesh, 0
 
     def on_iteration(state: Iteration) -> None:
@@ -137,43 +137,43 @@ def optimise(given: QuadFile, problem: str, wishes: Wishes, *, progress: Progres
 
     common: dict[str, Any] = {"on_iteration": on_iteration}
     for name in ("iterations", "tolerance"):
-        if getattr(wishes, name) is not None:
-            common[name] = getattr(wishes, name)
+        if getattr(options, name) is not None:
+            common[name] = getattr(options, name)
     match problem:
         case "straighten":
-            return _straighten(given, wishes, common, progress)
+            return _straighten(given, options, common, progress)
         case "deform":
-            return _deform(mesh, wishes, common)
+            return _deform(mesh, options, common)
         case "planar":
-            return _planar(given, wishes, common, progress)
-    return _stars(mesh, problem, wishes, common)
+            return _planar(given, options, common, progress)
+    return _stars(mesh, problem, options, common)
 
 
-def _stars(mesh: QuadMesh, problem: str, wishes: Wishes, common: dict[str, Any]) -> Optimised:
-    if wishes.form is not None and wishes.form not in get_args(AngleForm):
-        raise InputError(f"--form {wishes.form} is not known", f"one of {', '.join(get_args(AngleForm))}")
+def _stars(mesh: QuadMesh, problem: str, options: Options, common: dict[str, Any]) -> Optimised:
+    if options.form is not None and options.form not in get_args(AngleForm):
+        raise InputError(f"--form {options.form} is not known", f"one of {', '.join(get_args(AngleForm))}")
     net = sphere_stars(
         mesh,
-        radius=np.inf if problem == "asymptotic" else wishes.radius,
-        angle=90.0 if wishes.angle is None else wishes.angle,
-        form=cast(AngleForm, wishes.form or "circles"),
+        radius=np.inf if problem == "asymptotic" else options.radius,
+        angle=90.0 if options.angle is None else options.angle,
+        form=cast(AngleForm, options.form or "circles"),
         **common,
     )
-    found = problem != "asymptotic" and wishes.radius is None
-    told: dict[str, Any] = {"radius": float(net.radius) if np.isfinite(net.radius) else None, "radius_found": found}
-    remarks: tuple[str, ...] = (_told_moves(mesh, net.mesh),)
+    found = problem != "asymptotic" and options.radius is None
+    reported: dict[str, Any] = {"radius": float(net.radius) if np.isfinite(net.radius) else None, "radius_found": found}
+    remarks: tuple[str, ...] = (_reported_moves(mesh, net.mesh),)
     if found:
-        told["radius_uncertainty"] = float(net.radius_uncertainty)  # infinite: null
-        told["ill_determined"] = bool(net.ill_determined)
+        reported["radius_uncertainty"] = float(net.radius_uncertainty)  # infinite: null
+        reported["ill_determined"] = bool(net.ill_determined)
         known = np.isfinite(net.radius_uncertainty)
         doubt = f"standard deviation {net.radius_uncertainty:.2g} m" if known else "no limit to its uncertainty"
         remarks += (f"radius found: {net.radius:.6g} m, {doubt}",)
         if net.ill_determined:
             remarks += ("the net says too little about the radius: others would do as well; give it with --radius",)
-    return Optimised(net.mesh, (net.solution,), told=told, remarks=remarks)
+    return Optimised(net.mesh, (net.solution,), reported=reported, remarks=remarks)
 
 
-def _told_moves(before: QuadMesh, after: QuadMesh) -> str:
+def _reported_moves(before: QuadMesh, after: QuadMesh) -> str:
     """How far vertices have gone, in a line; with a caution where that is another mesh."""
     moved = np.linalg.norm(after.vertices - before.vertices, axis=1)
     mean, edge = float(np.sqrt((moved**2).mean())), before.mean_edge
@@ -184,10 +184,10 @@ def _told_moves(before: QuadMesh, after: QuadMesh) -> str:
     return line + ": the mesh was no such net by far, look whether the result still is your design" if far else line
 
 
-def _straighten(given: QuadFile, wishes: Wishes, common: dict[str, Any], progress: Progress) -> Optimised:
-    surface = _surface(given, wishes, progress)
+def _straighten(given: QuadFile, options: Options, common: dict[str, Any], progress: Progress) -> Optimised:
+    surface = _surface(given, options, progress)
     refuse_umbilic(surface)
-    _require_near(given.mesh, surface, wishes)
+    _require_near(given.mesh, surface, options)
     if not isinstance(surface, ClosedForm):
         common.setdefault("tolerance", FOUND)
     found = straighten(given.mesh, foot_surface(cast(Any, surface)), **common)
@@ -204,12 +204,12 @@ def _straighten(given: QuadFile, wishes: Wishes, common: dict[str, Any], progres
     )
 
 
-def _deform(mesh: QuadMesh, wishes: Wishes, common: dict[str, Any]) -> Optimised:
-    assert wishes.driver is not None
-    vertices, share = wishes.driver
+def _deform(mesh: QuadMesh, options: Options, common: dict[str, Any]) -> Optimised:
+    assert options.driver is not None
+    vertices, share = options.driver
     ring = diagonal_ring(mesh, vertices[0]) if len(vertices) == 1 else np.array(vertices, np.int64)
-    states = deform(mesh, ring, share, radius=wishes.radius, closed=not wishes.open_driver, **common)
-    told = {
+    states = deform(mesh, ring, share, radius=options.radius, closed=not options.open_driver, **common)
+    reported = {
         "ring": ring.tolist(),
         "states": [
             {
@@ -237,11 +237,11 @@ def _deform(mesh: QuadMesh, wishes: Wishes, common: dict[str, Any]) -> Optimised
             "edge lengths and stars of given radius are 4 conditions on 3 coordinates of a vertex: only symmetric "
             "nets keep both, here the remainder is shared out"
         )
-    return Optimised(last.mesh, tuple(state.solution for state in states), told=told, remarks=tuple(remarks))
+    return Optimised(last.mesh, tuple(state.solution for state in states), reported=reported, remarks=tuple(remarks))
 
 
-def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], progress: Progress) -> Optimised:
-    assert wishes.height is not None
+def _planar(given: QuadFile, options: Options, common: dict[str, Any], progress: Progress) -> Optimised:
+    assert options.height is not None
     lines = polylines(given.mesh)
     long = [line for line in lines if len(line) >= STRIP_POINTS]
     if not long:
@@ -250,14 +250,14 @@ def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], progress: P
             f"no polyline has {STRIP_POINTS} vertices, the longest has {longest}",
             f"give a mesh with at least {STRIP_POINTS - 1} quads in a row",
         )
-    if wishes.rounds is not None:
-        common["rounds"] = wishes.rounds
-    surface = _surface(given, wishes, progress)
-    _require_near(given.mesh, surface, wishes)
+    if options.rounds is not None:
+        common["rounds"] = options.rounds
+    surface = _surface(given, options, progress)
+    _require_near(given.mesh, surface, options)
     if not isinstance(surface, ClosedForm):
         common.setdefault("tolerance", FOUND)
     strips = planar_strips(
-        [given.mesh.vertices[line] for line in long], foot_surface(cast(Any, surface)), wishes.height, **common
+        [given.mesh.vertices[line] for line in long], foot_surface(cast(Any, surface)), options.height, **common
     )
     figures = strips.figures()
     remarks = [
@@ -274,7 +274,7 @@ def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], progress: P
             "quads bridge them by moving the border and turning the rulings; take twisted strips there, or less height"
         )
     mesh, strip = strip_mesh(strips.lower, strips.upper)
-    told = {
+    reported = {
         "figures": figures,
         "strips": [
             {"vertices": line.tolist(), "buildable_height": height.tolist()}
@@ -282,7 +282,7 @@ def _planar(given: QuadFile, wishes: Wishes, common: dict[str, Any], progress: P
         ],
     }
     faces = {"planarity_before": np.concatenate(strips.before), "strip": strip}
-    return Optimised(mesh, strips.solutions, same=False, told=told, remarks=tuple(remarks), faces=faces)
+    return Optimised(mesh, strips.solutions, same=False, reported=reported, remarks=tuple(remarks), faces=faces)
 
 
 def strip_mesh(lowers: Sequence[Floats], uppers: Sequence[Floats]) -> tuple[QuadMesh, Floats]:
@@ -298,7 +298,7 @@ def strip_mesh(lowers: Sequence[Floats], uppers: Sequence[Floats]) -> tuple[Quad
     return quad_mesh(np.concatenate(points), np.concatenate(faces)), np.concatenate(strip)
 
 
-def _require_near(mesh: QuadMesh, surface: Surface[Any], wishes: Wishes) -> None:
+def _require_near(mesh: QuadMesh, surface: Surface[Any], options: Options) -> None:
     """Refuse a surface that is somewhere else: the mesh was drawn on it, but for what reaches beyond its rim."""
     foot = foot_surface(cast(Any, surface)).foot(mesh.vertices)
     away = np.linalg.norm(mesh.vertices - foot.position, axis=1)
@@ -306,22 +306,22 @@ def _require_near(mesh: QuadMesh, surface: Surface[Any], wishes: Wishes) -> None
         raise InputError(
             f"half of the vertices are more than {np.median(away):.3g} m from the surface, a mean edge is "
             f"{mesh.mean_edge:.3g} m",
-            f"is {wishes.surface} the surface of this mesh, and --unit right?",
+            f"is {options.surface} the surface of this mesh, and --unit right?",
         )
 
 
-def _surface(given: QuadFile, wishes: Wishes, progress: Progress) -> Surface[Any]:
+def _surface(given: QuadFile, options: Options, progress: Progress) -> Surface[Any]:
     """That of a project, or the surface of constant mean curvature the mesh itself means."""
     from lamella.project.read import located, read_project
     from lamella.stages.surface_of_table import make_surface
     from lamella.surface.from_mesh.fit_cmc import fit_cmc
 
-    if wishes.surface is not None:
-        project = read_project(wishes.surface)
+    if options.surface is not None:
+        project = read_project(options.surface)
         try:
-            return make_surface(project, wishes.surface.parent, progress)
+            return make_surface(project, options.surface.parent, progress)
         except InputError as error:
-            raise located(error, wishes.surface) from None
+            raise located(error, options.surface) from None
     progress(
         Report.heading("no --surface: looking for the surface of constant mean curvature that the mesh itself means")
     )

@@ -17,7 +17,7 @@ USED: dict[str, tuple[str, ...]] = {
     "deform": ("driver", "open_driver", "radius"),
     "planar": ("height", "surface", "rounds"),
 }
-"""Wishes each problem makes use of, besides `ALWAYS`."""
+"""Options each problem makes use of, besides `ALWAYS`."""
 
 LARGEST_TOLERANCE = 0.01
 
@@ -29,7 +29,7 @@ NEEDED: dict[str, tuple[str, str]] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wishes:
+class Options:
     """Options of a problem; None: as the problem does it by itself.
 
     Attributes

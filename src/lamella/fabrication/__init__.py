@@ -3,7 +3,7 @@
 from lamella.fabrication.drawing import write_drawings
 from lamella.fabrication.part import Part, Parts
 from lamella.fabrication.parts import make_parts
-from lamella.fabrication.read_back import SlotReading, read_slots
+from lamella.fabrication.read_back import SlotReadBack, read_slots
 from lamella.fabrication.schedule import write_schedule
 from lamella.fabrication.sheet import Nesting, nest
 
@@ -11,7 +11,7 @@ __all__ = [
     "Nesting",
     "Part",
     "Parts",
-    "SlotReading",
+    "SlotReadBack",
     "make_parts",
     "nest",
     "read_slots",

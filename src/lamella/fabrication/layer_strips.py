@@ -12,7 +12,7 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
 from lamella.fabrication.axis import Axis
-from lamella.fabrication.oblique import Askew
+from lamella.fabrication.oblique import Oblique
 from lamella.fabrication.rules import clear_hub
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas, crossings
@@ -85,7 +85,7 @@ class LayerStrips:
     ----------
     network : Network
     lamellas : Lamellas
-    askew : Askew
+    oblique : Oblique
     stations : (r, q)
         Of the nodes, a row a layer; one row where layers are alike.
     shifts : (r, q, layers)
@@ -96,7 +96,7 @@ class LayerStrips:
 
     network: Network
     lamellas: Lamellas
-    askew: Askew
+    oblique: Oblique
     stations: Floats
     shifts: Floats
     slot_width: Floats
@@ -105,17 +105,17 @@ class LayerStrips:
     def of(cls, network: Network, lamellas: Lamellas, slot_width: float) -> LayerStrips:
         """The strips of lamellas whose slots are `slot_width` (m) wide where they cross at a right angle."""
         section, layers = lamellas.section, lamellas.layers
-        askew = Askew.of(network)
+        oblique = Oblique.of(network)
         stations = lamellas.stop_stations[None]
-        if (section.own_parts or not askew.right) and section.layers > 1:
+        if (section.own_parts or not oblique.right) and section.layers > 1:
             at = crossings(network)[network.stop_nodes]
-            off = [np.where(at, askew.shift(d), 0.0) for d in section.layer_offsets.tolist()]
+            off = [np.where(at, oblique.shift(d), 0.0) for d in section.layer_offsets.tolist()]
             stations = layers.stop_stations + np.stack(off)
         shifts = layers.slot_shifts
         if shifts is None:
-            equal = askew.stretch[:, None] * section.layer_offsets
+            equal = oblique.stretch[:, None] * section.layer_offsets
             shifts = np.broadcast_to(equal, (len(stations), *equal.shape))
-        return cls(network, lamellas, askew, stations, shifts, askew.width(slot_width, section.thickness))
+        return cls(network, lamellas, oblique, stations, shifts, oblique.width(slot_width, section.thickness))
 
     @property
     def kinds(self) -> int:

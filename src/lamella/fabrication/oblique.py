@@ -23,7 +23,7 @@ RIGHT = 0.5
 
 
 @dataclass(frozen=True)
-class Askew:
+class Oblique:
     """How lamellas cross at their stops; at a right angle where there is no other lamella.
 
     Attributes
@@ -38,7 +38,7 @@ class Askew:
     sine: Floats
 
     @classmethod
-    def of(cls, network: Network) -> Askew:
+    def of(cls, network: Network) -> Oblique:
         """The crossings of a net."""
         count = len(network.stop_nodes)
         if network.pattern.normal_curvature is None or (90 - network.node_angles).max(initial=0.0) <= RIGHT:

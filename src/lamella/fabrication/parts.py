@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
 from lamella.fabrication.axis import Axis, outline
 from lamella.fabrication.collisions import end_collisions
+from lamella.fabrication.defaults import default_end_distance, default_hub_radius, default_slot_width
 from lamella.fabrication.flat import outline_area
 from lamella.fabrication.layer_strips import LayerStrip, LayerStrips
 from lamella.fabrication.part import Part, Parts
-from lamella.fabrication.rules import LEAST_END, LEAST_HUB, ROUNDING, Rules, edge_scale
+from lamella.fabrication.rules import ROUNDING, Rules
 from lamella.fabrication.splitting import cut_stations
-from lamella.fabrication.warnings import Notes
+from lamella.fabrication.warnings import FabricationWarnings
 from lamella.network.network import SINGULAR, Network
-from lamella.strip.lamellas import Lamellas, crossings
+from lamella.strip.lamellas import Lamellas, Section, crossings
 
 
 def make_parts(
@@ -42,15 +44,14 @@ def make_parts(
     density : float
         kg/m3.
     end_distance : float, optional
-        Least distance from the outermost slot's axis to the strip's end, m; the larger of `LEAST_END` and two slot
-        widths if not given.
+        Least distance from the outermost slot's axis to the strip's end, m; `default_end_distance` if not given.
     rim_overhang : float
         Least distance from the rim's node to the strip's end, m.
     hub_radius : float, optional
-        From a singular node to the strip's end, m; if not given the larger of `LEAST_HUB` and what keeps the strips
-        of neighbouring rays clear of each other.
+        From a singular node to the strip's end, m; `default_hub_radius` of what keeps the strips of neighbouring rays
+        clear of each other if not given.
     slot_width : float, optional
-        m; twice the thickness if not given.
+        m; `default_slot_width` if not given.
     sheet : (float, float)
         Length and width of the sheets parts are cut from, m.
     gap : float
@@ -67,26 +68,8 @@ def make_parts(
     InputError
         Where the measures contradict each other.
     """
-    section = lamellas.section
-    slot_width = 2 * section.thickness if slot_width is None else slot_width
-    if end_distance is None:
-        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(network.normal_curvature, section.height))
-    degree_a, degree_b = network.node_degrees()
-    singular = network.node_kinds == SINGULAR
-    crossing = crossings(network)
-    rays = int((degree_a + degree_b)[singular].max(initial=0))
-    strips = LayerStrips.of(network, lamellas, slot_width)
-    clear = strips.clear_hub(rays)
-    given_hub = hub_radius
-    wanted_hub = max(LEAST_HUB, clear) if hub_radius is None else hub_radius
-    # the first slot of a ray stays on it
-    hub_radius = min(wanted_hub, max(strips.first_slot(crossing) - 1.5 * slot_width, 0.0))
-    rules = Rules(
-        layers=section.layers,
-        offset=section.offset,
-        height=section.height,
-        thickness=section.thickness,
-        curvature=float(network.normal_curvature),
+    make = partial(
+        make_parts,
         density=density,
         end_distance=end_distance,
         rim_overhang=rim_overhang,
@@ -94,56 +77,83 @@ def make_parts(
         slot_width=slot_width,
         sheet=sheet,
         gap=gap,
-        bow=strips.bow,
+    )
+    if slot_width is None:
+        slot_width = default_slot_width(lamellas.section.thickness)
+    if end_distance is None:
+        end_distance = default_end_distance(slot_width, network.normal_curvature, lamellas.section.height)
+    strips = LayerStrips.of(network, lamellas, slot_width)
+    notes = FabricationWarnings()
+    hub_radius = _hub_radius(network, strips, hub_radius, slot_width, notes)
+    rules = _rules(network, lamellas.section, density, strips.bow)(
+        end_distance=end_distance,
+        rim_overhang=rim_overhang,
+        hub_radius=hub_radius,
+        slot_width=slot_width,
+        sheet=sheet,
+        gap=gap,
     )
     rules.check()
-    longest = rules.longest_on_sheet
-    notes = Notes()
-    if hub_radius < wanted_hub:
-        notes.hub_cut = wanted_hub
-    if hub_radius < clear - ROUNDING:
+    parts, before, after = _all_parts(network, strips, rules, notes)
+    notes.collisions, notes.too_far = end_collisions(network, before, after, strips.reach)
+    if others and notes.collisions and not notes.ends_help(rules):
+        notes.other_cells = others(lambda net, there: make(net, there).colliding)
+    warnings = tuple(notes.sentences(rules, len(network.ids) * strips.kinds, len(parts)))
+    return Parts(tuple(parts), warnings, bool(notes.collisions))
+
+
+def _rules(network: Network, section: Section, density: float, bow: float) -> Callable[..., Rules]:
+    """The measures of all parts but for those that a project gives."""
+    return partial(
+        Rules,
+        layers=section.layers,
+        offset=section.offset,
+        height=section.height,
+        thickness=section.thickness,
+        curvature=float(network.normal_curvature),
+        density=density,
+        bow=bow,
+    )
+
+
+def _hub_radius(
+    network: Network, strips: LayerStrips, given: float | None, slot_width: float, notes: FabricationWarnings
+) -> float:
+    """From a singular node to the strips' ends, m; where it is shorter than given, or than needed, notes say so."""
+    degree_a, degree_b = network.node_degrees()
+    rays = int((degree_a + degree_b)[network.node_kinds == SINGULAR].max(initial=0))
+    clear = strips.clear_hub(rays)
+    wanted = default_hub_radius(clear) if given is None else given
+    # the first slot of a ray stays on it
+    radius = min(wanted, max(strips.first_slot(crossings(network)) - 1.5 * slot_width, 0.0))
+    if radius < wanted:
+        notes.hub_cut = wanted
+    if radius < clear - ROUNDING:
         notes.hub_needed = clear
+    return radius
+
+
+def _all_parts(
+    network: Network, strips: LayerStrips, rules: Rules, notes: FabricationWarnings
+) -> tuple[list[Part], Floats, Floats]:
+    """Parts of all lamellas; how far each lamella's reach beyond its first and its last node at most, m, (m,)."""
+    crossing, singular = crossings(network), network.node_kinds == SINGULAR
+    longest = rules.longest_on_sheet
     parts: list[Part] = []
     before, after = np.full((2, len(network.ids)), -np.inf)
     for index in range(len(network.ids)):
         stops = slice(int(network.stop_offsets[index]), int(network.stop_offsets[index + 1]))
         nodes = network.stop_nodes[stops]
+        family, closed = str(network.families[index]), bool(network.closed[index])
         for strip in strips.of_lamella(index):
             pieces = list(
-                _lamella_parts(
-                    strip,
-                    str(network.families[index]),
-                    bool(network.closed[index]),
-                    crossing[nodes],
-                    singular[nodes],
-                    rules,
-                    longest,
-                    notes,
-                )
+                _lamella_parts(strip, family, closed, crossing[nodes], singular[nodes], rules, longest, notes)
             )
             if pieces:
                 before[index] = max(before[index], strip.stations[0] - pieces[0].start)
                 after[index] = max(after[index], pieces[-1].end - strip.stations[-1])
             parts.extend(pieces)
-    notes.collisions, notes.too_far = end_collisions(network, before, after, strips.reach)
-    if others and notes.collisions and not notes.ends_help(rules):
-        notes.other_cells = others(
-            lambda net, there: (
-                make_parts(
-                    net,
-                    there,
-                    density=density,
-                    end_distance=end_distance,
-                    rim_overhang=rim_overhang,
-                    hub_radius=given_hub,
-                    slot_width=slot_width,
-                    sheet=sheet,
-                    gap=gap,
-                ).colliding
-            )
-        )
-    warnings = tuple(notes.sentences(rules, len(network.ids) * strips.kinds, len(parts)))
-    return Parts(tuple(parts), warnings, bool(notes.collisions))
+    return parts, before, after
 
 
 def _lamella_parts(
@@ -154,7 +164,7 @@ def _lamella_parts(
     hub: Booleans,
     rules: Rules,
     longest: float,
-    notes: Notes,
+    notes: FabricationWarnings,
 ) -> Iterator[Part]:
     """Parts of one strip."""
     stations, shifts, width = strip.stations, strip.shifts, strip.slot_width
@@ -201,7 +211,7 @@ def _cuts(
     stations: Floats,
     rules: Rules,
     longest: float,
-    notes: Notes,
+    notes: FabricationWarnings,
 ) -> Floats:
     """Where a lamella is split; notes why."""
     cuts = cut_stations(start, end, stations, min(longest, rules.longest_ring))
@@ -228,7 +238,7 @@ def _part(
     wanted: Floats,
     slot_width: float,
     rules: Rules,
-    notes: Notes,
+    notes: FabricationWarnings,
 ) -> Part:
     """One part with its slots, all as wide as its widest one, or without where they would come too close."""
     slots = np.sort(wanted.ravel())

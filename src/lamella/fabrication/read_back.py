@@ -18,7 +18,7 @@ SHARP = 0.5
 
 
 @dataclass(frozen=True)
-class SlotReading:
+class SlotReadBack:
     """What a drawing says of one part, measured on its outline alone.
 
     Attributes
@@ -45,7 +45,7 @@ class SlotReading:
     outline: Floats
 
 
-def read_slots(path: Path) -> dict[str, SlotReading]:
+def read_slots(path: Path) -> dict[str, SlotReadBack]:
     """Measure the parts of a drawing that `write_drawings` wrote.
 
     Only the order of an outline's vertices is taken for granted: the first is the start's corner on the -n
@@ -58,7 +58,7 @@ def read_slots(path: Path) -> dict[str, SlotReading]:
 
     Returns
     -------
-    dict of str to SlotReading
+    dict of str to SlotReadBack
         By part id; the second and further copies of a part on the sheets are told as "A1#2", "A1#3", ...
     """
     outlines: dict[str, Floats] = {}
@@ -79,7 +79,7 @@ def _name(entity: ezdxf.entities.DXFGraphic) -> str:
     return str(tags[1000]) if tags[1071] == 1 else f"{tags[1000]}#{tags[1071]}"
 
 
-def _measure(outline: Floats, marks: list[tuple[float, float]]) -> SlotReading:
+def _measure(outline: Floats, marks: list[tuple[float, float]]) -> SlotReadBack:
     """Stations of an outline's notches and of marks."""
     points, bulges = outline[:, :2], outline[:, 2]
     ahead = np.roll(points, -1, axis=0) - points
@@ -112,7 +112,7 @@ def _measure(outline: Floats, marks: list[tuple[float, float]]) -> SlotReading:
     places = np.concatenate((feet, np.array(marks).reshape(-1, 2), end[None]))
     stations = axis.stations(_turned(places - start, -turn) + middle[0])
     length = float(knots[-1])
-    return SlotReading(
+    return SlotReadBack(
         np.sort(stations[: len(feet)]),
         np.sort(stations[len(feet) : -1]),
         length,

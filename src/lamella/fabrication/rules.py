@@ -13,8 +13,6 @@ from lamella.fabrication.flat import longest_fitting
 # a flat ring closer to a full turn than this would leave its ends no room
 LARGEST_TURN = 1.9 * np.pi
 ROUNDING = 1e-9
-# m of strip beyond the last slot, and from a singular node to the strips, where the project does not say
-LEAST_END, LEAST_HUB = 0.05, 0.02
 
 
 def clear_hub(rays: int, layers: int, offset: float, thickness: float) -> float:

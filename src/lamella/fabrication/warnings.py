@@ -13,7 +13,7 @@ from lamella.fabrication.rules import ROUNDING, Rules
 
 
 @dataclass
-class Notes:
+class FabricationWarnings:
     """Lamellas and parts that did not come out as plain strips.
 
     Attributes

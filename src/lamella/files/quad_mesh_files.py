@@ -88,7 +88,7 @@ def read_quad_mesh(path: str | Path, unit: str | None = None) -> QuadFile:
 
 def _read(path: Path, unit: str | None) -> QuadFile:
     require_format(path)
-    asked = None if unit is None else metres_of(unit)
+    requested = None if unit is None else metres_of(unit)
     if not path.is_file():
         raise InputError("no such file", "check the path")
     size, most = path.stat().st_size, LARGEST_JSON if path.suffix.lower() == ".json" else LARGEST_FILE
@@ -105,12 +105,12 @@ def _read(path: Path, unit: str | None) -> QuadFile:
         found = READERS[path.suffix.lower()](data)
     check_polygons(found)
     _require_quads(found)
-    told = found.metres_per_unit
-    if told is not None and asked is not None and abs(told / asked - 1) > 1e-9:
-        raise InputError(f"the file says that its unit is {unit_name(told)}, not {unit}", "leave the unit out")
-    metres = told or asked or 1.0
+    reported = found.metres_per_unit
+    if reported is not None and requested is not None and abs(reported / requested - 1) > 1e-9:
+        raise InputError(f"the file says that its unit is {unit_name(reported)}, not {unit}", "leave the unit out")
+    metres = reported or requested or 1.0
     notes = found.notes
-    if told is None and asked is None:
+    if reported is None and requested is None:
         notes += (Message("unit_assumed", "the file says no unit: taken as metres"),)
     mesh = quad_mesh(found.points * metres, found.corners.reshape(-1, 4))
     notes += _check_size(mesh, metres)

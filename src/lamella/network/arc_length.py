@@ -112,9 +112,9 @@ def _reach(integral: Floats, speed: Floats, member: Integers, fraction: Floats, 
     bend = (speed[1] / (2 * speed[0])).take(member)
     x = np.clip(x + bend * (1 - x * x), -1, 1)
     for _ in range(60):
-        miss = _clenshaw(integral, member, x) - fraction * length
-        low, high = np.where(miss < 0, x, low), np.where(miss > 0, x, high)
-        goal = x - miss / _clenshaw(speed, member, x)
+        residual = _clenshaw(integral, member, x) - fraction * length
+        low, high = np.where(residual < 0, x, low), np.where(residual > 0, x, high)
+        goal = x - residual / _clenshaw(speed, member, x)
         before, x = x, np.where((goal >= low) & (goal <= high), goal, (low + high) / 2)
         # the next step would be its square
         if np.abs(x - before).max() <= LAST_STEP:

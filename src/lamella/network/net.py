@@ -6,14 +6,14 @@ from dataclasses import replace
 from typing import Any
 
 from lamella.base.errors import InputError
-from lamella.network.charts.ground_of import ground_of
+from lamella.network.charts.charts_of import charts_of
 from lamella.network.density_request import DensityRequest
 from lamella.network.elements.element_network import Closing, ElementNetwork, element_network
 from lamella.network.lattice.density import choose_density
 from lamella.network.lattice.trace import trace_closed_form
 from lamella.network.network import Network
 from lamella.network.pattern import NetKind, Pattern
-from lamella.network.streamlines.applicability import check_traced, is_traced, told_mean_curvature
+from lamella.network.streamlines.applicability import check_traced, is_traced, reported_mean_curvature
 from lamella.network.streamlines.streamline_network import TracedNetwork, traced_network
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.surface import ElementSurface
@@ -94,9 +94,9 @@ def net(
         check_traced(surface, pattern, closing)
         refuse_umbilic(surface)
         made = traced_network(
-            ground_of(surface),
+            charts_of(surface),
             pattern,
-            mean_curvature=told_mean_curvature(surface, pattern),
+            mean_curvature=reported_mean_curvature(surface, pattern),
             cells=cells,
             spacing=spacing,
             minimum_length=minimum_length,

@@ -243,9 +243,9 @@ class BoundaryTable(Table):
     def _possible(self) -> BoundaryTable:
         given = [key for key in _SHAPES if getattr(self, key) is not None]
         if len(given) != 1:
-            told = f"{' and '.join(given)} are given" if given else "no curve is given"
+            reported = f"{' and '.join(given)} are given" if given else "no curve is given"
             remedy = f"keep one of {', '.join(given)}" if given else "add one of them"
-            raise Refusal(f"{told}: has to be one of {', '.join(_SHAPES)}", remedy)
+            raise Refusal(f"{reported}: has to be one of {', '.join(_SHAPES)}", remedy)
         if self.interpolation is not None and self.points is None:
             if self.file is None:
                 raise Refusal("interpolation goes with points", "leave interpolation out", "interpolation")
@@ -269,8 +269,8 @@ class BoundaryTable(Table):
         if slides:
             for key in ("adjust", "place"):
                 if getattr(self, key) is not None:
-                    told = "adjusted" if key == "adjust" else "placed"
-                    raise Refusal(f"a loop that slides cannot be {told}", f"hold the loop, or leave {key} out", key)
+                    reported = "adjusted" if key == "adjust" else "placed"
+                    raise Refusal(f"a loop that slides cannot be {reported}", f"hold the loop, or leave {key} out", key)
         if self.place is not None and self.points is not None:
             raise Refusal("place goes with circle, file or part, not with points", "change points themselves", "place")
         if self.slide is not None and self.part is not None:

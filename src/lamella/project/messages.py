@@ -89,10 +89,10 @@ def explain_kind(kind: object) -> tuple[str, str]:
     return message, f"choose one of {kinds}"
 
 
-Told = tuple[str, str, str]
+Reported = tuple[str, str, str]
 
 
-def told_once(errors: list[Told]) -> list[Told]:
+def reported_once(errors: list[Reported]) -> list[Reported]:
     """Errors without those that follow from a misspelt key: the key it was meant to be is not missing as well."""
     meant = {
         f"{key.rpartition('.')[0]}.{message.split(chr(39))[1]}".lstrip(".")
@@ -128,7 +128,7 @@ def _range(field: Any, unit: str) -> str:
     return " and ".join(words) + unit
 
 
-def explain(error: ErrorDetails, values: dict[str, Any]) -> Told:
+def explain(error: ErrorDetails, values: dict[str, Any]) -> Reported:
     """Key, message and remedy of a pydantic error."""
     kind, context = error["type"], error.get("ctx", {})
     if kind in ("union_tag_invalid", "union_tag_not_found") and isinstance(values["surface"], dict):
@@ -147,7 +147,7 @@ def explain(error: ErrorDetails, values: dict[str, Any]) -> Told:
     unit = f" {extra['unit']}" if extra.get("unit") else ""
     about = (getattr(field, "description", None) or "").rstrip(".")
     value = error["input"]
-    told = shown(value)
+    reported = shown(value)
     if kind == "missing" and key == "surface":
         return key, "missing: which surface the lamellas lie on", "add a table [surface] with kind = ..."
     if kind == "missing" and leaf == "boundary":
@@ -158,26 +158,26 @@ def explain(error: ErrorDetails, values: dict[str, Any]) -> Told:
     if kind == "extra_forbidden":
         return key, *_unknown(leaf, parent, len(path) == 1)
     if kind == "float_type" and isinstance(value, int) and not isinstance(value, bool):
-        return key, f"{told} is out of range", f"lower {leaf}"
+        return key, f"{reported} is out of range", f"lower {leaf}"
     if kind in ("float_type", "int_type", "string_type", "int_from_float"):
         wanted = {"float_type": "a number", "string_type": "text in quotes"}.get(kind, "a whole number")
         remedy = f"write {wanted}" + (f" in{unit}" if unit else "")
         if isinstance(value, str) and kind != "string_type":
             remedy += ", without quotes or unit"
-        return key, f"{told} is not {wanted}", remedy
+        return key, f"{reported} is not {wanted}", remedy
     if kind == "finite_number":
-        return key, f"{told} is not a finite number", f"write a number{' in' + unit if unit else ''}"
+        return key, f"{reported} is not a finite number", f"write a number{' in' + unit if unit else ''}"
     if kind == "string_too_long":
         limit = context["max_length"]
         return key, f"{len(value)} characters are too many (limit {limit})", f"shorten it to {limit} characters"
     if {"gt", "ge"} & set(context):
-        return key, f"{told}{unit} is out of range: has to be {_range(field, unit)}", f"raise {leaf}"
+        return key, f"{reported}{unit} is out of range: has to be {_range(field, unit)}", f"raise {leaf}"
     if {"lt", "le"} & set(context):
         remedy = f"lower {leaf}" + ("; lengths are in metres, not millimetres" if unit == " m" else "")
-        return key, f"{told}{unit} is out of range: has to be {_range(field, unit)}", remedy
+        return key, f"{reported}{unit} is out of range: has to be {_range(field, unit)}", remedy
     if kind == "literal_error":
-        return key, f"{told} is not one of {context['expected']}", f"choose one of {context['expected']}"
+        return key, f"{reported} is not one of {context['expected']}", f"choose one of {context['expected']}"
     if kind in ("model_type", "dict_type", "model_attributes_type", "union_tag_not_found"):
         inside, below = f"{cut(leaf)} = {{...}} with its keys inside", f"[{cut(key)}] and its keys below"
-        return key, f"{told} is not a table", f"write {inside if '[' in key else below}"
+        return key, f"{reported} is not a table", f"write {inside if '[' in key else below}"
     return key, cut(error["msg"], 200), f"see the keys of [{path[0]}] in `lamella new`"

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from lamella.base.byte_order import unmarked
 from lamella.base.errors import InputError
 from lamella.base.wording import cut, one_line
-from lamella.project.messages import explain, told_once
+from lamella.project.messages import explain, reported_once
 from lamella.project.tables import FormFoundTable, MeshTable, Project
 
 # a project file is written by hand; anything larger is some other file
@@ -24,7 +24,7 @@ _DEEP = re.compile(rf"""(?<![\w.'"-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+
 # errors looked at
 MOST_ERRORS = 200
 # errors told at once
-MOST_TOLD = 6
+REPORTED_MAX = 6
 
 
 def read_project(path: str | Path) -> Project:
@@ -143,14 +143,14 @@ def parse_project(values: dict[str, Any], *, source: str = "", text: str = "") -
         project = Project.model_validate(values)
     except ValidationError as failure:
         found = failure.errors(include_url=False)
-        errors = told_once([explain(error, values) for error in found[:MOST_ERRORS]])
-        more = len(errors) - MOST_TOLD + max(len(found) - MOST_ERRORS, 0)
-        told = [InputError(m, r, _where(source, text, key)) for key, m, r in errors[:MOST_TOLD]]
+        errors = reported_once([explain(error, values) for error in found[:MOST_ERRORS]])
+        more = len(errors) - REPORTED_MAX + max(len(found) - MOST_ERRORS, 0)
+        reported = [InputError(m, r, _where(source, text, key)) for key, m, r in errors[:REPORTED_MAX]]
         if more > 0:
-            told.append(InputError(f"and {more} more {'error' if more == 1 else 'errors'}", where=source))
-        if len(told) == 1:
-            raise told[0] from None
-        raise InputError("\n".join(str(error) for error in told)) from None
+            reported.append(InputError(f"and {more} more {'error' if more == 1 else 'errors'}", where=source))
+        if len(reported) == 1:
+            raise reported[0] from None
+        raise InputError("\n".join(str(error) for error in reported)) from None
     try:
         _check_material(project)
         _check_slots(project)
@@ -215,10 +215,10 @@ def _check_lines(project: Project) -> None:
     net = project.network
     if (net.every == 1 and net.closing == "open") or not _surely_traced(project):
         return
-    from lamella.network.streamlines.applicability import refuse_lattice_wishes
+    from lamella.network.streamlines.applicability import refuse_lattice_options
 
     try:
-        refuse_lattice_wishes(net.pattern, net.closing)
+        refuse_lattice_options(net.pattern, net.closing)
     except InputError as error:
         raise InputError(error.message, error.remedy, f"network.{error.where}") from None
 

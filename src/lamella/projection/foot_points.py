@@ -89,11 +89,11 @@ class ClosedFormFeet:
             at = self._surface.at(where)
             off = points - at.position
             # (I - s S) dt is the change of the tangential miss, s the signed distance and S the shape operator
-            miss, s = at.components(off), (off * at.normal).sum(1)
+            residual, s = at.components(off), (off * at.normal).sum(1)
             a, b = 1 - s * at.mean_curvature, s * at.deviator
             determinant = a**2 - np.abs(b) ** 2
             sound = determinant > 0.04
-            step = np.where(sound, (a * miss + np.conj(b * miss)) / np.where(sound, determinant, 1), miss)
+            step = np.where(sound, (a * residual + np.conj(b * residual)) / np.where(sound, determinant, 1), residual)
             change = step / self._surface.metric(where)
             where = where + change / np.maximum(1, np.abs(change) / 0.3)
             if np.abs(change).max(initial=0) < FINE:

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lamella.base.drawing_origin import NOWHERE, measured_from, told_from
+from lamella.base.drawing_origin import NOWHERE, measured_from, reported_from
 from lamella.base.progress import Progress, Report, silent
 from lamella.network.adjust.adjust import adjust_boundary
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.project.tables import FormFoundTable
 from lamella.stages.boundary_of_tables import adjustable_film, changed_table, with_origin
 from lamella.stages.keys import keys
-from lamella.surface.boundary.freedom import Freedom, refuse_held
+from lamella.surface.boundary.freedom import Freedom, refuse_fixed
 from lamella.surface.element.surface import ElementSurface
 
 
@@ -73,7 +73,7 @@ def adjust_table(
     InputError
     """
     table = with_origin(table, folder)
-    with told_from(table.origin or NOWHERE):
+    with reported_from(table.origin or NOWHERE):
         if table.origin:
             progress(Report.step(measured_from(table.origin)))
         film = adjustable_film(table, folder)
@@ -86,4 +86,4 @@ def refuse_held_table(table: FormFoundTable) -> None:
     """Raise an `InputError` where nothing of a boundary may change; curves of files are not read."""
     freedom = Freedom(adjustable_film(table))
     with keys("surface", **_KEYS):
-        refuse_held(freedom)
+        refuse_fixed(freedom)

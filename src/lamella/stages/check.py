@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lamella.base.drawing_origin import drawing_origin, told_from
+from lamella.base.drawing_origin import drawing_origin, reported_from
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
@@ -61,12 +61,12 @@ class Checked:
 
     def __str__(self) -> str:
         """In words."""
-        told = "a good project" if not self.warnings else f"it runs, with {counted(len(self.warnings), 'warning')}"
-        told += f". {self.surface.kind}, H = {self.surface.mean_curvature:.6g} 1/m"
-        told += ", no net" if self.nodes is None else f", {self.cells} cells, about {self.nodes:,} nodes"
+        reported = "a good project" if not self.warnings else f"it runs, with {counted(len(self.warnings), 'warning')}"
+        reported += f". {self.surface.kind}, H = {self.surface.mean_curvature:.6g} 1/m"
+        reported += ", no net" if self.nodes is None else f", {self.cells} cells, about {self.nodes:,} nodes"
         if self.left:
-            told += f"\n  only a run can tell {'; '.join(self.left)}"
-        return told
+            reported += f"\n  only a run can tell {'; '.join(self.left)}"
+        return reported
 
 
 def check_project(project: Project, *, folder: Path = Path(), progress: Progress = silent) -> Checked:
@@ -125,7 +125,7 @@ def _laid(project: Project, surface: Surface[Any], progress: Progress) -> tuple[
     """Cells and nodes of a net, about, without tracing it."""
     from lamella.stages.weaving import lay, lay_traced
 
-    with unit_first(surface), told_from(drawing_origin(surface)):
+    with unit_first(surface), reported_from(drawing_origin(surface)):
         if is_traced(surface, project.network.pattern):
             lines = lay_traced(surface, project)
             return lines.cells, lines.estimated_nodes

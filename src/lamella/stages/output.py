@@ -67,9 +67,9 @@ def write_files(results: Results, folder: Path, *, progress: Progress) -> None:
     heading = f"# {one_line(project.name)}, all defaults filled in by lamella {__version__}\n"
     put("project.toml", write_whole, (heading + moved(project, results.folder, folder).to_toml()).encode())
     if results.adjusted:
-        told = f"# {one_line(project.name)}, with the boundary as lamella {__version__} has adjusted it\n"
+        reported = f"# {one_line(project.name)}, with the boundary as lamella {__version__} has adjusted it\n"
         own = project.model_copy(update={"surface": results.adjusted.table})
-        put("adjusted.toml", write_whole, (told + moved(own, results.folder, folder).to_toml()).encode())
+        put("adjusted.toml", write_whole, (reported + moved(own, results.folder, folder).to_toml()).encode())
         unit = drawing_unit(results.adjusted.table, results.folder)
         if unit:
             loops = boundary_loops(results.adjusted.table, results.folder)
@@ -232,7 +232,7 @@ def _corners(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
 
     decimals = int(np.clip(1 - np.floor(np.log10(max(summary["surface"]["size"]))), 0, 3))
 
-    def told(value: float | None, form: str) -> str:
+    def reported(value: float | None, form: str) -> str:
         # nothing of the net is there
         return "–" if value is None else format(value, form)
 
@@ -240,8 +240,8 @@ def _corners(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
         (
             ", ".join(f"{x:.{decimals}f}" for x in row["point"]),
             f"{row['angle_deg']:.1f}",
-            told(row["node_angle_deviation_max_deg"], ".2g"),
-            told(use, ".2f"),
+            reported(row["node_angle_deviation_max_deg"], ".2g"),
+            reported(use, ".2f"),
         )
         for row, use in zip(rows, stress, strict=True)
     ]

@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lamella import __version__
-from lamella.base.drawing_origin import Origin, drawing_origin, told_from, with_drawn_points
+from lamella.base.drawing_origin import Origin, drawing_origin, reported_from, with_drawn_points
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, in_stage, silent
 from lamella.fabrication import Nesting, Parts, make_parts, nest
-from lamella.fabrication.rules import LEAST_END, LEAST_HUB, Rules, clear_hub, edge_scale
+from lamella.fabrication.defaults import default_end_distance, default_hub_radius, default_slot_width
+from lamella.fabrication.rules import Rules, clear_hub
 from lamella.files.own import SCHEMA
 from lamella.network.lattice.density import Density, choose_density
 from lamella.network.lattice.trace import trace_closed_form
@@ -180,15 +181,15 @@ def _planned(project: Project, until: str | None, folder: Path, progress: Progre
 def fill_in(project: Project, surface: Surface[Any]) -> Project:
     """The project with those defaults filled in that follow from its other values."""
     cut, strip = project.fabrication, project.lamella
-    slot_width = 2 * strip.thickness if cut.slot_width is None else cut.slot_width
+    slot_width = default_slot_width(strip.thickness) if cut.slot_width is None else cut.slot_width
     end_distance = cut.end_distance
     if end_distance is None:
-        end_distance = max(LEAST_END, 2 * slot_width / edge_scale(_normal_curvature(project, surface), strip.height))
+        end_distance = default_end_distance(slot_width, _normal_curvature(project, surface), strip.height)
     hub_radius = cut.hub_radius
     # how far apart layers on lamella curves are next to a singular node, the net decides
     if hub_radius is None and (strip.layers == 1 or strip.layer_curves != "lamella"):
         rays = max((2 * (order + 2) for order in surface.singular_orders()), default=0)
-        hub_radius = max(LEAST_HUB, clear_hub(rays, strip.layers, strip.offset, strip.thickness))
+        hub_radius = default_hub_radius(clear_hub(rays, strip.layers, strip.offset, strip.thickness))
     measures = {"slot_width": slot_width, "end_distance": float(end_distance), "hub_radius": hub_radius}
     filled = cut.model_copy(update=measures)
     update: dict[str, Any] = {"fabrication": filled}
@@ -271,7 +272,7 @@ def complete(
 
     Errors of the surface's elements are warned of as on a surface of a tolerance `finer` times smaller.
     """
-    with told_from(drawing_origin(planned[0])):
+    with reported_from(drawing_origin(planned[0])):
         return _complete(project, planned, clock, until=until, folder=folder, finer=finer)
 
 
@@ -307,7 +308,7 @@ def _complete(
                 )
             )
     network = lamellas = parts = nesting = others = None
-    told: list[Message] = []
+    reported: list[Message] = []
     woven: ElementNetwork | TracedNetwork | None = None
     if depth >= STAGES.index("network"):
         table = project.network
@@ -332,9 +333,9 @@ def _complete(
             figures["network"] = f = summary.network_summary(network, woven.requested) | woven.describe()
             if adjusted:
                 figures["network"]["adjustment"] = adjusted.figures
-            told = [with_keys(warning, "surface.tolerance") for warning in woven.warnings(finer)]
-            warnings += told
-        others = OtherCells(project, surface, network, len(told))
+            reported = [with_keys(warning, "surface.tolerance") for warning in woven.warnings(finer)]
+            warnings += reported
+        others = OtherCells(project, surface, network, len(reported))
         clock.stop(
             "network",
             f"{network.cells} cells: {f['lamellas']} lamellas, {f['nodes']:,} nodes, cell edge "

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lamella.base.drawing_origin import NOWHERE, measured_from, origin_figure, told_from
+from lamella.base.drawing_origin import NOWHERE, measured_from, origin_figure, reported_from
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
 from lamella.project.tables import FormFoundTable, MeshTable, Project
@@ -78,7 +78,7 @@ def film_of_table(table: FormFoundTable, folder: Path, progress: Progress = sile
     from lamella.surface.form_finding.find import find_film, notes_on, remarks_on
 
     table = with_origin(table, folder)
-    with told_from(table.origin or NOWHERE):
+    with reported_from(table.origin or NOWHERE):
         if table.origin:
             progress(Report.step(measured_from(table.origin)))
         loops = boundary_loops(table, folder)
@@ -122,7 +122,7 @@ def surface_of_mesh_table(table: MeshTable, folder: Path, progress: Progress = s
             table.most_nodes,
             table.deviation,
         )
-        with told_from(raw.origin):
+        with reported_from(raw.origin):
             if varying:
                 return varying_surface(raw, options, progress)
             with _open_ways(raw, options):

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from lamella.base.progress import Progress
-from lamella.network.charts.ground_of import ground_of
-from lamella.network.elements.element_network import Closing, ElementNetwork, LaidNet, lay_net
-from lamella.network.streamlines.applicability import told_mean_curvature
+from lamella.network.charts.charts_of import charts_of
+from lamella.network.elements.element_network import Closing, ElementNetwork, NetPlan, plan_net
+from lamella.network.streamlines.applicability import reported_mean_curvature
 from lamella.network.streamlines.streamline_network import TracedNetwork, traced_network
-from lamella.network.streamlines.streamline_plan import LaidLines, lay_lines
+from lamella.network.streamlines.streamline_plan import StreamlinePlan, plan_streamlines
 from lamella.project.tables import Project
 from lamella.stages.keys import keys
 from lamella.surface.element.surface import ElementSurface
@@ -21,11 +21,11 @@ MANNERS = ("umbilics, isothermic coordinates, lamellas", "lines from even seeds"
 
 
 @keys("network", surface="surface")
-def lay(surface: Surface[Any], project: Project, step: float | None, progress: Progress) -> LaidNet:
+def lay(surface: Surface[Any], project: Project, step: float | None, progress: Progress) -> NetPlan:
     """The lattice of a surface of elements; of a given spacing l0 (sqrt(m)) where it was adjusted."""
     assert isinstance(surface, ElementSurface)
     table = project.network
-    return lay_net(
+    return plan_net(
         surface,
         cells=table.cells,
         spacing=table.spacing,
@@ -39,7 +39,7 @@ def lay(surface: Surface[Any], project: Project, step: float | None, progress: P
 
 
 @keys("network", surface="surface")
-def weave(laid: LaidNet, project: Project) -> ElementNetwork:
+def weave(laid: NetPlan, project: Project) -> ElementNetwork:
     """The network of that lattice."""
     table = project.network
     # what is left of an adjusted net's misses is below what counts as closed
@@ -48,11 +48,11 @@ def weave(laid: LaidNet, project: Project) -> ElementNetwork:
 
 
 @keys("network", surface="surface")
-def lay_traced(surface: Surface[Any], project: Project) -> LaidLines:
+def lay_traced(surface: Surface[Any], project: Project) -> StreamlinePlan:
     """How lines that follow from no lattice are laid."""
     refuse_umbilic(surface)
     table = project.network
-    return lay_lines(ground_of(surface), table.pattern, cells=table.cells, spacing=table.spacing)
+    return plan_streamlines(charts_of(surface), table.pattern, cells=table.cells, spacing=table.spacing)
 
 
 @keys("network", surface="surface")
@@ -61,9 +61,9 @@ def trace(surface: Surface[Any], project: Project, progress: Progress) -> Traced
     refuse_umbilic(surface)
     table = project.network
     return traced_network(
-        ground_of(surface),
+        charts_of(surface),
         table.pattern,
-        mean_curvature=told_mean_curvature(surface, table.pattern),
+        mean_curvature=reported_mean_curvature(surface, table.pattern),
         cells=table.cells,
         spacing=table.spacing,
         minimum_length=table.minimum_length,

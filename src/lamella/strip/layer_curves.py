@@ -15,8 +15,8 @@ import numpy as np
 
 from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
-from lamella.network.charts.charts import Ground, Look
-from lamella.network.charts.ground_of import ground_of
+from lamella.network.charts.charts import Charts, ChartSample
+from lamella.network.charts.charts_of import charts_of
 from lamella.network.network import SINGULAR, Network
 from lamella.network.pattern import Pattern
 from lamella.strip.layers import Layers, at_stops, running
@@ -62,9 +62,9 @@ def lamella_layers(surface: Surface[Any], network: Network, offsets: Floats, len
         Strain by which marks are lengthened.
     """
     check_layer_curves(surface, network.pattern)
-    ground, start = ground_of(surface), _places(surface, network)
-    look = ground.look(start)
-    mu = np.sqrt(np.abs(look.deviator))
+    charts, start = charts_of(surface), _places(surface, network)
+    sample = charts.evaluate(start)
+    mu = np.sqrt(np.abs(sample.deviator))
     length = running(network, mu)
     # isothermic length for each length of mean distance, of each lamella
     unit = (length[network.sample_offsets[1:] - 1] / network.lengths)[
@@ -78,7 +78,7 @@ def lamella_layers(surface: Surface[Any], network: Network, offsets: Floats, len
     rates = np.empty((len(offsets), count))
     for row, offset in enumerate(offsets.tolist()):
         some = np.flatnonzero(np.abs(offset) * unit / np.maximum(mu, LEAST_MU) < NEAR_ZERO * near)
-        there = _moved(ground, start[some], sideways[some], offset * unit[some])
+        there = _moved(charts, start[some], sideways[some], offset * unit[some])
         points[row], normals[row], own = network.sample_points, network.sample_normals, mu.copy()
         points[row, some], normals[row, some] = there.position, there.normal
         own[some] = np.sqrt(np.abs(there.deviator))
@@ -118,33 +118,33 @@ def _near_zero(network: Network) -> Floats:
     return np.minimum(np.where(np.repeat(first, count), s, np.inf), np.where(np.repeat(last, count), left, np.inf))
 
 
-def _moved(ground: Ground, start: Places, towards: Floats, lengths: Floats) -> Look:
+def _moved(charts: Charts, start: Places, towards: Floats, lengths: Floats) -> ChartSample:
     """What is seen where lamellas that leave places (n,) towards directions (n, 3) have isothermic lengths (n,)."""
     where, step = start, (lengths / STEPS)[:, None]
     for _ in range(STEPS):
 
         def rate(local: Floats, element: Integers = where.element) -> Floats:
-            return _rate(ground.look(Places(element, local)), towards)
+            return _rate(charts.evaluate(Places(element, local)), towards)
 
         x = where.local
         k1 = rate(x)
         k2 = rate(x + step / 2 * k1)
         k3 = rate(x + step / 2 * k2)
         k4 = rate(x + step * k3)
-        where = ground.settle(Places(where.element, x + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)))
-    return ground.look(where)
+        where = charts.settle(Places(where.element, x + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)))
+    return charts.evaluate(where)
 
 
-def _rate(look: Look, towards: Floats) -> Floats:
+def _rate(sample: ChartSample, towards: Floats) -> Floats:
     """d(x, y) over the isothermic length of lamellas next to directions (n, 3), (n, 2)."""
     # the deviator turned to a lamella's direction has no real part
-    heading = np.exp(0.5j * (np.pi / 2 - np.angle(look.deviator)))
-    aim = (look.e_u * towards).sum(1) + 1j * (look.e_v * towards).sum(1)
+    heading = np.exp(0.5j * (np.pi / 2 - np.angle(sample.deviator)))
+    aim = (sample.e_u * towards).sum(1) + 1j * (sample.e_v * towards).sum(1)
     other = 1j * heading
     along, across = (np.real(np.conj(h) * aim) for h in (heading, other))
     chosen = np.where(np.abs(along) > np.abs(across), np.sign(along) * heading, np.sign(across) * other)
-    chosen /= np.maximum(np.sqrt(np.abs(look.deviator)), LEAST_MU)
-    return np.asarray(np.matmul(look.to_local, np.stack([chosen.real, chosen.imag], 1)[:, :, None])[:, :, 0])
+    chosen /= np.maximum(np.sqrt(np.abs(sample.deviator)), LEAST_MU)
+    return np.asarray(np.matmul(sample.to_local, np.stack([chosen.real, chosen.imag], 1)[:, :, None])[:, :, 0])
 
 
 def _slot_shifts(

@@ -193,8 +193,8 @@ def test_rates_are_those_of_films_found_anew(held: str) -> None:
     films = Films(freedom, LAMELLAS)
     net = films.first(5e-2)
     step = 0.35
-    rates = films.cell_rates(net, step)
-    size = np.abs(rates[:, :-1]).max()
+    sensitivities = films.cell_sensitivities(net, step)
+    size = np.abs(sensitivities[:, :-1]).max()
     here = net.cells(step)
     if held == "volume":
         film, h = net.equilibrium.film, net.surface.mean_curvature
@@ -212,20 +212,20 @@ def test_rates_are_those_of_films_found_anew(held: str) -> None:
         ahead = 0.02 * np.eye(freedom.count)[number]
         there = [films.moved(net, sign * ahead) for sign in (1, -1)]
         one, other = (matched(net.cells(step)) for net in there)
-        assert np.abs((one - other) / 0.04 - rates[:, number]).max() < 1e-2 * size
+        assert np.abs((one - other) / 0.04 - sensitivities[:, number]).max() < 1e-2 * size
         if held == "volume":
             change = (there[0].surface.mean_curvature - there[1].surface.mean_curvature) / 0.04
             assert change == pytest.approx(rising[number], abs=1e-2 * np.abs(rising).max())
     # the last column is the spacing's: cells are lengths over it
     change = (net.cells(step * 1.001) - here) / np.log(1.001)
-    assert np.abs(change - rates[:, -1]).max() < 1e-2 * np.abs(rates[:, -1]).max()
+    assert np.abs(change - sensitivities[:, -1]).max() < 1e-2 * np.abs(sensitivities[:, -1]).max()
 
 
 def closed(
     tables: dict[str, Any], *, folder: Path = HERE, pattern: Pattern = LAMELLAS
 ) -> tuple[AdjustedTable, ElementNetwork]:
     """What holds of every boundary that was adjusted."""
-    told: list[str] = []
+    reported: list[str] = []
     cells = tables["network"]["cells"]
     adjusted = adjust_table(
         table_of(tables),
@@ -233,9 +233,9 @@ def closed(
         cells=cells,
         spacing=None,
         pattern=pattern,
-        progress=lambda report: told.append(str(report)),
+        progress=lambda report: reported.append(str(report)),
     )
-    assert any("misses up to" in line for line in told)
+    assert any("misses up to" in line for line in reported)
     figures = adjusted.figures
     assert figures["missed_before"] > 5e-3
     assert figures["missed_after"] < 1e-3

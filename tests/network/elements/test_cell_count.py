@@ -9,7 +9,7 @@ import pytest
 
 from lamella import InputError
 from lamella.network.elements.cell_count import CellCount, curves_ending
-from lamella.network.elements.element_network import ElementNetwork, LaidNet, element_network, lay_net
+from lamella.network.elements.element_network import ElementNetwork, NetPlan, element_network, plan_net
 from lamella.network.isothermic.holonomy import holonomies
 from lamella.network.network import BOUNDARY
 from lamella.network.pattern import LAMELLAS, Pattern
@@ -71,8 +71,8 @@ def surface(name: str) -> ElementSurface:
 FILMS = ("regular 2", "four 4", "turned 3", "turned 4", "tube 0", "tube 3", "saddle 2", "disc 0")
 
 
-def laid(name: str, **density: float) -> LaidNet:
-    return lay_net(surface(name), **density)  # type: ignore[arg-type]
+def laid(name: str, **density: float) -> NetPlan:
+    return plan_net(surface(name), **density)  # type: ignore[arg-type]
 
 
 def median(net: ElementNetwork) -> float:
@@ -80,8 +80,8 @@ def median(net: ElementNetwork) -> float:
 
 
 def all_nodes(net: ElementNetwork) -> bool:
-    told = net.describe()
-    return bool(told["closed"]) and all(one["node"] for one in told["umbilics"])
+    reported = net.describe()
+    return bool(reported["closed"]) and all(one["node"] for one in reported["umbilics"])
 
 
 def check_spacing(name: str, share: int) -> None:
@@ -208,7 +208,7 @@ def test_count_of_kept_curves() -> None:
     """Of every second curve the count is that of the whole lattice."""
     kept = Pattern("lamellas", (2, 2))
     whole = laid("regular 2", cells=24)
-    assert lay_net(surface("regular 2"), cells=24, pattern=kept).lattice.step == whole.lattice.step
+    assert plan_net(surface("regular 2"), cells=24, pattern=kept).lattice.step == whole.lattice.step
     count = CellCount.of(whole.iso, holonomies(whole.iso), kept)
     assert count.follows_period(kept)
     assert count.step(24, kept) == whole.lattice.step

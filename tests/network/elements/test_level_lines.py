@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from lamella import InputError
-from lamella.network.elements.level_lines import SmallTriangles, level_chains
+from lamella.network.elements.level_chains import level_chains
+from lamella.network.elements.small_triangles import SmallTriangles
 
 
 @pytest.mark.parametrize("far", [1e12, 1e18])

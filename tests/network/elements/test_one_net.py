@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 
 import lamella
 from lamella import Catenoid, Cylinder, Enneper, Helicoid, Scherk
-from lamella.network.elements.element_network import element_network, lay_net
+from lamella.network.elements.element_network import element_network, plan_net
 from lamella.network.elements.lattice import choose_lattice
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
 from lamella.surface.boundary import make_loop
@@ -378,7 +378,7 @@ def test_density_between_several_odd_umbilics_goes_with_the_surface() -> None:
     for name in (None, "turned", "mirrored", "in millimetres"):
         move = MOTIONS[name] if name else None
         scale = move.scale if move else 1.0
-        laid = lay_net(film(Case((rim,), False, 0.05, 12), motion=move), cells=12)
+        laid = plan_net(film(Case((rim,), False, 0.05, 12), motion=move), cells=12)
         assert laid.umbilics.orders.tolist() == [1, 1, 1]
         pick = partial(choose_lattice, laid.iso, laid.around, seams=False)
         lattices = [pick(None, d * scale) for d in (0.3, 0.4, 0.5, 0.62, 0.8)] + [pick(c, None) for c in (9, 12, 16)]

@@ -50,10 +50,10 @@ def test_a_singular_node_next_to_the_rim_has_all_its_rays(inside) -> None:
 
 
 @pytest.mark.parametrize("way", [1.0, 1.0j])
-def test_how_an_umbilic_moves_from_the_rim(way) -> None:
+def test_how_an_umbilic_moves_from_the_rim(direction) -> None:
     """To first order, against the zero of a surface that differs a little: towards the middle, and along the rim."""
     zero, off = 0.9 * np.exp(0.4j), 2e-3
-    surface, moved = (weierstrass([zero - move * way * np.exp(0.4j)], rings=10) for move in (0.0, off))
+    surface, moved = (weierstrass([zero - move * direction * np.exp(0.4j)], rings=10) for move in (0.0, off))
     depths = UmbilicDepths.of(surface)
     rim = surface.nodes[np.unique(surface.connectivity.rim_nodes)]
     position = surface.frames(moved.umbilics.places).position

@@ -11,16 +11,16 @@ import pytest
 
 from lamella import Enneper
 from lamella.network.elements.element_network import element_network
-from lamella.network.elements.integer_grid_map import CellMap
+from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.isothermic import seamless_transitions
 from lamella.network.isothermic.between_umbilics import between_umbilics, keeps_apart
 from lamella.network.isothermic.cut import cut_edges
 from lamella.network.isothermic.holonomy import around_vertex, holonomies, tip_vertices, vertex_relations
-from lamella.network.isothermic.integer_transitions import WholeShifts, _closest, _even, _kernel, _reduced
-from lamella.network.isothermic.integration_mesh import NetMesh, make_net_mesh
+from lamella.network.isothermic.integer_transitions import IntegerTransitions, _closest, _even, _kernel, _reduced
+from lamella.network.isothermic.integration_mesh import IntegrationMesh, make_integration_mesh
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.isothermic.lattice_origin import lattice_origin
-from lamella.network.isothermic.match_transitions import Carrier
+from lamella.network.isothermic.match_transitions import TransitionMatcher
 from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.network import SEAM, SINGULAR
 from lamella.network.pattern import LAMELLAS
@@ -39,11 +39,11 @@ STEP = 0.35
 def cut_anew(surface: ElementSurface, monkeypatch: pytest.MonkeyPatch, seed: int) -> Isothermic:
     """Coordinates on a surface whose cut goes other ways: as if its edges had other lengths."""
     umbilics = surface.umbilics
-    mesh = make_net_mesh(surface, umbilics)
+    mesh = make_integration_mesh(surface, umbilics)
     odd = mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)]
     rng = np.random.default_rng(seed)
 
-    def other_ways(mesh: NetMesh, odd: np.ndarray) -> np.ndarray:
+    def other_ways(mesh: IntegrationMesh, odd: np.ndarray) -> np.ndarray:
         waves = sum(
             np.sin(mesh.nodes @ rng.normal(0, 8 / np.ptp(mesh.nodes, axis=0)) + rng.uniform(0, 6))[:, None]
             * rng.normal(0, 1.0, 3)
@@ -58,7 +58,7 @@ def cut_anew(surface: ElementSurface, monkeypatch: pytest.MonkeyPatch, seed: int
 
 
 def cells_of(iso: Isothermic) -> np.ndarray:
-    return CellMap.of(iso, lattice_origin(iso, STEP, LAMELLAS), STEP).shifts
+    return IntegerGridMap.of(iso, lattice_origin(iso, STEP, LAMELLAS), STEP).shifts
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def test_near_whole_shifts_do_not_depend_on_the_cut(
     """The energies of the corrections to the nearest closed nets are properties of the surface."""
     first = cut_anew(films[number], monkeypatch, 0)
     energy = (lambda iso: iso.dirichlet) if norm == "plain" else (lambda iso: iso.gram)
-    whole = WholeShifts.of(first, energy(first))
+    whole = IntegerTransitions.of(first, energy(first))
     shifts = cells_of(first)
     near = whole.nearest(shifts, 6)
     sizes = [whole.size(one - shifts) for one in near]
@@ -87,7 +87,7 @@ def test_near_whole_shifts_do_not_depend_on_the_cut(
     different = 0
     for seed in (1, 2, 3):
         other = cut_anew(films[number], monkeypatch, seed)
-        there = WholeShifts.of(other, energy(other))
+        there = IntegerTransitions.of(other, energy(other))
         assert there.basis.shape[0] == whole.basis.shape[0]
         assert np.linalg.det(there.energy) == pytest.approx(np.linalg.det(whole.energy), rel=2e-2)
         here = cells_of(other)
@@ -96,10 +96,10 @@ def test_near_whole_shifts_do_not_depend_on_the_cut(
         different += ends[0] != ends[1]
         # the same one, named by the other cut's pieces, and back
         for one, size in zip(near, sizes, strict=True):
-            named = Carrier(first, other, there).whole_shifts(one - shifts, here)
+            named = TransitionMatcher(first, other, there).integer_transitions(one - shifts, here)
             assert named is not None
             assert there.size(named - here) == pytest.approx(size, rel=1e-2, abs=1e-4)
-            back = Carrier(other, first, whole).whole_shifts(named - here, shifts)
+            back = TransitionMatcher(other, first, whole).integer_transitions(named - here, shifts)
             assert back is not None
             assert np.abs(back - one).max() < 1e-9
     assert different
@@ -141,7 +141,7 @@ def test_nearest_whole_shifts_close_the_net(
 ) -> None:
     iso = cut_anew(films[number], monkeypatch, 0)
     shifts = cells_of(iso)
-    for whole in WholeShifts.of(iso, iso.gram).nearest(shifts, 4):
+    for whole in IntegerTransitions.of(iso, iso.gram).nearest(shifts, 4):
         assert np.array_equal(whole, np.round(whole))
         for factors in vertex_relations(iso.mesh, iso.transitions, iso.across, iso.odd).values():
             assert factors @ whole == 0
@@ -172,7 +172,7 @@ def test_a_net_around_a_hole_that_was_an_umbilic(closing: Literal["open", "round
     surface = on_map(
         position, zeta[:, ::-1], faces[:, ::-1], 4, 0.0, lambda x: (np.linalg.norm(x, axis=1) < inner).astype(np.int64)
     )
-    mesh = make_net_mesh(surface, surface.umbilics)
+    mesh = make_integration_mesh(surface, surface.umbilics)
     iso = integrate(mesh, np.zeros(0, np.int64))
     assert not len(surface.umbilics.orders)
     assert [one.sign for one in holonomies(iso)] == [-1]
@@ -220,7 +220,7 @@ def test_easiest_whole_shifts_are_those_of_least_effort() -> None:
     """Of all whole shifts around, by the smallest parameters that make up for each."""
     rng = np.random.default_rng(2)
     basis = np.array([[1, 0, 1], [0, 2, 1]])
-    whole = WholeShifts(np.array([0, 1 + 1j, 0]), basis, np.eye(2))
+    whole = IntegerTransitions(np.array([0, 1 + 1j, 0]), basis, np.eye(2))
     rates = (rng.normal(size=(2, 5)) + 1j * rng.normal(size=(2, 5))).T @ basis
     shifts = (rng.normal(size=2) + 1j * rng.normal(size=2)) @ basis + whole.offset
     places = np.array(list(product(range(-6, 7), repeat=4)))

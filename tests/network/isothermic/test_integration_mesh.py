@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lamella.network.isothermic.integration_mesh import make_net_mesh
-from lamella.network.isothermic.umbilic_patch import RINGS, rosette
+from lamella.network.isothermic.integration_mesh import make_integration_mesh
+from lamella.network.isothermic.umbilic_patch import RINGS, umbilic_patch
 from lamella.surface.element.bisect import bisect, whole
 from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.quadrature import triangle_rule
@@ -18,7 +18,7 @@ from surface.element.exact_elements import catenoid_patch
 def test_rosette_is_a_disc_of_wedges_between_the_principal_lines(order: int) -> None:
     """Where D = e^(i a) z^m the forms sqrt(D) dz are real or imaginary along the edges from the zero."""
     argument, radius = 0.7, 2.0
-    rose = rosette(order, argument, radius, 4)
+    rose = umbilic_patch(order, argument, radius, 4)
     wedges = 2 * (order + 2)
     assert len(rose.faces) == wedges * RINGS**2
     ends = np.sort(np.stack([rose.faces, np.roll(rose.faces, -1, 1)], 2).reshape(-1, 2), 1)
@@ -41,7 +41,7 @@ def test_rosette_is_a_disc_of_wedges_between_the_principal_lines(order: int) -> 
 @pytest.mark.parametrize("order", [1, 2])
 def test_coordinates_are_polynomials_on_a_rosette(order: int) -> None:
     """w = z^(1 + m/2) through the nodes of the elements is w everywhere on them, up to a sign between elements."""
-    rose = rosette(order, 0.0, 1.0, 4)
+    rose = umbilic_patch(order, 0.0, 1.0, 4)
     basis = lagrange(4)
     local = np.random.default_rng(3).dirichlet([1, 1, 1], 40)[:, 1:]
     table = basis.basis(local)
@@ -92,7 +92,7 @@ def test_bisection_keeps_the_surface_and_bounds_the_angles() -> None:
 def test_net_mesh_covers_the_surface(name: str) -> None:
     """The elements around umbilics are as large as those they replace; nothing is folded."""
     _, surface = FORMS[name]()
-    mesh = make_net_mesh(surface, surface.umbilics)
+    mesh = make_integration_mesh(surface, surface.umbilics)
     basis = mesh.connectivity.basis
     points, weights = triangle_rule(8)
     corners = mesh.nodes[mesh.connectivity.elements]

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from lamella.network.isothermic.holonomy import holonomies
-from lamella.network.isothermic.integration_mesh import make_net_mesh
+from lamella.network.isothermic.integration_mesh import make_integration_mesh
 from lamella.network.isothermic.isothermic import Isothermic, sectors
 from lamella.network.isothermic.poisson import Poisson
 from lamella.network.isothermic.recut import cut_straight
@@ -51,7 +51,7 @@ def cut_twice(name: str) -> tuple[ElementSurface, Isothermic, Isothermic]:
     loops = tuple(make_loop(f"loop {k}", closed_spline(points)) for k, points in enumerate(curves))
     surface = find_film(loops, 0.0, tolerance=2e-2).surface("form-found")
     umbilics = surface.umbilics
-    mesh = make_net_mesh(surface, umbilics)
+    mesh = make_integration_mesh(surface, umbilics)
     iso = integrate(mesh, mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)])
     return surface, iso, cut_straight(iso, surface)
 
@@ -128,6 +128,6 @@ def test_what_has_no_cut_stays_as_it_is() -> None:
     t = TAU * np.arange(16) / 16
     saddle = np.column_stack([3 * np.cos(t), 3 * np.sin(t), 0.8 * np.cos(2 * t)])
     surface = find_film((make_loop("rim", closed_spline(saddle)),), 0.0, tolerance=2e-2).surface("form-found")
-    iso = integrate(make_net_mesh(surface, surface.umbilics), np.zeros(0, np.int64))
+    iso = integrate(make_integration_mesh(surface, surface.umbilics), np.zeros(0, np.int64))
     assert not iso.transitions
     assert cut_straight(iso, surface) is iso

@@ -99,12 +99,17 @@ def test_asymptotic_lines_of_a_hyperbolic_paraboloid(tmp_path: Path) -> None:
             figures = ruled(network)
             assert figures["normal_curvature_error_rel_max"] < 1e-2
             assert figures["family_sign_errors"] == 0
-            told = results.summary["network"]
-            assert told["normal_curvature_deviation_p95"] < 2e-3
-            assert told["node_angle_min_deg"] <= told["node_angle_mean_deg"] <= told["node_angle_max_deg"] <= 90
+            reported = results.summary["network"]
+            assert reported["normal_curvature_deviation_p95"] < 2e-3
+            assert (
+                reported["node_angle_min_deg"]
+                <= reported["node_angle_mean_deg"]
+                <= reported["node_angle_max_deg"]
+                <= 90
+            )
             # cos of the angle of the rulings at (x, y): x y / sqrt((16 + x^2) (16 + y^2)), at the outermost nodes 1.8
             most = np.degrees(np.arccos(1.8**2 / (16 + 1.8**2)))
-            assert told["node_angle_min_deg"] == pytest.approx(most, abs=0.1)
+            assert reported["node_angle_min_deg"] == pytest.approx(most, abs=0.1)
     assert np.log(errors[0] / errors[2]) / np.log(4) > 2.5
 
 
@@ -114,14 +119,14 @@ def test_lamellas_less_straight_than_promised_are_told_of(tmp_path: Path) -> Non
     for n, warned in ((8, True), (40, False)):
         write_grid(tmp_path / "m.obj", hypar, (-2, 2), (-2, 2), n, n)
         results = run_on(tmp_path / "m.obj", normal_curvature=0.0, cells=10)
-        told, scale = results.summary["network"], results.summary["surface"]["curvature_scale"]
+        reported, scale = results.summary["network"], results.summary["surface"]["curvature_scale"]
         messages = [m for m in results.summary["warnings"] if "the normal curvature of the lamellas" in m]
-        assert bool(messages) == warned == (told["normal_curvature_deviation_max"] > 2e-3 * scale)
+        assert bool(messages) == warned == (reported["normal_curvature_deviation_max"] > 2e-3 * scale)
         figures = ruled(results.network)
-        assert figures["normal_curvature_error_p95"] <= told["normal_curvature_deviation_p95"]
+        assert figures["normal_curvature_error_p95"] <= reported["normal_curvature_deviation_p95"]
         assert warned or figures["normal_curvature_error_p95"] < 1e-3 * figures["curvature_scale"]
         if warned:
-            most, usual = (told[f"normal_curvature_deviation_{key}"] for key in ("max", "p95"))
+            most, usual = (reported[f"normal_curvature_deviation_{key}"] for key in ("max", "p95"))
             assert f"off by up to {most:.2g} 1/m, {most / scale:.1e} of the curvature scale" in messages[0]
             assert f"at 95 % of the samples by {usual / scale:.1e}" in messages[0]
 

@@ -17,8 +17,8 @@ from conftest import run_of_example
 from lamella import Enneper, Helicoid, InputError, Scherk, parse_project
 from lamella.files.write.network_json import network_bytes
 from lamella.network.cell_sizes import large_cells
-from lamella.network.charts.element_charts import ElementGround
-from lamella.network.charts.plane_charts import PlaneGround
+from lamella.network.charts.element_charts import ElementCharts
+from lamella.network.charts.plane_charts import PlaneCharts
 from lamella.network.network import BOUNDARY, REGULAR, Network
 from lamella.network.pattern import Pattern
 from lamella.network.streamlines.direction_field import LEAST_ANGLE, LineField
@@ -34,9 +34,9 @@ from validation.measure_network import measure
 
 def ruled(network: Network) -> dict[str, Any]:
     """The ruler's figures, against the normal curvature that was asked for."""
-    told = json.loads(network_bytes(network, name="x", version="0"))
-    told["surface"]["mean_curvature"] = told.get("normal_curvature", told["surface"]["mean_curvature"])
-    return measure(told)
+    reported = json.loads(network_bytes(network, name="x", version="0"))
+    reported["surface"]["mean_curvature"] = reported.get("normal_curvature", reported["surface"]["mean_curvature"])
+    return measure(reported)
 
 
 def lamellas(network: Network, family: str) -> list[np.ndarray]:
@@ -65,7 +65,7 @@ def is_sound(network: Network) -> None:
 def on_catenoid(count: int, cells: int = 8) -> TracedNetwork:
     surface = on_map(catenoid_map, *shaken_grid((0, 2), (-1, 1), count, count), 4, 0.0)
     return traced_network(
-        ElementGround(surface), Pattern(normal_curvature=0.0), mean_curvature=0.0, cells=cells, minimum_length=0
+        ElementCharts(surface), Pattern(normal_curvature=0.0), mean_curvature=0.0, cells=cells, minimum_length=0
     )
 
 
@@ -95,20 +95,22 @@ def test_the_net_of_a_film_is_that_of_its_lattice() -> None:
     surface, lattice = results.surface, results.network
     assert isinstance(surface, ElementSurface)
     size = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
-    ground, field = ElementGround(surface), LineField(0.0, 1.0)
+    charts, field = ElementCharts(surface), LineField(0.0, 1.0)
     regular = np.flatnonzero(lattice.node_kinds == REGULAR)[::17]
     seeds, _ = surface.closest(lattice.node_points[regular])
     owner = lattice.stop_owner
     for family in "AB":
-        flow = finished(trace(ground, field, seeds, np.full(len(regular), family == "A"), step=0.1, longest=5 * size))
+        streamlines = finished(
+            trace(charts, field, seeds, np.full(len(regular), family == "A"), step=0.1, longest=5 * size)
+        )
         mine = np.flatnonzero(lattice.families[owner] == family)
         line_of = dict(zip(lattice.stop_nodes[mine].tolist(), owner[mine].tolist(), strict=True))
         for k, node in enumerate(regular.tolist()):
             line = line_of[node]
             samples = lattice.sample_points[lattice.sample_offsets[line] : lattice.sample_offsets[line + 1]]
-            assert abs(flow.lengths[k] - lattice.lengths[line]) < 2e-4 * size
-            at = np.linspace(0, 1, 2001) * flow.lengths[k]
-            traced = flow.at(np.full(len(at), k), at)[1].position
+            assert abs(streamlines.lengths[k] - lattice.lengths[line]) < 2e-4 * size
+            at = np.linspace(0, 1, 2001) * streamlines.lengths[k]
+            traced = streamlines.at(np.full(len(at), k), at)[1].position
             apart = np.linalg.norm(samples[:, None] - traced, axis=2).min(1)
             # the nearest of points 5e-4 of the line apart
             assert apart.max() < 3e-4 * size
@@ -145,12 +147,14 @@ def test_lines_of_a_helicoid() -> None:
 
 def test_the_order_of_tracing() -> None:
     """Runge and Kutta's error falls by the fourth power of the step: where a line ends, against one traced finely."""
-    ground, field = PlaneGround(Helicoid(4.0, 0.5, 3.0, 0.5)), LineField(0.05, 1.0)
+    charts, field = PlaneCharts(Helicoid(4.0, 0.5, 3.0, 0.5)), LineField(0.05, 1.0)
     seeds = Places(np.zeros(3, np.int64), np.array([[1.2, 0.6], [1.5, 1.2], [1.8, 2.0]]))
 
     def ends(step: float) -> np.ndarray:
-        flow = finished(trace(ground, field, seeds, np.array([True, False, True]), step=step, longest=9.0))
-        return np.concatenate([flow.at(np.arange(3), s)[1].position for s in (0 * flow.lengths, flow.lengths)])
+        streamlines = finished(trace(charts, field, seeds, np.array([True, False, True]), step=step, longest=9.0))
+        return np.concatenate(
+            [streamlines.at(np.arange(3), s)[1].position for s in (0 * streamlines.lengths, streamlines.lengths)]
+        )
 
     exact = ends(0.002)
     errors = [np.linalg.norm(ends(step) - exact, axis=1).max() for step in (0.03, 0.015)]
@@ -185,10 +189,10 @@ def test_the_median_told_is_that_of_the_summary(density: dict[str, Any]) -> None
     table = {"surface": {"kind": "scherk", "extent": 1.25, "scale": 3.0}}
     project = parse_project(table | {"network": {"normal_curvature": 0.02, "minimum_length": 1.5} | density})
     lines: list[str] = []
-    told = compute(project, until="network", progress=lambda report: lines.append(str(report))).summary["network"]
+    reported = compute(project, until="network", progress=lambda report: lines.append(str(report))).summary["network"]
     medians = [line.split("median cell edge ")[1] for line in lines if "median cell edge" in line]
-    assert f"{told['cell_edge_median']:.3g} m" in medians
-    assert medians[-1] == f"{told['cell_edge_median']:.3g} m" or "spacing" in density
+    assert f"{reported['cell_edge_median']:.3g} m" in medians
+    assert medians[-1] == f"{reported['cell_edge_median']:.3g} m" or "spacing" in density
 
 
 def test_where_directions_stop_being_real() -> None:
@@ -203,20 +207,20 @@ def test_where_directions_stop_being_real() -> None:
         ),
         until="network",
     )
-    network, told = results.network, results.summary["network"]
+    network, reported = results.network, results.summary["network"]
     radius = np.hypot(*network.node_points[:, :2].T)
     last = c * np.sqrt(5 * np.cos(np.radians(LEAST_ANGLE)) / c - 1)
     assert radius.max() == pytest.approx(last, rel=1e-4)
     inner = (np.abs(radius - last) < 1e-3 * last) & (network.node_kinds == BOUNDARY)
-    assert told["inner_ends"] == inner.sum()
+    assert reported["inner_ends"] == inner.sum()
     # the area between two radii: c^2 (U + sinh U cosh U) pi
     u = np.arcsinh(np.array([4.0, np.sqrt(5 / c - 1) * c, last]) / c)
     whole, real, used = u + np.sinh(u) * np.cosh(u)
-    assert told["unreal_area_share"] == pytest.approx(1 - real / whole, abs=0.01)
-    assert told["flat_area_share"] == pytest.approx((real - used) / whole, abs=0.01)
+    assert reported["unreal_area_share"] == pytest.approx(1 - real / whole, abs=0.01)
+    assert reported["flat_area_share"] == pytest.approx((real - used) / whole, abs=0.01)
     (message,) = [m for m in results.summary["warnings"] if "no direction" in m]
-    assert f"{told['unreal_area_share']:.1%} of the surface has no direction of normal curvature 0.2 1/m" in message
-    assert told["node_angle_min_deg"] >= LEAST_ANGLE - 1e-6
+    assert f"{reported['unreal_area_share']:.1%} of the surface has no direction of normal curvature 0.2 1/m" in message
+    assert reported["node_angle_min_deg"] >= LEAST_ANGLE - 1e-6
 
 
 @pytest.mark.parametrize(("unreal", "flat", "parts"), [(8e-4, 8e-4, 0), (8e-4, 2e-3, 1), (2e-3, 2e-3, 2)])

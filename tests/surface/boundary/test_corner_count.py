@@ -54,7 +54,7 @@ def test_a_zigzag() -> None:
     assert len(loop.corners) == int(kept[1]) == 36
 
 
-class Told(Exception):
+class Reported(Exception):
     """Ends a search as soon as it has said what is looked for."""
 
 
@@ -64,22 +64,22 @@ def test_what_many_corners_cost_is_said_at_once(count: int, teeth: float) -> Non
     boundary = [{"points": ellipse(count, teeth).tolist(), "interpolation": "polyline"}]
     project = parse_project({"surface": {"kind": "form-found", "boundary": boundary}})
     for start in (check_project, compute):
-        told: list[str] = []
+        reported: list[str] = []
 
-        def tell(report: Report, told: list[str] = told) -> None:
-            told.append(str(report))
+        def tell(report: Report, reported: list[str] = reported) -> None:
+            reported.append(str(report))
             if "corners" in report.text:
-                raise Told
+                raise Reported
 
-        with pytest.raises(Told):
+        with pytest.raises(Reported):
             start(project, progress=tell)
-        assert not any("nodes of order" in line for line in told)
-        found = re.search(r"has (\d+) corners.* about ([\d,]+) to ([\d,]+) nodes .* about (\d+) min", told[-1])
+        assert not any("nodes of order" in line for line in reported)
+        found = re.search(r"has (\d+) corners.* about ([\d,]+) to ([\d,]+) nodes .* about (\d+) min", reported[-1])
         assert found
         corners, least, most, minutes = (int(number.replace(",", "")) for number in found.groups())
         assert (corners, least, most) == (count, 1000 * count, 2700 * count)
         assert minutes == max(round(2.7 * count / 60), 1)
-        assert ("most_nodes" in told[-1]) == (most > 100_000)
+        assert ("most_nodes" in reported[-1]) == (most > 100_000)
 
 
 @pytest.mark.parametrize(
@@ -93,9 +93,9 @@ def test_what_takes_less_is_found_in_seconds(interpolation: str, surface: dict[s
     """Followed, what is said to take less is not said again, and the film takes fewer nodes than were said."""
     boundary = [{"points": ellipse(36).tolist(), "interpolation": interpolation}]
     project = parse_project({"surface": {"kind": "form-found", "boundary": boundary, **surface}})
-    told: list[str] = []
-    found = make_surface(project, progress=lambda report: told.append(str(report)))
-    assert not any("corners" in line for line in told)
+    reported: list[str] = []
+    found = make_surface(project, progress=lambda report: reported.append(str(report)))
+    assert not any("corners" in line for line in reported)
     assert len(found.nodes) < 36 * 1000  # type: ignore[attr-defined]
 
 

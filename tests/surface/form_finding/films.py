@@ -9,7 +9,7 @@ from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.chart import make_chart
 from lamella.surface.form_finding.film import Film, harmonic_over_itself
 from lamella.surface.form_finding.meshing import start_film, with_sizes
-from lamella.surface.form_finding.newton import Equilibrium, find_equilibrium
+from lamella.surface.form_finding.newton import Equilibrium, FixedH, find_equilibrium
 from lamella.surface.form_finding.redistribution import redistributed
 from lamella.surface.remesh.remesh import TriangleMesh
 from lamella.surface.remesh.size_field import SizeField
@@ -24,8 +24,8 @@ def start(loops, order: int) -> Film:
 def on_sizes(film: Film, size: float, mean_curvature: float = 0.0, *, stable: bool = True) -> Equilibrium:
     """A film found again on elements of an edge length (m)."""
     even = SizeField(film.nodes[:1], np.array([size]), size)
-    film = find_equilibrium(with_sizes(film, even), mean_curvature, stable=stable).film
-    return find_equilibrium(redistributed(film, mean_curvature), mean_curvature, stable=stable)
+    film = find_equilibrium(with_sizes(film, even), mean_curvature, FixedH(stable)).film
+    return find_equilibrium(redistributed(film, mean_curvature), mean_curvature, FixedH(stable))
 
 
 def surface(film: Film, mean_curvature: float = 0.0) -> ElementSurface:

@@ -9,7 +9,7 @@ import pytest
 
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.family import member_of
-from lamella.surface.form_finding.newton import NoFilmError, Way, find_equilibrium
+from lamella.surface.form_finding.newton import Along, FixedH, NoFilmError, Volume, find_equilibrium
 from surface.form_finding.exact_patches import CatenoidPatch, SphereCap, UnduloidPatch, catenoid_neck, ring
 from surface.form_finding.films import disc_film, on_sizes, random_places, start, surface, tube
 
@@ -36,7 +36,7 @@ def test_given_volume_is_enclosed_and_its_mean_curvature_found() -> None:
     volume = np.pi * h * (3 + h**2) / 6
     flat = disc_film(4, 5)
     # the normal points up: a bowl below has H > 0 and takes volume away from above
-    found = find_equilibrium(flat, 0.0, volume=-volume, stable=False)
+    found = find_equilibrium(flat, 0.0, Volume(-volume))
     assert found.mean_curvature == pytest.approx(2 * h / (1 + h**2), rel=1e-5)
     assert enclosed_volume(found.film) == pytest.approx(-volume, rel=1e-8)
     assert found.film.nodes[:, 2].min() == pytest.approx(-h, abs=1e-4)
@@ -92,7 +92,9 @@ def test_unstable_film_is_kept_when_stability_is_not_asked_for() -> None:
     distance = 1.2
     neck = catenoid_neck(distance, thin=True)
     u = distance / 2 / neck
-    kept = find_equilibrium(tube(lambda s: (neck * np.cosh(s), neck * s), np.linspace(-u, u, 13), 16, 4), stable=False)
+    kept = find_equilibrium(
+        tube(lambda s: (neck * np.cosh(s), neck * s), np.linspace(-u, u, 13), 16, 4), condition=FixedH(stable=False)
+    )
     assert kept.negative == 1
     assert kept.steps <= 3
     x = kept.film.nodes
@@ -106,7 +108,7 @@ def test_a_way_along_the_family_passes_the_fold() -> None:
     for _ in range(6):
         member = member_of(film, curvature)
         ahead = member if member.growth < 0 else member.backwards()
-        step = find_equilibrium(film, curvature, way=Way(ahead.weights, 0.25), stable=False)
+        step = find_equilibrium(film, curvature, Along(ahead.weights, 0.25))
         moves = np.array(step.moves)
         assert all(b < 30 * a**2 for a, b in pairwise(moves) if a < 0.02 and b > 1e-9), moves
         assert ((step.film.nodes - film.nodes) * ahead.weights).sum() == pytest.approx(0.25, rel=1e-9)

@@ -40,7 +40,7 @@ def judged(seed: int) -> str:
     except InputError as error:
         refusal = error
     else:
-        told = f"deviation {found.deviation:.1e}, {found.equilibrium.film.connectivity.node_count} nodes"
+        reported = f"deviation {found.deviation:.1e}, {found.equilibrium.film.connectivity.node_count} nodes"
         film, surface = found.equilibrium.film, found.surface("found")
         assert np.isfinite(surface.nodes).all(), seed
         assert found.deviation <= TOLERANCE, (seed, found.deviation)
@@ -70,17 +70,17 @@ def judged(seed: int) -> str:
             assert max(off_rim) <= step, (seed, loop.name)
     if refusal is not None:
         assert seed not in FOUND, (seed, "was found before", str(refusal))
-        told = f"refused: {refusal.message}"
+        reported = f"refused: {refusal.message}"
         assert refusal.remedy, seed
-        assert "nan" not in str(refusal), (seed, told)
+        assert "nan" not in str(refusal), (seed, reported)
     seconds = time.perf_counter() - start
     assert seconds < LONGEST, (seed, seconds)
-    return f"{seed}: {seconds:.1f} s, {case.told}: {told}"
+    return f"{seed}: {seconds:.1f} s, {case.reported}: {reported}"
 
 
 def test_draw_is_varied_and_the_same_every_time() -> None:
     cases = [draw_case(seed) for seed in range(40)]
-    assert {case.told.split(",")[0] for case in cases} == {"star", "waving", "free", "winding", "polygon"}
+    assert {case.reported.split(",")[0] for case in cases} == {"star", "waving", "free", "winding", "polygon"}
     assert {len(case.loops) for case in cases} == {1, 2, 3, 4}
     assert 0.2 < np.mean([case.mean_curvature == 0 for case in cases]) < 0.7
     again = draw_case(7)

@@ -17,7 +17,7 @@ from lamella.surface.element.geometry import smooth_normals
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.find import find_film
 from lamella.surface.form_finding.meshing import straightened, with_sizes
-from lamella.surface.form_finding.newton import find_equilibrium
+from lamella.surface.form_finding.newton import Volume, find_equilibrium
 from lamella.surface.form_finding.variation import Variation
 from lamella.surface.remesh.size_field import SizeField
 from surface.form_finding.exact_patches import catenoid_neck, ring
@@ -115,7 +115,7 @@ def test_contact_angle_and_radius_converge(order) -> None:
         film = with_sizes(film, even)
         for _ in range(2):
             film = straightened(film)
-            found = find_equilibrium(film, -0.8, volume=volume - enclosed_volume(film), stable=False)
+            found = find_equilibrium(film, -0.8, Volume(volume - enclosed_volume(film)))
             film = found.film
         _, cosine = on_plane(film)
         angle.append(np.sqrt(np.mean(cosine**2)))

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import lpmv
 
-from lamella.surface.form_finding.newton import find_equilibrium
+from lamella.surface.form_finding.newton import FixedH, find_equilibrium
 from lamella.surface.form_finding.stability import stability_of
 from surface.form_finding.exact_patches import catenoid_neck
 from surface.form_finding.films import disc_film, tube
@@ -97,7 +97,7 @@ def test_spherical_cap() -> None:
 def test_cylinder_turns_unstable_at_pi_times_its_radius(factor, sign) -> None:
     """At fixed H (DESIGN section 9): Newton's method stays on the cylinder on either side."""
     length = factor * np.pi
-    found = find_equilibrium(cylinder(length, 4, 8), 0.5, stable=False)
+    found = find_equilibrium(cylinder(length, 4, 8), 0.5, FixedH(stable=False))
     radius = np.hypot(found.film.nodes[:, 0], found.film.nodes[:, 1])
     assert np.abs(radius - 1).max() < 1e-4
     result = stability_of(found.film, 0.5)
@@ -118,7 +118,7 @@ def test_cylinder_at_pi_times_its_radius_is_at_the_fold() -> None:
 def test_catenoids_between_rings(distance, thin) -> None:
     """Both films: the thick one is stable, the thin one has one negative eigenvalue, far from nought when very thin."""
     film = catenoid(distance, thin=thin, rows=25 if thin else 9)
-    found = find_equilibrium(film, stable=False)
+    found = find_equilibrium(film, condition=FixedH(stable=False))
     result = stability_of(found.film, 0.0)
     exact = catenoid_eigenvalue(distance, thin=thin)
     assert np.sign(exact) == (-1 if thin else 1)

@@ -135,7 +135,7 @@ def test_a_tolerance_that_the_nodes_keep() -> None:
 
 
 def test_elements_of_a_low_order() -> None:
-    """Told by make_surface; a check on coarse elements names it as left to the run."""
+    """Reported by make_surface; a check on coarse elements names it as left to the run."""
     tables = film([ring(0, 3.0), ring(3.0, 3.0)], order=2, most_nodes=3000)
     tables["surface"]["tolerance"] = 2e-3
     with pytest.raises(InputError) as error:

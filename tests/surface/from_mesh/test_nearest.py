@@ -44,18 +44,18 @@ def tube(around, along, radius, height):
 
 @pytest.fixture
 def adopt(tmp_path):
-    def adopt(points, faces, told=lambda message: None, **keys):
+    def adopt(points, faces, reported=lambda message: None, **keys):
         (tmp_path / "a.obj").write_text(obj_text(points, np.asarray(faces).tolist()))
         surface = {"kind": "mesh", "file": "a.obj", "tolerance": 3e-3} | keys
-        return make_surface(parse_project({"name": "x", "surface": surface}), tmp_path, told)
+        return make_surface(parse_project({"name": "x", "surface": surface}), tmp_path, reported)
 
     return adopt
 
 
 def error_of(surface, mean_curvature):
     """Of the nearest H, and of the one read from the vertices' curvature, over the curvature scale."""
-    scale, told = surface.figures["curvature_scale"], surface.figures
-    return tuple(abs(told[f"{key}_mean_curvature"] - mean_curvature) / scale for key in ("nearest", "fitted"))
+    scale, reported = surface.figures["curvature_scale"], surface.figures
+    return tuple(abs(reported[f"{key}_mean_curvature"] - mean_curvature) / scale for key in ("nearest", "fitted"))
 
 
 @pytest.mark.parametrize(
@@ -149,7 +149,7 @@ def test_crumpled_meshes_are_refused_with_figures_before_elements_are_laid(adopt
     uv, faces = irregular(n)
     points = np.column_stack((4 * uv, 0.8 * np.sin(2 * uv[:, 0]) * np.sin(2 * uv[:, 1])))
     points += 2 / n * np.random.default_rng(0).normal(size=points.shape)
-    told = []
+    reported = []
     with pytest.raises(InputError, match=r"H = .* fits best, its vertices are off by 0.\d+ of the curvature scale"):
-        adopt(points, faces, told.append)
-    assert not any("laying elements" in line.text for line in told)
+        adopt(points, faces, reported.append)
+    assert not any("laying elements" in line.text for line in reported)

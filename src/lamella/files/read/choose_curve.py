@@ -52,7 +52,7 @@ class Chosen:
 
 @dataclass(frozen=True, eq=False)
 class _Candidate:
-    told: str
+    reported: str
     members: Sequence[FileCurve]
     pieces: Pieces
     remarks: tuple[Message, ...] = ()
@@ -101,7 +101,7 @@ class _Choice:
             candidates = self._chains_of(matching)
         if len(candidates) > 1:
             raise InputError(
-                f"{len(candidates)} closed curves{self.with_wanted}: " + _listed([c.told for c in candidates]),
+                f"{len(candidates)} closed curves{self.with_wanted}: " + _listed([c.reported for c in candidates]),
                 "name one of them with layer = ... or id = ...",
                 self.where,
             )
@@ -121,7 +121,7 @@ class _Choice:
             if len({curve.ids for curve in named}) > 1 and not all(curve.edge for curve in named):
                 raise InputError(
                     f"{len(named)} ids begin with {cut(self.name, _MOST_WORD)!r}: "
-                    + _listed([self._told(curve) for curve in named]),
+                    + _listed([self._reported(curve) for curve in named]),
                     "write more of the id",
                     self.where,
                 )
@@ -193,16 +193,16 @@ class _Choice:
         start, end = curve.pieces.starts[0], curve.pieces.ends[-1]
         meeting = (start + end) / 2
         remarks = (*self._gap_remark(np.array([np.linalg.norm(end - start)])), *_hidden([curve]))
-        return _Candidate(self._told(curve), [curve], curve.pieces.from_to(meeting, meeting), remarks)
+        return _Candidate(self._reported(curve), [curve], curve.pieces.from_to(meeting, meeting), remarks)
 
     def _chained(self, members: Sequence[FileCurve], pieces: Pieces, gaps: Floats) -> _Candidate:
         layers = sorted({curve.layer for curve in members})
-        told = self._words(members[0], f"chain of {len(members)}", pieces, "closed")
+        reported = self._words(members[0], f"chain of {len(members)}", pieces, "closed")
         joined = Message(
             "layers_joined", f"joined over the layers {', '.join(repr(cut(layer, _MOST_WORD)) for layer in layers[:4])}"
         )
         remarks = ((joined,) if len(layers) > 1 else ()) + self._gap_remark(gaps) + _hidden(members)
-        return _Candidate(told, members, pieces, remarks)
+        return _Candidate(reported, members, pieces, remarks)
 
     def _gap_remark(self, gaps: Floats) -> tuple[Message, ...]:
         wide = gaps[gaps * self.unit > _WRITTEN]
@@ -216,10 +216,10 @@ class _Choice:
 
     def _refuse_larger(self, best: _Candidate, opened: Sequence[FileCurve]) -> None:
         """Refuse a closed curve beside a larger one that is open by a gap alone: that one is the boundary."""
-        for length, told in self._almost(opened):
+        for length, reported in self._almost(opened):
             if length > Course(best.pieces).length:
                 raise InputError(
-                    f"{told}; the only closed curve{self.with_wanted} is smaller: {best.told}",
+                    f"{reported}; the only closed curve{self.with_wanted} is smaller: {best.reported}",
                     f"close the gap, or write {_naming(best.members)} if the closed curve is meant",
                     self.where,
                 )
@@ -233,11 +233,11 @@ class _Choice:
             kind = first.kind if len(near.members) == 1 else f"chain of {len(near.members)}"
             name = self._named(first)
             a, b = (place(end * self.unit) for end in near.between)
-            told = (
+            reported = (
                 f"{name} ({kind}, {near.length * self.unit:.4g} m) is open by {_length(near.gap * self.unit)} between "
                 f"{a} and {b} (closed up to {_length(self.limit * self.unit)})"
             )
-            found.append((near.length, told))
+            found.append((near.length, reported))
         return sorted(found, reverse=True)
 
     def _open(self, matching: Sequence[FileCurve], opened: Sequence[FileCurve]) -> InputError:
@@ -246,7 +246,9 @@ class _Choice:
         head = f"no closed curve{self.with_wanted}"
         if almost:
             return InputError(
-                f"{head}: {'; '.join(told for _, told in almost[:3])}", "close the gap in the drawing", self.where
+                f"{head}: {'; '.join(reported for _, reported in almost[:3])}",
+                "close the gap in the drawing",
+                self.where,
             )
         layers, mine = self._other_layers()
         if mine:
@@ -258,7 +260,7 @@ class _Choice:
         crowd = crowded_end([curve.pieces for curve in matching if not curve.closed(self.limit)], self.limit)
         crossing = f"; {crowd[0]} ends meet at {place(crowd[1] * self.unit)}" if crowd else ""
         return InputError(
-            f"{head}, and the open ones do not join to one: " + _listed([self._told(c) for c in opened]) + crossing,
+            f"{head}, and the open ones do not join to one: " + _listed([self._reported(c) for c in opened]) + crossing,
             f"close it: ends have to meet within {_length(self.limit * self.unit)}, two at each place",
             self.where,
         )
@@ -283,12 +285,12 @@ class _Choice:
         held = ", ".join(counted(count, kind) for kind, count in self.file.others.items())
         missing = f"no curve{self.with_wanted}"
         if curves:
-            there = _listed([self._told(curve) for curve in curves])
+            there = _listed([self._reported(curve) for curve in curves])
             return InputError(f"{missing}; {there}", "name a closed curve that is there", self.where)
         if edges:
             return InputError(
                 f"{missing} outside of surfaces; it holds {held}, with the edges "
-                + _listed([self._told(curve) for curve in edges]),
+                + _listed([self._reported(curve) for curve in edges]),
                 "name the edge that is meant with id = ..., or duplicate it as a curve (in Rhino: DupBorder, DupEdge)",
                 self.where,
             )
@@ -298,7 +300,7 @@ class _Choice:
             )
         return InputError(f"{missing}; it holds no curves", "name a closed curve that is there", self.where)
 
-    def _told(self, curve: FileCurve) -> str:
+    def _reported(self, curve: FileCurve) -> str:
         state = "closed" if curve.closed(GAP_LIMIT * curve.pieces.extent) else "open"
         return self._words(curve, curve.kind, curve.pieces, state + (f", {curve.hidden}" if curve.hidden else ""))
 
@@ -342,6 +344,6 @@ def _remedy(others: Iterable[str]) -> str:
     return "draw the boundary as a closed curve, or turn what is there into one (polyline, spline, circle)"
 
 
-def _listed(told: Sequence[str]) -> str:
-    more = len(told) - _MOST_LISTED
-    return "; ".join(told[:_MOST_LISTED]) + (f"; and {more} more" if more > 0 else "")
+def _listed(reported: Sequence[str]) -> str:
+    more = len(reported) - _MOST_LISTED
+    return "; ".join(reported[:_MOST_LISTED]) + (f"; and {more} more" if more > 0 else "")

@@ -53,18 +53,18 @@ def read_mesh(path: Path, unit: str | None = None, origin: Origin | None = None)
     InputError
         For whatever is wrong with the file.
     """
-    asked = None if unit is None else metres_of(unit)
+    requested = None if unit is None else metres_of(unit)
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise mesh_error(f"{path.name}: the format {path.suffix!r} is not known", "take .obj, .off, .ply, .stl or .3dm")
     found = reader(_bytes(path))
     check_polygons(found)
-    metres, notes = _metres(found, asked)
+    metres, notes = _metres(found, requested)
     with np.errstate(over="ignore"):
         points = found.points * metres
     _check_size(points[found.corners], metres)
     size = float(np.ptp(points[found.corners], axis=0).max())
-    if asked is None:
+    if requested is None:
         refuse_doubtful("the mesh", size, metres, unit_name(metres), "unit")
     origin = origin_of(points[found.corners]) if origin is None else origin
     points = points - np.array(origin)
@@ -131,18 +131,19 @@ def check_polygons(found: Polygons) -> None:
         )
 
 
-def _metres(found: Polygons, asked: float | None) -> tuple[float, tuple[Message, ...]]:
+def _metres(found: Polygons, requested: float | None) -> tuple[float, tuple[Message, ...]]:
     """Metres of the file's unit."""
-    told = found.metres_per_unit
-    if told is not None and asked is not None and abs(told / asked - 1) > 1e-9:
-        return asked, (
+    reported = found.metres_per_unit
+    if reported is not None and requested is not None and abs(reported / requested - 1) > 1e-9:
+        return requested, (
             Message(
-                "unit_overruled", f"unit {unit_name(asked)} of the project, not {unit_name(told)} as the file says"
+                "unit_overruled",
+                f"unit {unit_name(requested)} of the project, not {unit_name(reported)} as the file says",
             ),
         )
-    if told is None and asked is None:
+    if reported is None and requested is None:
         return 1.0, (Message("unit_assumed", "the file says no unit: taken as metres"),)
-    return asked or told or 1.0, ()
+    return requested or reported or 1.0, ()
 
 
 def _check_size(corners: np.ndarray[tuple[int, int], np.dtype[np.float64]], metres: float) -> None:

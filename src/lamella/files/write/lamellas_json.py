@@ -75,10 +75,10 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
 def _layers(lamellas: Lamellas, samples: slice) -> list[dict[str, Any]]:
     """Of each layer, from the right one to the left one, what is not alike along all of them."""
     layers, way = lamellas.layers, lamellas.section.layer_curves
-    told: list[dict[str, Any]] = [{"offset": d} for d in lamellas.section.layer_offsets.tolist()]
-    for row, one in enumerate(told):
+    reported: list[dict[str, Any]] = [{"offset": d} for d in lamellas.section.layer_offsets.tolist()]
+    for row, one in enumerate(reported):
         if way == "lamella":
             one["distance"] = layers.distances[row, samples]
         if way == "cut":
             one["flat_curvature"] = layers.bow[row, samples]
-    return told
+    return reported

@@ -164,7 +164,7 @@ class _Model:
         strip.SetDomain(1, rhino3dm.Interval(-section.height / 2 / metres, section.height / 2 / metres))
         family = str(network.families[k])
         name = f"{network.ids[k]}-{layer}" if layer else network.ids[k]
-        told = {"side": SIDES[section.layers][layer - 1]} if layer else {}
+        reported = {"side": SIDES[section.layers][layer - 1]} if layer else {}
         attributes = self.rhino.attributes(
             f"{'layers' if layer else 'strips'} {family}",
             name,
@@ -174,7 +174,7 @@ class _Model:
             height_m=repr(float(section.height)),
             thickness_m=repr(float(section.thickness)),
             version=self.version,
-            **told,
+            **reported,
         )
         self.file.Objects.AddSurface(strip, attributes)
 

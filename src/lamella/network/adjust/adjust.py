@@ -26,11 +26,11 @@ from lamella.network.elements.closing_steps import CLOSES
 from lamella.network.elements.lattice import Lattice, choose_lattice
 from lamella.network.isothermic.between_umbilics import between_umbilics, keeps_apart
 from lamella.network.isothermic.holonomy import around_holes, holonomies
-from lamella.network.isothermic.match_transitions import Carrier
+from lamella.network.isothermic.match_transitions import TransitionMatcher
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.boundary.adjustable_film import AdjustableFilm
 from lamella.surface.boundary.curve import Loop, farthest_move
-from lamella.surface.boundary.freedom import Freedom, refuse_held
+from lamella.surface.boundary.freedom import Freedom, refuse_fixed
 from lamella.surface.element.surface import ElementSurface
 
 # cells: misses below it end the search; a tenth of what counts as closed
@@ -118,7 +118,7 @@ def adjust_boundary(
         There is no such film, nothing may change, or the net does not close within what is allowed.
     """
     freedom = Freedom(film)
-    refuse_held(freedom)
+    refuse_fixed(freedom)
     progress = patient(progress)
     films = Films(freedom, pattern, progress)
     progress(Report.step(f"adjusting {', '.join(freedom.names)}: {freedom.count} parameters"))
@@ -174,7 +174,9 @@ class _Search:
             except LostError as error:
                 lost.append(error)
         for aim in sorted(waiting, key=lambda one: one.size):
-            self.progress(Report.step(f"{lost[-1]}: back to those that were left with {worst(aim.misses):.2g} cells"))
+            self.progress(
+                Report.step(f"{lost[-1]}: back to those that were left with {worst(aim.residuals):.2g} cells")
+            )
             try:
                 return self.polish(self.descend(aim))
             except LostError as error:
@@ -197,9 +199,9 @@ class _Search:
         """Whole shifts to be tried, and those that take far more than what may change."""
         aims = [Aim(first, whole, lattice.step) for whole in self._targets(first, lattice)]
         reaches = [self._least_reach(aim, UNDONE) for aim in aims]
-        told = ", ".join(f"{reach:.2g}" if reach < np.inf else f"over {2 * MOST_REACH:g}" for reach in reaches)
+        reported = ", ".join(f"{reach:.2g}" if reach < np.inf else f"over {2 * MOST_REACH:g}" for reach in reaches)
         self.progress(
-            Report.step(f"whole numbers of cells take, to first order, {told} times what the boundary may change")
+            Report.step(f"whole numbers of cells take, to first order, {reported} times what the boundary may change")
         )
         why = f"to first order over {HOPELESS:g} times what the boundary may change is needed"
         far = [reach > HOPELESS for reach in reaches]
@@ -217,7 +219,7 @@ class _Search:
             and (reach > 1 or used(aim.net.shares) > AT_LIMIT)
         ]
         # to first order tells most where little is missed
-        for reach, aim in sorted(wanted, key=lambda one: one[0] * (1 + worst(one[1].misses)))[:MOST_WIDER]:
+        for reach, aim in sorted(wanted, key=lambda one: one[0] * (1 + worst(one[1].residuals)))[:MOST_WIDER]:
             self.reach, self.steps = reach * WIDER, 0
             self.progress(Report.step(f"how much change would do: with {self.reach:.2g} times as much"))
             try:
@@ -229,12 +231,12 @@ class _Search:
 
     def _least_reach(self, aim: Aim, left: float) -> float:
         """By what the limits have to be multiplied for all but a share of the misses to vanish to first order."""
-        rates, reach = self._rates_of(aim), self.reach
+        sensitivities, reach = self._rates_of(aim), self.reach
 
         def reaches(log: float) -> bool:
             self.reach = float(np.exp(log))
-            change = self._solved(aim.net, rates, aim.misses)[0]
-            return aim.net.whole.size(aim.misses - rates @ change) < left * aim.size
+            change = self._solved(aim.net, sensitivities, aim.residuals)[0]
+            return aim.net.whole.size(aim.residuals - sensitivities @ change) < left * aim.size
 
         low, high = 0.0, float(np.log(2 * MOST_REACH))
         try:
@@ -251,14 +253,14 @@ class _Search:
 
     def _rates_of(self, aim: Aim) -> Complexes:
         """The rates that were carried on, else those of the net itself."""
-        return aim.rates if aim.rates is not None else self.films.cell_rates(aim.net, aim.step)
+        return aim.sensitivities if aim.sensitivities is not None else self.films.cell_sensitivities(aim.net, aim.step)
 
     def _targets(self, net: FilmNet, lattice: Lattice) -> list[Complexes]:
         """Whole shifts (t,) in the order of the change they ask for, to first order."""
         step = lattice.step
-        shifts, rates = net.cells(step), self.films.cell_rates(net, step)
+        shifts, sensitivities = net.cells(step), self.films.cell_sensitivities(net, step)
         counted = self._counted(net, shifts, lattice)
-        easy = net.whole.easiest(shifts, rates * np.append(np.ones(len(net.shares)), SPACING), MOST_LOOKED_AT)
+        easy = net.whole.easiest(shifts, sensitivities * np.append(np.ones(len(net.shares)), SPACING), MOST_LOOKED_AT)
         # where the boundary may hardly change, only another spacing is easy: other cells than were asked for
         near = net.whole.nearest(shifts, MOST_TRIED)
         near += [whole for whole in easy if not any(np.array_equal(whole, one) for one in near)]
@@ -266,7 +268,7 @@ class _Search:
         # two umbilics cannot meet in one node
         factors = between_umbilics(net.iso)
         near = [whole for whole in near if keeps_apart(factors, shifts, whole)] or near
-        cost = [self._solved(net, rates, whole - shifts)[1] for whole in near]
+        cost = [self._solved(net, sensitivities, whole - shifts)[1] for whole in near]
         return [near[k] for k in np.argsort(cost, kind="stable")[:MOST_TRIED].tolist()]
 
     def _counted(self, net: FilmNet, shifts: Complexes, lattice: Lattice) -> int:
@@ -282,7 +284,7 @@ class _Search:
         """Steps on the coarse film, until misses are below a goal, cells; in haste, until one leaves most of them."""
         self._tell(aim)
         for _ in range(MOST_STEPS):
-            if worst(aim.misses) < goal:
+            if worst(aim.residuals) < goal:
                 return aim
             if self.steps >= MOST_IN_ALL:
                 raise LostError(aim, f"not reached in {MOST_IN_ALL} steps")
@@ -292,11 +294,11 @@ class _Search:
                 aim, reason = self._step(aim)
             except LostError:
                 # the film's own errors may be all that is left
-                if worst(aim.misses) < NEARLY:
+                if worst(aim.residuals) < NEARLY:
                     return aim
                 raise
             self._tell(aim)
-            if reason and worst(aim.misses) < NEARLY:
+            if reason and worst(aim.residuals) < NEARLY:
                 return aim
             if hasty and self._is_stopped(aim):
                 raise LostError(aim, "the boundary may not change by more")
@@ -306,30 +308,30 @@ class _Search:
 
     def _is_stopped(self, aim: Aim) -> bool:
         """Whether first order says that the limits are far from enough, by rates that need not be found anew."""
-        if aim.rates is None or worst(aim.misses) > NEAR or self.films.freedom.used(aim.net.shares) < MOSTLY:
+        if aim.sensitivities is None or worst(aim.residuals) > NEAR or self.films.freedom.used(aim.net.shares) < MOSTLY:
             return False
         return self._least_reach(aim, UNDONE) > STOPPED
 
     def _step(self, aim: Aim) -> tuple[Aim, str]:
         """A net nearer to its whole shifts, and why the whole step there was refused, if it was."""
-        if aim.rates is not None:
+        if aim.sensitivities is not None:
             try:
-                return self._moved(aim, aim.rates, 1)
+                return self._moved(aim, aim.sensitivities, 1)
             except LostError:
                 self.progress(Report.detail("the rates carried on do not lead on"))
-        return self._moved(aim, self.films.cell_rates(aim.net, aim.step), MOST_HALVINGS)
+        return self._moved(aim, self.films.cell_sensitivities(aim.net, aim.step), MOST_HALVINGS)
 
-    def _moved(self, aim: Aim, rates: Complexes, halvings: int) -> tuple[Aim, str]:
+    def _moved(self, aim: Aim, sensitivities: Complexes, halvings: int) -> tuple[Aim, str]:
         """See `_step`, with given rates and so many tries."""
         net = aim.net
-        change = self._solved(net, rates, aim.misses)[0]
-        if net.whole.size(aim.misses - rates @ change) > (1 - LEAST_GAIN) * aim.size:
-            beyond = self._solved(net, rates, aim.misses, kept=-np.inf)[0]
-            held = net.whole.size(aim.misses - rates @ beyond) > (1 - LEAST_GAIN) * aim.size
+        change = self._solved(net, sensitivities, aim.residuals)[0]
+        if net.whole.size(aim.residuals - sensitivities @ change) > (1 - LEAST_GAIN) * aim.size:
+            beyond = self._solved(net, sensitivities, aim.residuals, kept=-np.inf)[0]
+            held = net.whole.size(aim.residuals - sensitivities @ beyond) > (1 - LEAST_GAIN) * aim.size
             raise LostError(aim, "the boundary may not change by more" if held else "umbilics would leave at the rim")
         change = self._shortened(net, change)
         # the least boundary that closes the net may be far from this one: then the nearest, and less and less of it
-        nearest = self._shortened(net, self._solved(net, rates, aim.misses, net.shares)[0])
+        nearest = self._shortened(net, self._solved(net, sensitivities, aim.residuals, net.shares)[0])
         parts = 0.5 ** np.arange(halvings - 1)
         moves = [change, *np.outer(parts if net.shares.any() else parts / 2, nearest)]
         reason = ""
@@ -339,73 +341,77 @@ class _Search:
                 Report.detail(f"following the film over {share:.2g} of a step" + (f" ({reason})" if reason else ""))
             )
             try:
-                there = self._carried(aim, self.films.moved(net, net.shares + move[:-1]), rates, move)
+                there = self._carried(aim, self.films.moved(net, net.shares + move[:-1]), sensitivities, move)
             except FollowError as error:
                 reason = str(error)
                 continue
             expected = 1 - LEAST_GAIN * min(share, 1.0)
-            if there.size < expected * aim.size or worst(there.misses) < 10 * CLOSED:
-                return (there if there.size < CARRIED * aim.size else replace(there, rates=None)), reason
+            if there.size < expected * aim.size or worst(there.residuals) < 10 * CLOSED:
+                return (there if there.size < CARRIED * aim.size else replace(there, sensitivities=None)), reason
             reason = "the misses grow"
         raise LostError(aim, reason)
 
-    def _carried(self, aim: Aim, net: FilmNet, rates: Complexes, move: Floats) -> Aim:
+    def _carried(self, aim: Aim, net: FilmNet, sensitivities: Complexes, move: Floats) -> Aim:
         """The same whole shifts on another net, with the rates carried on.
 
         Broyden's update: of all rates that explain the misses found there, those least different from the old ones
         (C. G. Broyden, Math. Comp. 19 (1965) 577).
         """
-        left = aim.misses - rates @ move
+        left = aim.residuals - sensitivities @ move
         step = float(aim.step * np.exp(move[-1]))
-        carrier = Carrier(aim.net.iso, net.iso, net.whole)
-        whole = carrier.whole_shifts(left, net.cells(step))
+        matcher = TransitionMatcher(aim.net.iso, net.iso, net.whole)
+        whole = matcher.match(left, net.cells(step))
         if whole is None:
             raise FollowError("the net changes too much in a step")
         there = Aim(net, whole, step)
-        expected = carrier.coordinates(np.column_stack([rates[:, :-1], left]))
+        expected = matcher.coordinates(np.column_stack([sensitivities[:, :-1], left]))
         spacing = net.whole.coordinates(net.whole.offset - net.cells(step))
         found = np.column_stack([expected[:, :-1], spacing])
         scaled = move / np.append(np.ones(len(move) - 1), SPACING**2)
         if move.any():
-            more = net.whole.coordinates(there.misses) - expected[:, -1]
+            more = net.whole.coordinates(there.residuals) - expected[:, -1]
             found = found - np.outer(more, scaled) / (scaled @ move)
-        return replace(there, rates=net.whole.basis.T @ found)
+        return replace(there, sensitivities=net.whole.basis.T @ found)
 
     def polish(self, aim: Aim) -> tuple[FilmNet, float, float]:
         """The film as fine as was asked for: its own misses are a little different ones."""
-        rates = self._rates_of(aim)
+        sensitivities = self._rates_of(aim)
         move = np.zeros(len(aim.net.shares) + 1)
         best: Aim | None = None
         for _ in range(MOST_POLISHING):
             self.progress(Report.detail("the film as fine as asked for"))
             try:
                 found = self.films.found(aim.net.shares + move[:-1], min(self.films.freedom.film.tolerance, COARSE))
-                there = self._carried(aim, found, rates, move)
+                there = self._carried(aim, found, sensitivities, move)
             except FollowError as error:
                 raise LostError(aim, str(error)) from None
             self._tell(there)
-            if best is None or worst(there.misses) < worst(best.misses):
+            if best is None or worst(there.residuals) < worst(best.residuals):
                 best = there
-            if worst(there.misses) < CLOSED:
+            if worst(there.residuals) < CLOSED:
                 break
             slow = move.any() and there.size > CARRIED * aim.size
             # what is left may be the film's own errors
-            if slow and worst(best.misses) < NEARLY:
+            if slow and worst(best.residuals) < NEARLY:
                 break
             aim = there
-            rates = self.films.cell_rates(aim.net, aim.step) if slow or aim.rates is None else aim.rates
-            move = self._shortened(aim.net, self._solved(aim.net, rates, aim.misses)[0])
+            sensitivities = (
+                self.films.cell_sensitivities(aim.net, aim.step)
+                if slow or aim.sensitivities is None
+                else aim.sensitivities
+            )
+            move = self._shortened(aim.net, self._solved(aim.net, sensitivities, aim.residuals)[0])
             self.steps += 1
         assert best
-        if worst(best.misses) > 0.9 * CLOSES:
+        if worst(best.residuals) > 0.9 * CLOSES:
             raise LostError(best, "the finer surface does not follow")
-        return best.net, best.step, worst(best.misses)
+        return best.net, best.step, worst(best.residuals)
 
     def _solved(
         self,
         net: FilmNet,
-        cell_rates: Complexes,
-        misses: Complexes,
+        cell_sensitivities: Complexes,
+        residuals: Complexes,
         near: Floats | None = None,
         kept: float = KEPT,
     ) -> tuple[Floats, float]:
@@ -414,14 +420,14 @@ class _Search:
         The least squares of the shares themselves, or of what they differ by from those that they shall be near, with
         what they cannot undo weighing more. Umbilics keep a share of their distance from the rim.
         """
-        measured, missed = net.whole.measured(cell_rates), net.whole.measured(misses)
-        rates = np.vstack([measured.real, measured.imag])
-        rates[:, -1] *= SPACING
+        measured, missed = net.whole.measured(cell_sensitivities), net.whole.measured(residuals)
+        sensitivities = np.vstack([measured.real, measured.imag])
+        sensitivities[:, -1] *= SPACING
         wanted = np.concatenate([missed.real, missed.imag])
         now = np.append(net.shares, 0.0)
-        system = np.vstack([WEIGHT * rates, np.eye(len(now))])
+        system = np.vstack([WEIGHT * sensitivities, np.eye(len(now))])
         middle = np.zeros(len(now)) if near is None else np.append(near, 0.0)
-        right = np.concatenate([WEIGHT * (wanted + rates @ now), middle])
+        right = np.concatenate([WEIGHT * (wanted + sensitivities @ now), middle])
         limited = self.films.freedom.limits / self.reach
         limits = np.zeros((len(limited) + 1, 3, len(now)))
         limits[:-1, :, :-1] = limited
@@ -442,7 +448,7 @@ class _Search:
     def _tell(self, aim: Aim) -> None:
         self.progress(
             Report.step(
-                f"{self.steps} steps: misses up to {worst(aim.misses):.2e} cells, parameters up to "
+                f"{self.steps} steps: misses up to {worst(aim.residuals):.2e} cells, parameters up to "
                 f"{100 * self.films.freedom.used(aim.net.shares):.0f} % of what they may change"
             )
         )

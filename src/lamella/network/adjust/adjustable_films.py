@@ -11,10 +11,10 @@ from lamella.base.drawing_origin import origin_figure
 from lamella.base.progress import Progress, as_details, silent
 from lamella.network.adjust.film_net import FilmNet
 from lamella.network.adjust.transition_sensitivities import (
-    Rates,
+    Sensitivities,
     curvature_rates_of_volume,
     jacobi_fields,
-    shift_rates,
+    transition_sensitivities,
 )
 from lamella.network.pattern import Pattern
 from lamella.surface.boundary.curve import Loop, farthest_move
@@ -53,7 +53,7 @@ class Films:
     def __init__(self, freedom: Freedom, pattern: Pattern, progress: Progress = silent) -> None:
         self.freedom, self.pattern = freedom, pattern
         self._progress: Progress = as_details(progress)
-        self._rates: WeakKeyDictionary[FilmNet, Rates] = WeakKeyDictionary()
+        self._sensitivities: WeakKeyDictionary[FilmNet, Sensitivities] = WeakKeyDictionary()
 
     def loops(self, shares: Floats) -> tuple[Loop, ...]:
         """The boundary at some shares."""
@@ -112,28 +112,30 @@ class Films:
             raise FollowError("umbilics come or go at the boundary")
         return there
 
-    def cell_rates(self, net: FilmNet, step: float) -> Complexes:
-        """Rates of the shifts in cells, (t, p + 1), the logarithm of the spacing last."""
-        return net.cell_rates(self._found(net).shifts, step)
+    def cell_sensitivities(self, net: FilmNet, step: float) -> Complexes:
+        """Sensitivities of the shifts in cells, (t, p + 1), the logarithm of the spacing last."""
+        return net.cell_sensitivities(self._found(net).shifts, step)
 
     def umbilics_inside(self, net: FilmNet, kept: float) -> tuple[Floats, Floats]:
         """Normals (z, p) and bounds (z,): umbilics keep that share of their distance from the rim, to first order, at
         shares x with normals x <= bounds; none where the rates of the net were not found."""
-        if net not in self._rates:
+        if net not in self._sensitivities:
             return np.zeros((0, self.freedom.count)), np.zeros(0)
-        rates = self._rates[net]
-        return -rates.depths, (1 - kept) * rates.depth - rates.depths @ net.shares
+        sensitivities = self._sensitivities[net]
+        return -sensitivities.depths, (1 - kept) * sensitivities.depth - sensitivities.depths @ net.shares
 
-    def _found(self, net: FilmNet) -> Rates:
-        if net not in self._rates:
+    def _found(self, net: FilmNet) -> Sensitivities:
+        if net not in self._sensitivities:
             film, h = net.equilibrium.film, net.surface.mean_curvature
             rim = self.rim_shifts(film, net.shares)
-            curvature = self.freedom.curvature_rates()
+            curvature = self.freedom.curvature_sensitivities()
             if self.freedom.film.volume is not None:
                 curvature = curvature_rates_of_volume(film, h, rim)
             fields = jacobi_fields(film, h, rim, curvature)
-            self._rates[net] = shift_rates(net.surface, film, net.iso, fields, rim, curvature, self._progress)
-        return self._rates[net]
+            self._sensitivities[net] = transition_sensitivities(
+                net.surface, film, net.iso, fields, rim, curvature, self._progress
+            )
+        return self._sensitivities[net]
 
     def rim_shifts(self, film: Film, shares: Floats) -> Floats:
         """How the boundary's nodes move with each parameter, (p, n, 3), m."""

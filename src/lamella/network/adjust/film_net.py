@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats
-from lamella.network.elements.integer_grid_map import CellMap
+from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.isothermic.holonomy import fixed_point_factors
-from lamella.network.isothermic.integer_transitions import WholeShifts
-from lamella.network.isothermic.integration_mesh import make_net_mesh
+from lamella.network.isothermic.integer_transitions import IntegerTransitions
+from lamella.network.isothermic.integration_mesh import make_integration_mesh
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.isothermic.lattice_origin import lattice_origin
 from lamella.network.isothermic.seamless_transitions import integrate
@@ -44,14 +44,14 @@ class FilmNet:
     def of(cls, shares: Floats, equilibrium: Equilibrium, surface: ElementSurface, pattern: Pattern) -> FilmNet:
         """The coordinates of a film."""
         umbilics = surface.umbilics
-        mesh = make_net_mesh(surface, umbilics)
+        mesh = make_integration_mesh(surface, umbilics)
         odd = mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)]
         return cls(shares, equilibrium, surface, integrate(mesh, odd), pattern)
 
     @cached_property
-    def whole(self) -> WholeShifts:
+    def whole(self) -> IntegerTransitions:
         """The shifts with which the net closes."""
-        return WholeShifts.of(self.iso, self.iso.dirichlet)
+        return IntegerTransitions.of(self.iso, self.iso.dirichlet)
 
     @property
     def orders(self) -> list[int]:
@@ -60,11 +60,11 @@ class FilmNet:
 
     def cells(self, step: float) -> Complexes:
         """Shifts of the pieces of the cut, (t,), in cells of a lattice with l0 = step, sqrt(m)."""
-        return CellMap.of(self.iso, lattice_origin(self.iso, step, self.pattern), step, self.pattern).shifts
+        return IntegerGridMap.of(self.iso, lattice_origin(self.iso, step, self.pattern), step, self.pattern).shifts
 
-    def cell_rates(self, rates: Complexes, step: float) -> Complexes:
+    def cell_sensitivities(self, sensitivities: Complexes, step: float) -> Complexes:
         """Change of the shifts in cells, (t, p + 1), from that in sqrt(m), (t, p); the last by the logarithm of l0."""
         signs = np.array([piece.sign for piece in self.iso.transitions])
-        place = fixed_point_factors(self.iso) @ rates
-        in_cells = self.pattern.cells(rates + np.outer(signs - 1, place), step)
+        place = fixed_point_factors(self.iso) @ sensitivities
+        in_cells = self.pattern.cells(sensitivities + np.outer(signs - 1, place), step)
         return np.column_stack([in_cells, self.whole.offset - self.cells(step)])

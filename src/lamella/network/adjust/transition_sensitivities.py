@@ -27,7 +27,7 @@ from lamella.surface.form_finding.variation import Variation
 STEP = 1e-4
 
 
-def jacobi_fields(film: Film, mean_curvature: float, rim_shifts: Floats, curvature_rates: Floats) -> Floats:
+def jacobi_fields(film: Film, mean_curvature: float, rim_shifts: Floats, curvature_sensitivities: Floats) -> Floats:
     """Shifts of the nodes along the film's directions that keep it in equilibrium, to first order.
 
     Parameters
@@ -38,7 +38,7 @@ def jacobi_fields(film: Film, mean_curvature: float, rim_shifts: Floats, curvatu
         H, 1/m.
     rim_shifts : (p, n, 3)
         How nodes of the boundary move with each of p parameters, m; 0 inside.
-    curvature_rates : (p,)
+    curvature_sensitivities : (p,)
         How H changes, 1/m.
 
     Returns
@@ -60,7 +60,7 @@ def jacobi_fields(film: Film, mean_curvature: float, rim_shifts: Floats, curvatu
     right = [
         -np.bincount(flat, np.matmul(full, field[elements][..., None]).ravel(), len(free))
         - 2 * rate * first.volume_gradient
-        for field, rate in zip(fields, curvature_rates, strict=True)
+        for field, rate in zip(fields, curvature_sensitivities, strict=True)
     ]
     pattern = film.pattern
     solved = pattern.factor(pattern.assemble(blocks)).solve(np.stack(right, 1)[free])
@@ -91,7 +91,7 @@ def curvature_rates_of_volume(film: Film, mean_curvature: float, rim_shifts: Flo
 
 
 @dataclass(frozen=True)
-class Rates:
+class Sensitivities:
     """How a net follows p parameters.
 
     Attributes
@@ -109,15 +109,15 @@ class Rates:
     depths: Floats
 
 
-def shift_rates(
+def transition_sensitivities(
     surface: ElementSurface,
     film: Film,
     iso: Isothermic,
     fields: Floats,
     rim_shifts: Floats,
-    curvature_rates: Floats,
+    curvature_sensitivities: Floats,
     progress: Progress = silent,
-) -> Rates:
+) -> Sensitivities:
     """Change of every shift, and of how far umbilics are inside the rim, with each of p parameters.
 
     Parameters
@@ -129,7 +129,7 @@ def shift_rates(
         On the surface.
     fields : (p, n)
         See `jacobi_fields`.
-    rim_shifts, curvature_rates
+    rim_shifts, curvature_sensitivities
         See `jacobi_fields`.
     progress : callable
         Is told which parameter it is.
@@ -141,10 +141,10 @@ def shift_rates(
     gram, _ = system.quadratic(base, moves)
     relations = list(vertex_relations(mesh, iso.transitions, iso.across, iso.odd).values())
     directions = film.directions()
-    rates = np.zeros((len(iso.transitions), len(fields)), complex)
+    sensitivities = np.zeros((len(iso.transitions), len(fields)), complex)
     umbilics = UmbilicDepths.of(surface)
     depths = np.zeros((len(umbilics.depth), len(fields)))
-    for number, (field, rate) in enumerate(zip(fields, curvature_rates, strict=True)):
+    for number, (field, rate) in enumerate(zip(fields, curvature_sensitivities, strict=True)):
         progress(Report.detail(f"how the net follows: {number} of {len(fields)} parameters", number / len(fields)))
         step = STEP * film.size / max(float(np.abs(field).max()), 1e-12 * film.size)
         moved = ElementSurface(
@@ -161,7 +161,7 @@ def shift_rates(
         turn = np.where(same < 0, -1, 1)[:, None]
         pull = system.pull_of(turn * other.form_a - system.form_a, turn * other.form_b - system.form_b)
         right = np.einsum("tek,ek->t", moves, pull) / step
-        rates[:, number] = best_shifts(gram, right, relations, np.zeros(len(relations), complex))
+        sensitivities[:, number] = best_shifts(gram, right, relations, np.zeros(len(relations), complex))
         along = rim_shifts[number] - field[:, None] * directions
         depths[:, number] = umbilics.change(surface, moved, step * along) / step
-    return Rates(rates, umbilics.depth, depths)
+    return Sensitivities(sensitivities, umbilics.depth, depths)

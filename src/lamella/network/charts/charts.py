@@ -13,7 +13,7 @@ from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.surface.element.places import Places
 
 
-class Look(NamedTuple):
+class ChartSample(NamedTuple):
     """What is seen at n places.
 
     Attributes
@@ -36,9 +36,9 @@ class Look(NamedTuple):
     deviator: Complexes
     to_local: Floats
 
-    def take(self, some: Booleans | Integers) -> Look:
+    def take(self, some: Booleans | Integers) -> ChartSample:
         """Some of the places."""
-        return Look(
+        return ChartSample(
             self.position[some],
             self.normal[some],
             self.e_u[some],
@@ -64,14 +64,14 @@ class RimPlaces(NamedTuple):
     tangent: Floats
 
 
-class Ground(Protocol):
+class Charts(Protocol):
     """A surface lines are traced on."""
 
-    def look(self, where: Places) -> Look:
+    def evaluate(self, where: Places) -> ChartSample:
         """What is seen at n places; a little outside of their elements too."""
 
     def measured(self, where: Places) -> tuple[Floats, Complexes]:
-        """H and deviator at n places from positions alone, 1/m, each (n,), in the frames of `look`."""
+        """H and deviator at n places from positions alone, 1/m, each (n,), in the frames of `sample`."""
 
     def uncertain(self, where: Places) -> Floats:
         """How far normal curvatures at n places may be off those of the surface that is meant, 1/m, (n,)."""

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats, Integers
-from lamella.network.charts.charts import Look, RimPlaces
+from lamella.network.charts.charts import ChartSample, RimPlaces
 from lamella.surface.element.places import Places
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import element_rims
@@ -19,7 +19,7 @@ MOST_HOPS, NEWTON_STEPS, OUTSIDE = 8, 4, 1e-12
 UNSETTLED = 1e-6
 
 
-class ElementGround:
+class ElementCharts:
     """A surface of elements.
 
     Parameters
@@ -34,9 +34,9 @@ class ElementGround:
         self.surface = surface
         self._connectivity = surface.connectivity
 
-    def look(self, where: Places) -> Look:
+    def evaluate(self, where: Places) -> ChartSample:
         there, mean, deviator = self.surface.shape_at(where)
-        return Look(there.position, there.normal, there.e_u, there.e_v, mean, deviator, there.to_local)
+        return ChartSample(there.position, there.normal, there.e_u, there.e_v, mean, deviator, there.to_local)
 
     def measured(self, where: Places) -> tuple[Floats, Complexes]:
         there = self.surface.measured(where)

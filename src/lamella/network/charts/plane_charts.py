@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats
-from lamella.network.charts.charts import Look, RimPlaces
+from lamella.network.charts.charts import ChartSample, RimPlaces
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.outline import Disc, Rectangle
 from lamella.surface.closed_forms.scherk import Scherk, asymptotic_to_conformal
@@ -17,7 +17,7 @@ PARTS, SAMPLES = 80, 60
 DELTA = 1e-6
 
 
-class PlaneGround:
+class PlaneCharts:
     """A closed form over a simply connected piece of its parameter plane.
 
     Parameters
@@ -33,15 +33,15 @@ class PlaneGround:
         self._sides = float(np.ptp(places.real)), float(np.ptp(places.imag))
         self._size = max(self._sides)
 
-    def look(self, where: Places) -> Look:
+    def evaluate(self, where: Places) -> ChartSample:
         zeta = _complex(where)
         at = self.surface.at(zeta)
         to_local = np.eye(2) / self.surface.metric(zeta)[:, None, None]
-        return Look(at.position, at.normal, at.e_u, at.e_v, at.mean_curvature, at.deviator, to_local)
+        return ChartSample(at.position, at.normal, at.e_u, at.e_v, at.mean_curvature, at.deviator, to_local)
 
     def measured(self, where: Places) -> tuple[Floats, Complexes]:
-        look = self.look(where)
-        return look.mean, look.deviator
+        sample = self.evaluate(where)
+        return sample.mean, sample.deviator
 
     def uncertain(self, where: Places) -> Floats:
         return np.zeros(len(where))

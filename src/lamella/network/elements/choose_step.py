@@ -31,12 +31,12 @@ class Better:
 
     cells: int | None
     step: float
-    miss: float
+    residual: float
 
     @property
     def closes(self) -> bool:
         """Whether all closes, and all umbilics are nodes."""
-        return self.miss <= CLOSES
+        return self.residual <= CLOSES
 
 
 def near_step(count: CellCount, closing: ClosingLengths, wanted: float, pattern: Pattern) -> float:
@@ -67,7 +67,7 @@ def near_step(count: CellCount, closing: ClosingLengths, wanted: float, pattern:
     others: list[float] = []
     if not tied:
         # where a whole number of cells closes the net it needs no others
-        kept = np.array([step for step in whole if closing.miss(step) <= CLOSES / 2])
+        kept = np.array([step for step in whole if closing.residual(step) <= CLOSES / 2])
         most = count.length / max(cells - reach, CELLS_MIN)
         for step in closing.steps(count.length / (cells + reach), most).tolist():
             if not (np.abs(count.length * (1 / step - 1 / kept)) < CLOSES).any():
@@ -78,8 +78,8 @@ def near_step(count: CellCount, closing: ClosingLengths, wanted: float, pattern:
 
 
 def _cost(closing: ClosingLengths, step: float, wanted: float, scale: float) -> float:
-    miss = closing.miss(step)
-    price = 0.0 if miss <= CLOSES / 2 else OPEN + (1 - OPEN) * min(1.0, miss / NEARLY) ** 2
+    residual = closing.residual(step)
+    price = 0.0 if residual <= CLOSES / 2 else OPEN + (1 - OPEN) * min(1.0, residual / NEARLY) ** 2
     return float(price + (np.log(step / wanted) * scale) ** 2)
 
 
@@ -93,8 +93,8 @@ def better_density(count: CellCount, closing: ClosingLengths, step: float, patte
     step : float
         l0 that was taken, sqrt(m).
     """
-    miss = closing.miss(step)
-    if miss <= CLOSES:
+    residual = closing.residual(step)
+    if residual <= CLOSES:
         return None
     cells = round(count.cells(step))
     multiple = pattern.multiple(count.period) if count.follows_period(pattern) else 1
@@ -102,17 +102,17 @@ def better_density(count: CellCount, closing: ClosingLengths, step: float, patte
     reach = max(int(LOOKED * cells), LEAST_LOOKED)
     # the finer one first where two are as near
     numbers = [n for far in range(1, reach + 1) for n in (cells + far, cells - far) if n >= least and n % multiple == 0]
-    found = [Better(n, there, closing.miss(there)) for n in numbers for there in [count.step(n, pattern)]]
-    best = next((one for one in found if one.miss <= CLOSES / 2), None)
+    found = [Better(n, there, closing.residual(there)) for n in numbers for there in [count.step(n, pattern)]]
+    best = next((one for one in found if one.residual <= CLOSES / 2), None)
     if best or count.follows_period(pattern):
-        return best or _nearer(found, miss)
+        return best or _nearer(found, residual)
     near = closing.steps(step * cells / (cells + reach), step * cells / max(cells - reach, CELLS_MIN))
     near = near[np.argsort(np.abs(np.log(near / step)), kind="stable")]
-    exact = next((one for one in near.tolist() if closing.miss(one) <= CLOSES / 2), None)
-    return Better(None, exact, closing.miss(exact)) if exact else _nearer(found, miss)
+    exact = next((one for one in near.tolist() if closing.residual(one) <= CLOSES / 2), None)
+    return Better(None, exact, closing.residual(exact)) if exact else _nearer(found, residual)
 
 
-def _nearer(found: list[Better], miss: float) -> Better | None:
+def _nearer(found: list[Better], residual: float) -> Better | None:
     """The number of cells that misses least, if that is much less than a miss."""
-    best = min(found, key=lambda one: one.miss, default=None)
-    return best if best and best.miss <= BETTER * miss else None
+    best = min(found, key=lambda one: one.residual, default=None)
+    return best if best and best.residual <= BETTER * residual else None

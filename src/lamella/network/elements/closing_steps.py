@@ -13,7 +13,7 @@ import numpy as np
 
 from lamella.base.arrays import Complexes, Floats
 from lamella.network.isothermic.holonomy import fixed_point_factors
-from lamella.network.isothermic.integer_transitions import WholeShifts
+from lamella.network.isothermic.integer_transitions import IntegerTransitions
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.pattern import Pattern
 
@@ -40,13 +40,13 @@ class ClosingLengths:
         shifts = np.array([piece.shift for piece in iso.transitions], complex)
         place = complex(fixed_point_factors(iso) @ shifts)
         # shortest sums of what the pieces of the cut ask for: alike for all cuts
-        needed = WholeShifts.of(iso, iso.dirichlet).coordinates(pattern.cells(shifts + (signs - 1) * place, 1.0))
+        needed = IntegerTransitions.of(iso, iso.dirichlet).coordinates(pattern.cells(shifts + (signs - 1) * place, 1.0))
         apart = pattern.cells(_even(iso) - place, 1.0)
         if len(apart) and not len(iso.odd):
             apart = apart[1:] - apart[0]
         return cls(np.concatenate([needed, apart]))
 
-    def miss(self, step: float) -> float:
+    def residual(self, step: float) -> float:
         """The largest distance from a whole number at l0 = step (sqrt(m)), cells: 0 to 0.5.
 
         What rounding would put into one place, two umbilics or a hole's two sides, misses by 0.5.

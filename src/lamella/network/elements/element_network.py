@@ -17,13 +17,13 @@ from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
 from lamella.network.density_request import DensityRequest
 from lamella.network.elements.closing_steps import CLOSES
-from lamella.network.elements.integer_grid_map import CellMap
+from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.elements.lattice import Lattice, choose_lattice
 from lamella.network.elements.rim_corners import RimCorners
 from lamella.network.elements.rounding import largest_part, rounded_coordinates, stubs, turned
 from lamella.network.elements.trace import trace_elements
 from lamella.network.isothermic.holonomy import Holonomy, holonomies
-from lamella.network.isothermic.integration_mesh import NetMesh, make_net_mesh, onto_surface
+from lamella.network.isothermic.integration_mesh import IntegrationMesh, make_integration_mesh, onto_surface
 from lamella.network.isothermic.isothermic import Isothermic, Transition
 from lamella.network.isothermic.recut import straightened
 from lamella.network.isothermic.seamless_transitions import FoldedError, integrate, with_shifts
@@ -274,14 +274,14 @@ class ElementNetwork:
 
 
 @dataclass(frozen=True)
-class LaidNet:
+class NetPlan:
     """Where the lattice of a net lies on a surface, before anything is traced.
 
     Attributes
     ----------
     surface : ElementSurface
     umbilics : Umbilics
-    mesh : NetMesh
+    mesh : IntegrationMesh
     iso : Isothermic
     around : tuple of Holonomy
         Of the holes.
@@ -293,7 +293,7 @@ class LaidNet:
 
     surface: ElementSurface
     umbilics: Umbilics
-    mesh: NetMesh
+    mesh: IntegrationMesh
     iso: Isothermic
     around: tuple[Holonomy, ...]
     lattice: Lattice
@@ -309,7 +309,7 @@ class LaidNet:
     def traced(self, *, closing: Closing, minimum_length: float) -> ElementNetwork:
         """The network, see `element_network`."""
         iso, mesh, lattice, pattern = self.iso, self.mesh, self.lattice, self.pattern
-        raw = CellMap.of(iso, lattice.origin, lattice.step, pattern)
+        raw = IntegerGridMap.of(iso, lattice.origin, lattice.step, pattern)
         if closing == "round":
             iso, wanted = rounded_coordinates(iso, lattice, pattern, self._lattice_of)
             off = largest_part(raw.shifts - wanted)
@@ -329,7 +329,7 @@ class LaidNet:
         around = holonomies(iso) if closing == "round" else self.around
         rim_loop = mesh.loop[mesh.connectivity.rim_nodes[:, 0]]
         network = trace_elements(
-            CellMap.of(iso, lattice.origin, lattice.step, pattern),
+            IntegerGridMap.of(iso, lattice.origin, lattice.step, pattern),
             iso.cut,
             self.umbilics.orders,
             onto=partial(onto_surface, mesh, self.surface, self.umbilics),
@@ -361,7 +361,7 @@ class LaidNet:
         )
 
 
-def lay_net(
+def plan_net(
     surface: ElementSurface,
     *,
     cells: int | None = None,
@@ -372,7 +372,7 @@ def lay_net(
     seams: bool = True,
     minimum_length: float = 0.5,
     progress: Progress = silent,
-) -> LaidNet:
+) -> NetPlan:
     """Umbilics, isothermic coordinates and lattice of a surface: how many cells its net has, and about how many nodes.
 
     Parameters
@@ -390,10 +390,10 @@ def lay_net(
     refuse_umbilic(surface)
     assert surface.has_lattice(pattern.normal_curvature)
     umbilics = surface.umbilics
-    mesh = make_net_mesh(surface, umbilics)
+    mesh = make_integration_mesh(surface, umbilics)
     inner = umbilics.orders[mesh.umbilics >= 0].tolist()
-    told = ", ".join(f"order {m}" for m in inner)
-    progress(Report.step(f"{len(inner)} umbilics" + (f" ({told})" if told else "")))
+    reported = ", ".join(f"order {m}" for m in inner)
+    progress(Report.step(f"{len(inner)} umbilics" + (f" ({reported})" if reported else "")))
     iso = integrate(mesh, mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)])
     if seams:
         iso = straightened(iso, surface)
@@ -407,15 +407,15 @@ def lay_net(
     names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
     around = holonomies(iso)
     choose = partial(choose_lattice, iso, around, request, step=step, pattern=pattern, names=names, seams=seams)
-    laid = LaidNet(surface, umbilics, mesh, iso, around, choose(), pattern, names)
+    laid = NetPlan(surface, umbilics, mesh, iso, around, choose(), pattern, names)
     if spacing is None or step is not None:
         return laid
     return _tried_out(laid, spacing, choose, "open" if seams else "round", minimum_length)
 
 
 def _tried_out(
-    laid: LaidNet, spacing: float, choose: Callable[..., Lattice], closing: Closing, minimum_length: float
-) -> LaidNet:
+    laid: NetPlan, spacing: float, choose: Callable[..., Lattice], closing: Closing, minimum_length: float
+) -> NetPlan:
     """A net of few nodes with the density whose median cell edge, measured on the net, comes nearest to a spacing.
 
     In a net of a few rows the ends of the curves are half of its edges, and where they lie decides.
@@ -476,7 +476,7 @@ def element_network(
     ------
     InputError
     """
-    laid = lay_net(
+    laid = plan_net(
         surface,
         cells=cells,
         spacing=spacing,
@@ -490,7 +490,7 @@ def element_network(
     return laid.traced(closing=closing, minimum_length=minimum_length)
 
 
-def _named(piece: Transition, mesh: NetMesh, names: tuple[str, ...]) -> str:
+def _named(piece: Transition, mesh: IntegrationMesh, names: tuple[str, ...]) -> str:
     """What a piece of the cut lies between."""
 
     def one(end: int) -> str:

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from lamella.base.arrays import Booleans, Complexes, Floats, Integers
-from lamella.network.isothermic.integration_mesh import NetMesh
+from lamella.network.isothermic.integration_mesh import IntegrationMesh
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.element.inverse_map import find_places
@@ -25,12 +25,12 @@ BEYOND_RIM = 0.25
 
 
 @dataclass(frozen=True)
-class CellMap:
+class IntegerGridMap:
     """chi on the elements of a net mesh.
 
     Attributes
     ----------
-    mesh : NetMesh
+    mesh : IntegrationMesh
     value : (m, k) complex
         chi at each element's own nodes.
     across : (m, 3) int
@@ -44,7 +44,7 @@ class CellMap:
         What chi is of w, and which curves are kept: chi counts these.
     """
 
-    mesh: NetMesh
+    mesh: IntegrationMesh
     value: Complexes
     across: Integers
     signs: Integers
@@ -53,7 +53,7 @@ class CellMap:
     pattern: Pattern = LAMELLAS
 
     @classmethod
-    def of(cls, iso: Isothermic, origin: complex, step: float, pattern: Pattern = LAMELLAS) -> CellMap:
+    def of(cls, iso: Isothermic, origin: complex, step: float, pattern: Pattern = LAMELLAS) -> IntegerGridMap:
         """The map whose lattice has a point at w = origin (sqrt(m)) and neighbours l0 = step apart."""
         signs = np.array([piece.sign for piece in iso.transitions], np.int64)
         shifts = np.array([piece.shift for piece in iso.transitions], complex)

@@ -12,7 +12,7 @@ from lamella.network.elements.cell_count import CellCount
 from lamella.network.elements.choose_step import Better, better_density, near_step
 from lamella.network.elements.closing_steps import CLOSES, ClosingLengths
 from lamella.network.elements.edge_sizes import EdgeSizes
-from lamella.network.elements.integer_grid_map import CellMap
+from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.isothermic.holonomy import Holonomy
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.isothermic.lattice_origin import lattice_origin
@@ -89,7 +89,7 @@ def choose_lattice(
         request.refuse_wide(room / wanted, 0.99 * sizes.median(room / CELLS_MIN))
         _refuse_many(request, sizes, wanted, pattern)
         chosen = near_step(count, closing, wanted, pattern)
-        if abs(np.log(chosen / wanted)) > MOVED and closing.miss(chosen) <= CLOSES:
+        if abs(np.log(chosen / wanted)) > MOVED and closing.residual(chosen) <= CLOSES:
             requested += f" ({sizes.median(chosen):.3g} m: the net closes with it)"
     elif chosen is None:
         assert cells is not None
@@ -124,7 +124,7 @@ def _refuse_many(request: DensityRequest, sizes: EdgeSizes, step: float, pattern
 
 def _seams(iso: Isothermic, step: float, pattern: Pattern) -> Integers:
     """Transitions across which an open net does not go on."""
-    shifts = CellMap.of(iso, lattice_origin(iso, step, pattern), step, pattern).shifts
+    shifts = IntegerGridMap.of(iso, lattice_origin(iso, step, pattern), step, pattern).shifts
     off = shifts - np.rint(shifts)
     return np.flatnonzero(np.maximum(np.abs(off.real), np.abs(off.imag)) > CLOSES)
 
@@ -135,4 +135,4 @@ def _advice(better: Better | None, sizes: EdgeSizes) -> str:
     density = f"spacing = {sizes.median(better.step):.4g}" if better.cells is None else f"cells = {better.cells}"
     if better.closes:
         return f"{density} closes it with all umbilics on nodes"
-    return f"{density} misses whole cells by {better.miss:.2g} only"
+    return f"{density} misses whole cells by {better.residual:.2g} only"

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.base.arrays import Booleans, Floats, Integers
-from lamella.network.elements.integer_grid_map import CellMap
-from lamella.network.elements.level_lines import CLOSED, SINGULAR_END, Chains, SmallTriangles
+from lamella.network.elements.integer_grid_map import IntegerGridMap
+from lamella.network.elements.level_chains import CLOSED, SINGULAR_END, Chains
+from lamella.network.elements.small_triangles import SmallTriangles
 from lamella.network.network import A, B
 from lamella.surface.element.places import Places
 
@@ -19,7 +20,7 @@ EDGE_STEPS, EDGE_FINE = 8, 1e-7
 
 
 @dataclass(frozen=True)
-class Tracks:
+class LevelCurves:
     """Chains of both families with a running coordinate tau in cells, A before B."""
 
     family: Integers  # of each chain
@@ -28,7 +29,7 @@ class Tracks:
     triangle: Integers
     level: Integers
     start: Floats
-    way: Floats  # +-1: how the other coordinate runs along the chain
+    direction: Floats  # +-1: how the other coordinate runs along the chain
     tau: Floats  # at the link's start, counted from the chain's
     span: Floats
     local_start: Floats
@@ -50,7 +51,7 @@ class Tracks:
         """Number of links of each chain."""
         return self.last - self.first + 1
 
-    def arranged(self, chains: Integers, backward: Booleans, rolled: Integers) -> Tracks:
+    def arranged(self, chains: Integers, backward: Booleans, rolled: Integers) -> LevelCurves:
         """Some of the chains in another order.
 
         Parameters
@@ -67,18 +68,18 @@ class Tracks:
         back = backward[owner]
         place = np.where(back, rolled[owner] - place, rolled[owner] + place)
         link = first[owner] + place % count[owner]
-        end = self.start + self.way * self.span
+        end = self.start + self.direction * self.span
         span = self.span[link]
         running = np.cumsum(span) - span
         begin = np.searchsorted(owner, np.arange(len(chains)))
-        return Tracks(
+        return LevelCurves(
             self.family[chains],
             np.where(backward[:, None], self.ends[chains][:, ::-1], self.ends[chains]),
             owner,
             self.triangle[link],
             self.level[link],
             np.where(back, end[link], self.start[link]),
-            np.where(back, -self.way[link], self.way[link]),
+            np.where(back, -self.direction[link], self.direction[link]),
             running - running[begin][owner] if len(begin) else running,
             span,
             np.where(back[:, None], self.local_end[link], self.local_start[link]),
@@ -87,7 +88,7 @@ class Tracks:
         )
 
 
-def make_tracks(small: SmallTriangles, chains: tuple[Chains, Chains]) -> Tracks:
+def make_level_curves(small: SmallTriangles, chains: tuple[Chains, Chains]) -> LevelCurves:
     """Chains of the families A and B with their running coordinate."""
     counts = [len(c.offsets) - 1 for c in chains]
     owner = np.concatenate([chains[A].owner, chains[B].owner + counts[0]])
@@ -100,7 +101,7 @@ def make_tracks(small: SmallTriangles, chains: tuple[Chains, Chains]) -> Tracks:
     running = np.cumsum(span) - span
     first = np.searchsorted(owner, np.arange(sum(counts)))
     triangle = both("triangle").astype(np.int64)
-    return Tracks(
+    return LevelCurves(
         np.repeat([A, B], counts),
         both("ends").astype(np.int64),
         owner,
@@ -116,67 +117,69 @@ def make_tracks(small: SmallTriangles, chains: tuple[Chains, Chains]) -> Tracks:
     )
 
 
-def singular_ends(cells: CellMap, tracks: Tracks) -> Integers:
+def singular_ends(cells: IntegerGridMap, level_curves: LevelCurves) -> Integers:
     """Row of the umbilic in `cells.mesh.umbilics` at each end of the chains, (c, 2), -1 where there is none."""
-    result = np.full(tracks.ends.shape, -1)
+    result = np.full(level_curves.ends.shape, -1)
     mesh = cells.mesh
     inside = np.flatnonzero(mesh.umbilics >= 0)
-    for side, (link, local) in enumerate(((tracks.first, tracks.local_start), (tracks.last, tracks.local_end))):
-        mine = np.flatnonzero(tracks.ends[:, side] == SINGULAR_END)
+    for side, (link, local) in enumerate(
+        ((level_curves.first, level_curves.local_start), (level_curves.last, level_curves.local_end))
+    ):
+        mine = np.flatnonzero(level_curves.ends[:, side] == SINGULAR_END)
         if len(mine):
-            at = cells.tangents(Places(tracks.element[link[mine]], local[link[mine]]))[0]
+            at = cells.tangents(Places(level_curves.element[link[mine]], local[link[mine]]))[0]
             apart = np.linalg.norm(at[:, None] - mesh.nodes[mesh.umbilics[inside]], axis=2)
             result[mine, side] = inside[apart.argmin(1)]
     return result
 
 
-def rim_tips(cells: CellMap, tracks: Tracks) -> tuple[Floats, Places]:
+def rim_tips(cells: IntegerGridMap, level_curves: LevelCurves) -> tuple[Floats, Places]:
     """Exact tau of the chains' ends, (c, 2), where the boundary edge has the chain's level, and their places (2 c)."""
-    last = tracks.last
-    tips = np.stack([np.zeros(len(last)), tracks.tau[last] + tracks.span[last]], 1)
-    local = np.stack([tracks.local_start[tracks.first], tracks.local_end[last]], 1)
-    for side, link in enumerate((tracks.first, last)):
-        mine = np.flatnonzero((tracks.ends[:, side] != SINGULAR_END) & (tracks.ends[:, side] != CLOSED))
-        tips[mine, side], local[mine, side] = _on_edges(cells, tracks, link[mine], local[mine, side])
-    element = tracks.element[np.stack([tracks.first, last], 1)]
+    last = level_curves.last
+    tips = np.stack([np.zeros(len(last)), level_curves.tau[last] + level_curves.span[last]], 1)
+    local = np.stack([level_curves.local_start[level_curves.first], level_curves.local_end[last]], 1)
+    for side, link in enumerate((level_curves.first, last)):
+        mine = np.flatnonzero((level_curves.ends[:, side] != SINGULAR_END) & (level_curves.ends[:, side] != CLOSED))
+        tips[mine, side], local[mine, side] = _on_edges(cells, level_curves, link[mine], local[mine, side])
+    element = level_curves.element[np.stack([level_curves.first, last], 1)]
     return tips, Places(element.ravel(), local.reshape(-1, 2))
 
 
-def passages(cells: CellMap, tracks: Tracks) -> tuple[Integers, Floats]:
+def passages(cells: IntegerGridMap, level_curves: LevelCurves) -> tuple[Integers, Floats]:
     """Chain and exact tau of every place where a chain goes over from one element to the next, closed ones twice.
 
     A closed chain's come again a whole way further on, where it is passed beyond its first place.
     """
-    following = np.arange(1, len(tracks.owner) + 1)
-    closed = tracks.ends[:, 0] == CLOSED
-    following[tracks.last] = np.where(closed, tracks.first, tracks.last)
-    link = np.flatnonzero(tracks.element != tracks.element[following])
+    following = np.arange(1, len(level_curves.owner) + 1)
+    closed = level_curves.ends[:, 0] == CLOSED
+    following[level_curves.last] = np.where(closed, level_curves.first, level_curves.last)
+    link = np.flatnonzero(level_curves.element != level_curves.element[following])
     # element by element they are found sooner
-    link = link[np.argsort(tracks.element[link], kind="stable")]
-    tau, _ = _on_edges(cells, tracks, link, tracks.local_end[link])
-    chain = tracks.owner[link]
+    link = link[np.argsort(level_curves.element[link], kind="stable")]
+    tau, _ = _on_edges(cells, level_curves, link, level_curves.local_end[link])
+    chain = level_curves.owner[link]
     again = closed[chain]
-    last = tracks.last[chain[again]]
-    return np.r_[chain, chain[again]], np.r_[tau, tau[again] + tracks.tau[last] + tracks.span[last]]
+    last = level_curves.last[chain[again]]
+    return np.r_[chain, chain[again]], np.r_[tau, tau[again] + level_curves.tau[last] + level_curves.span[last]]
 
 
-def _on_edges(cells: CellMap, tracks: Tracks, link: Integers, local: Floats) -> tuple[Floats, Floats]:
+def _on_edges(cells: IntegerGridMap, level_curves: LevelCurves, link: Integers, local: Floats) -> tuple[Floats, Floats]:
     """Exact tau (n,) and place (n, 2) of places (n, 2) of links on edges: where the edge has the chain's level."""
     basis = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     barycentric = np.column_stack([1 - local.sum(1), local])
     edge = (barycentric.argmin(1) + 1) % 3
     begin, along = basis[edge], basis[(edge + 1) % 3] - basis[edge]
     share = ((local - begin) * along).sum(1) / (along**2).sum(1)
-    element, level = tracks.element[link], tracks.level[link]
-    is_a = tracks.family[tracks.owner[link]] == A
+    element, level = level_curves.element[link], level_curves.level[link]
+    is_a = level_curves.family[level_curves.owner[link]] == A
     for _ in range(EDGE_STEPS):
         chi, chi_x, chi_y = cells.jet(Places(element, begin + share[:, None] * along))
         slope = chi_x * along[:, 0] + chi_y * along[:, 1]
-        miss = np.where(is_a, chi.imag, chi.real) - level
-        before, share = share, np.clip(share - miss / np.where(is_a, slope.imag, slope.real), 0, 1)
+        residual = np.where(is_a, chi.imag, chi.real) - level
+        before, share = share, np.clip(share - residual / np.where(is_a, slope.imag, slope.real), 0, 1)
         if np.abs(share - before).max(initial=0.0) < EDGE_FINE:
             break
     there = begin + share[:, None] * along
     chi, _, _ = cells.jet(Places(element, there))
     other = np.where(is_a, chi.real, chi.imag)
-    return np.asarray(tracks.tau[link] + (other - tracks.start[link]) * tracks.way[link]), there
+    return np.asarray(level_curves.tau[link] + (other - level_curves.start[link]) * level_curves.direction[link]), there

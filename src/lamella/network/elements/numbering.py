@@ -11,9 +11,9 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.network.elements.crossings import Crossings
-from lamella.network.elements.integer_grid_map import CellMap
-from lamella.network.elements.level_curves import Tracks, rim_tips
-from lamella.network.elements.level_lines import CLOSED, RIM, SINGULAR_END
+from lamella.network.elements.integer_grid_map import IntegerGridMap
+from lamella.network.elements.level_chains import CLOSED, RIM, SINGULAR_END
+from lamella.network.elements.level_curves import LevelCurves, rim_tips
 from lamella.network.network import A, B
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import ElementRim
@@ -22,7 +22,7 @@ from lamella.surface.element.rim import ElementRim
 AT_START = 1e-3
 
 
-def rim_places(cells: CellMap, rims: tuple[ElementRim, ...], places: Places) -> tuple[Integers, Floats, Floats]:
+def rim_places(cells: IntegerGridMap, rims: tuple[ElementRim, ...], places: Places) -> tuple[Integers, Floats, Floats]:
     """Loop (n,), share of its length from its start on (n,), and direction (n, 3) of places on edges of the rim."""
     mesh = cells.mesh
     connectivity = mesh.connectivity
@@ -47,46 +47,48 @@ _CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
 
 def numbered(
-    cells: CellMap, rims: tuple[ElementRim, ...], tracks: Tracks, crossings: Crossings, kept: Integers
-) -> Tracks:
+    cells: IntegerGridMap, rims: tuple[ElementRim, ...], level_curves: LevelCurves, crossings: Crossings, kept: Integers
+) -> LevelCurves:
     """Chains in the order of their numbers, A before B, each from its beginning on.
 
     Parameters
     ----------
-    cells : CellMap
+    cells : IntegerGridMap
     rims : tuple of ElementRim
         Of the cell map's mesh.
-    tracks : Tracks
+    level_curves : LevelCurves
     crossings : Crossings
         Of those that are kept.
     kept : (k,) int
         The chains to keep.
     """
-    chains = len(tracks.family)
+    chains = len(level_curves.family)
     rank, backward = np.full(chains, np.inf), np.zeros(chains, bool)
-    at_rim = tracks.ends == RIM
+    at_rim = level_curves.ends == RIM
     left_out = np.ones(chains, bool)
     left_out[kept] = False
     at_rim[left_out] = False
     chain, side = np.nonzero(at_rim)
-    loop, place, _ = rim_places(cells, rims, rim_tips(cells, tracks)[1][2 * chain + side])
+    loop, place, _ = rim_places(cells, rims, rim_tips(cells, level_curves)[1][2 * chain + side])
     place = (place + AT_START) % 1
     for family in (A, B):
-        mine = np.flatnonzero(tracks.family[chain] == family)
+        mine = np.flatnonzero(level_curves.family[chain] == family)
         met = mine[np.lexsort((place[mine], loop[mine]))]
         met = np.concatenate([_from_a_turn(chain, met[loop[met] == 0]), met[loop[met] > 0]])
         found, first = np.unique(chain[met], return_index=True)
         rank[found] = first
         backward[found] = side[met[first]] == 1
     # a ray runs out of its singular node
-    backward = np.where(tracks.ends[:, 0] == SINGULAR_END, False, backward)
-    backward = np.where((tracks.ends[:, 1] == SINGULAR_END) & (tracks.ends[:, 0] != SINGULAR_END), True, backward)
-    rolled = np.where(backward, tracks.links - 1, 0)
+    backward = np.where(level_curves.ends[:, 0] == SINGULAR_END, False, backward)
+    backward = np.where(
+        (level_curves.ends[:, 1] == SINGULAR_END) & (level_curves.ends[:, 0] != SINGULAR_END), True, backward
+    )
+    rolled = np.where(backward, level_curves.links - 1, 0)
     inner = ~at_rim.any(1) & ~left_out
     if inner.any():
-        _rank_inner(tracks, crossings, rank, backward, rolled, inner)
-    order = kept[np.lexsort((kept, rank[kept], tracks.family[kept]))]
-    return tracks.arranged(order, backward[order], rolled[order])
+        _rank_inner(level_curves, crossings, rank, backward, rolled, inner)
+    order = kept[np.lexsort((kept, rank[kept], level_curves.family[kept]))]
+    return level_curves.arranged(order, backward[order], rolled[order])
 
 
 def _from_a_turn(chain: Integers, met: Integers) -> Integers:
@@ -97,7 +99,7 @@ def _from_a_turn(chain: Integers, met: Integers) -> Integers:
 
 
 def _rank_inner(
-    tracks: Tracks,
+    level_curves: LevelCurves,
     crossings: Crossings,
     rank: Floats,
     backward: Booleans,
@@ -105,7 +107,7 @@ def _rank_inner(
     inner: Booleans,
 ) -> None:
     """Rank chains without an end on a rim by the first ranked chain that they cross, and then by where along it."""
-    whole = np.bincount(tracks.owner, tracks.span, len(rank))
+    whole = np.bincount(level_curves.owner, level_curves.span, len(rank))
     outer = np.where(np.isinf(rank), np.inf, rank)
     keys = np.full((len(rank), 2), np.inf)
     for family in (A, B):
@@ -119,14 +121,14 @@ def _rank_inner(
             keys[k] = outer[other[at[0]]], there[at[0]]
             along = at[np.argsort(here[at])]
             met = outer[other[along]]
-            if tracks.ends[k, 0] == CLOSED:
+            if level_curves.ends[k, 0] == CLOSED:
                 begin = int(np.flatnonzero(along == at[0])[0])
                 backward[k] = met[(begin - 1) % len(met)] < met[(begin + 1) % len(met)]
-                links = tracks.tau[tracks.first[k] : tracks.last[k] + 1]
+                links = level_curves.tau[level_curves.first[k] : level_curves.last[k] + 1]
                 rolled[k] = int(np.searchsorted(links, here[at[0]], side="right")) - 1
-            elif (tracks.ends[k, 0] == SINGULAR_END) == (tracks.ends[k, 1] == SINGULAR_END):
+            elif (level_curves.ends[k, 0] == SINGULAR_END) == (level_curves.ends[k, 1] == SINGULAR_END):
                 backward[k] = met[-1] < met[0]
-                rolled[k] = tracks.links[k] - 1 if backward[k] else 0
+                rolled[k] = level_curves.links[k] - 1 if backward[k] else 0
     order = np.lexsort((keys[:, 1], keys[:, 0]))
     later = order[inner[order]]
     rank[later] = len(crossings.chain[0]) + len(rank) * 2 + np.arange(len(later))

@@ -15,9 +15,9 @@ from scipy.spatial import cKDTree
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.vectors import crosses, dots, lengths
 from lamella.network.elements.crossings import Crossings
-from lamella.network.elements.integer_grid_map import CellMap
-from lamella.network.elements.level_curves import Tracks
-from lamella.network.elements.level_lines import RIM, SINGULAR_END
+from lamella.network.elements.integer_grid_map import IntegerGridMap
+from lamella.network.elements.level_chains import RIM, SINGULAR_END
+from lamella.network.elements.level_curves import LevelCurves
 from lamella.network.network import A, B
 from lamella.surface.element.places import Places
 from lamella.surface.element.rim import ElementRim
@@ -54,22 +54,22 @@ class Ends(NamedTuple):
     places: Places
 
 
-def _to_ends(tracks: Tracks, tips: Floats, crossings: Crossings) -> Floats:
+def _to_ends(level_curves: LevelCurves, tips: Floats, crossings: Crossings) -> Floats:
     """How far the crossings are from both ends of their chains on the rim, cells, (2, n, 2); inf: no such end."""
     away = np.abs(crossings.tau[:, :, None] - tips[crossings.chain])
-    return np.where(tracks.ends[crossings.chain] == RIM, away, np.inf)
+    return np.where(level_curves.ends[crossings.chain] == RIM, away, np.inf)
 
 
 def along_rim(
-    cells: CellMap, rims: tuple[ElementRim, ...], tracks: Tracks, tips: Floats, crossings: Crossings
+    cells: IntegerGridMap, rims: tuple[ElementRim, ...], level_curves: LevelCurves, tips: Floats, crossings: Crossings
 ) -> Booleans:
     """Chains (c,) that are the rim: all that crosses them ends within `ALONG` from there, or they lie as near to it.
 
     Rays of a singular node are none: the node lies inside, however near to the rim, and cells next to it are large.
     """
-    chains = len(tracks.family)
-    ray = (tracks.ends == SINGULAR_END).any(1)
-    near = _to_ends(tracks, tips, crossings).min(2) < ALONG
+    chains = len(level_curves.family)
+    ray = (level_curves.ends == SINGULAR_END).any(1)
+    near = _to_ends(level_curves, tips, crossings).min(2) < ALONG
     inside, beside = np.zeros(chains), np.zeros(chains)
     for family in (A, B):
         mine, other = crossings.chain[family], near[1 - family]
@@ -78,10 +78,12 @@ def along_rim(
         beside += np.bincount(mine, other & ~near[family], chains)
     result = ~ray & (inside == 0) & (beside > 0)
     for chain in np.flatnonzero(~ray & (inside == 0) & (beside == 0)).tolist():
-        links = slice(int(tracks.first[chain]), int(tracks.last[chain]) + 1)
-        points = cells.positions(Places(tracks.element[links], tracks.local_end[links]))
-        points = np.vstack([cells.positions(Places(tracks.element[links], tracks.local_start[links]))[:1], points])
-        edge = lengths(np.diff(points, axis=0)).sum() / max(float(tracks.span[links].sum()), 1e-12)
+        links = slice(int(level_curves.first[chain]), int(level_curves.last[chain]) + 1)
+        points = cells.positions(Places(level_curves.element[links], level_curves.local_end[links]))
+        points = np.vstack(
+            [cells.positions(Places(level_curves.element[links], level_curves.local_start[links]))[:1], points]
+        )
+        edge = lengths(np.diff(points, axis=0)).sum() / max(float(level_curves.span[links].sum()), 1e-12)
         result[chain] = _from_rims(rims, points).max() < ALONG * edge
     return np.asarray(result, bool)
 
@@ -100,22 +102,24 @@ def _from_rims(rims: tuple[ElementRim, ...], points: Floats) -> Floats:
     return apart
 
 
-def within_tips(tracks: Tracks, tips: Floats, crossings: Crossings) -> Booleans:
+def within_tips(level_curves: LevelCurves, tips: Floats, crossings: Crossings) -> Booleans:
     """Crossings (n,) between the exact ends of their chains: others are there on flat triangles alone."""
     low, high = tips[crossings.chain].transpose(2, 0, 1)
-    open_ = tracks.ends[crossings.chain] == RIM
+    open_ = level_curves.ends[crossings.chain] == RIM
     before = open_[..., 0] & (crossings.tau < low - AT_END)
     behind = open_[..., 1] & (crossings.tau > high + AT_END)
     return np.asarray(~(before | behind).any(0), bool)
 
 
-def settled_ends(cells: CellMap, tracks: Tracks, tips: Floats, places: Places, crossings: Crossings) -> Ends:
+def settled_ends(
+    cells: IntegerGridMap, level_curves: LevelCurves, tips: Floats, places: Places, crossings: Crossings
+) -> Ends:
     """Which crossings are boundary nodes, and where chains end.
 
     Parameters
     ----------
-    cells : CellMap
-    tracks : Tracks
+    cells : IntegerGridMap
+    level_curves : LevelCurves
     tips : (c, 2)
         Exact tau of the ends on the rim.
     places : Places
@@ -124,7 +128,7 @@ def settled_ends(cells: CellMap, tracks: Tracks, tips: Floats, places: Places, c
     """
     tips = tips.copy()
     node = np.full(tips.shape, -1)
-    away = _to_ends(tracks, tips, crossings)
+    away = _to_ends(level_curves, tips, crossings)
     boundary = np.asarray((away < AT_END).any((0, 2)), bool)
     for family in (A, B):
         # what is left of a line behind a boundary node is no piece of its own
@@ -132,8 +136,8 @@ def settled_ends(cells: CellMap, tracks: Tracks, tips: Floats, places: Places, c
         chain = crossings.chain[family, at]
         node[chain, side], tips[chain, side] = at, crossings.tau[family, at]
     count = len(boundary)
-    chain, side, tau, position, edge = _whole_tips(cells, tracks, tips, places, node)
-    is_a = tracks.family[chain] == A
+    chain, side, tau, position, edge = _whole_tips(cells, level_curves, tips, places, node)
+    is_a = level_curves.family[chain] == A
     one, other = np.flatnonzero(is_a), np.flatnonzero(~is_a)
     shared = 0
     if len(one) and len(other):
@@ -150,13 +154,13 @@ def settled_ends(cells: CellMap, tracks: Tracks, tips: Floats, places: Places, c
 
 
 def _whole_tips(
-    cells: CellMap, tracks: Tracks, tips: Floats, places: Places, node: Integers
+    cells: IntegerGridMap, level_curves: LevelCurves, tips: Floats, places: Places, node: Integers
 ) -> tuple[Integers, Integers, Floats, Floats, Floats]:
     """Ends on the rim that have no crossing but a whole number nearby: chain, side, its tau, position, cell edge, m."""
-    chain, side = np.nonzero((tracks.ends == RIM) & (node < 0))
-    link = np.where(side == 0, tracks.first[chain], tracks.last[chain])
-    other = tracks.start[link] + (tips[chain, side] - tracks.tau[link]) * tracks.way[link]
-    beyond = (np.round(other) - other) * tracks.way[link]
+    chain, side = np.nonzero((level_curves.ends == RIM) & (node < 0))
+    link = np.where(side == 0, level_curves.first[chain], level_curves.last[chain])
+    other = level_curves.start[link] + (tips[chain, side] - level_curves.tau[link]) * level_curves.direction[link]
+    beyond = (np.round(other) - other) * level_curves.direction[link]
     near = np.abs(beyond) < AT_END
     chain, side, beyond = chain[near], side[near], beyond[near]
     chi, (position, first, second) = cells.jet_and_tangents(places[2 * chain + side])

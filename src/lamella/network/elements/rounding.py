@@ -9,9 +9,9 @@ import numpy as np
 from lamella.base.arrays import Booleans, Complexes, Floats
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
-from lamella.network.elements.integer_grid_map import CellMap
+from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.elements.lattice import Lattice
-from lamella.network.isothermic.integer_transitions import WholeShifts
+from lamella.network.isothermic.integer_transitions import IntegerTransitions
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.isothermic.seamless_transitions import FoldedError, with_shifts
 from lamella.network.pattern import Pattern
@@ -40,8 +40,8 @@ def rounded_coordinates(
     InputError
         Rounding folds the coordinates: it takes more cells than there are between two umbilics, or around a hole.
     """
-    raw = CellMap.of(iso, lattice.origin, lattice.step, pattern)
-    whole = WholeShifts.of(iso, iso.gram)
+    raw = IntegerGridMap.of(iso, lattice.origin, lattice.step, pattern)
+    whole = IntegerTransitions.of(iso, iso.gram)
     try:
         return _nearest(iso, raw, whole, lattice)
     except FoldedError as folded:
@@ -60,7 +60,9 @@ def rounded_coordinates(
         ) from None
 
 
-def _nearest(iso: Isothermic, raw: CellMap, whole: WholeShifts, lattice: Lattice) -> tuple[Isothermic, Complexes]:
+def _nearest(
+    iso: Isothermic, raw: IntegerGridMap, whole: IntegerTransitions, lattice: Lattice
+) -> tuple[Isothermic, Complexes]:
     """The coordinates with the nearest whole shifts, else the first failure."""
     folded: FoldedError | None = None
     for wanted in whole.nearest(raw.shifts, MOST_WAYS):
@@ -74,7 +76,7 @@ def _nearest(iso: Isothermic, raw: CellMap, whole: WholeShifts, lattice: Lattice
 
 
 def _finer(
-    iso: Isothermic, whole: WholeShifts, lattice: Lattice, pattern: Pattern, finer: Callable[[int], Lattice]
+    iso: Isothermic, whole: IntegerTransitions, lattice: Lattice, pattern: Pattern, finer: Callable[[int], Lattice]
 ) -> int | None:
     """A larger number of cells whose lattice is rounded without a fold; None: none that was tried."""
     wanted, last = float(lattice.cells), lattice.cells
@@ -84,7 +86,7 @@ def _finer(
             other = finer(round(wanted))
             if other.cells > last:
                 last = other.cells
-                _nearest(iso, CellMap.of(iso, other.origin, other.step, pattern), whole, other)
+                _nearest(iso, IntegerGridMap.of(iso, other.origin, other.step, pattern), whole, other)
                 return last
         except FoldedError:
             continue
@@ -104,7 +106,7 @@ def stubs(iso: Isothermic) -> Booleans:
     return np.array([piece.stub for piece in iso.transitions], bool)
 
 
-def turned(raw: CellMap, wanted: Floats, lattice: Lattice) -> tuple[Floats, complex]:
+def turned(raw: IntegerGridMap, wanted: Floats, lattice: Lattice) -> tuple[Floats, complex]:
     """Both parts (2, t) of shifts of w, sqrt(m), turned by a factor as cells are, of shifts in cells; the factor."""
     turn, every = raw.pattern.factor, np.array(raw.pattern.every[::-1])
     hung = (raw.signs - 1) * lattice.origin * turn

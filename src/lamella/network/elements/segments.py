@@ -16,8 +16,8 @@ from scipy.special import beta, betainc, betaincinv
 from lamella.base.arrays import Floats, Integers
 from lamella.base.blocks import blocks
 from lamella.base.vectors import lengths
-from lamella.network.elements.integer_grid_map import CellMap
-from lamella.network.elements.level_curves import Tracks, passages
+from lamella.network.elements.integer_grid_map import IntegerGridMap
+from lamella.network.elements.level_curves import LevelCurves, passages
 from lamella.network.network import A
 from lamella.surface.element.places import Places
 
@@ -59,8 +59,8 @@ class ElementSegments:
 
     Parameters
     ----------
-    cells : CellMap
-    tracks : Tracks
+    cells : IntegerGridMap
+    level_curves : LevelCurves
     chain : (s,) int
         Chain of each.
     tau, reach : (s,)
@@ -72,7 +72,7 @@ class ElementSegments:
 
     Attributes
     ----------
-    cells : CellMap
+    cells : IntegerGridMap
     owner : (s,) int
         Chain of each.
     reach : (s,)
@@ -81,28 +81,28 @@ class ElementSegments:
 
     def __init__(
         self,
-        cells: CellMap,
-        tracks: Tracks,
+        cells: IntegerGridMap,
+        level_curves: LevelCurves,
         chain: Integers,
         tau: Floats,
         reach: Floats,
         zeros: Integers,
         orders: Integers,
     ) -> None:
-        self.cells, self._tracks = cells, tracks
+        self.cells, self._level_curves = cells, level_curves
         self.owner, self._tau, self.reach, self._zeros = chain, tau, reach, zeros
-        self._is_a = tracks.family[chain] == A
+        self._is_a = level_curves.family[chain] == A
         self._power = np.where(zeros >= 0, 1 + np.r_[orders, 0][zeros] / 2, 1.0)
         # whether each end is an umbilic
         self._at_zero = np.asarray(zeros >= 0)
         self._singular = np.asarray(self._at_zero.any(1))
         self._bent = (self._power != 1).any(1)
-        self._stride = 2 * float(tracks.tau.max() + tracks.span.max() + 2)
-        self._keys = tracks.owner * self._stride + tracks.tau
+        self._stride = 2 * float(level_curves.tau.max() + level_curves.span.max() + 2)
+        self._keys = level_curves.owner * self._stride + level_curves.tau
 
     def spots(self, segment: Integers, sigma: Floats) -> Spots:
         """Parameters (k,) of segments (k,): sooner if they are in order."""
-        t, chain = self._tracks, self.owner[segment]
+        t, chain = self._level_curves, self.owner[segment]
         share = np.clip(sigma, 0, 1)
         bent = np.flatnonzero(self._bent[segment])
         share[bent] = betainc(*self._power[segment[bent]].T, share[bent])
@@ -113,13 +113,13 @@ class ElementSegments:
 
     def element(self, spots: Spots) -> Integers:
         """Elements of spots, (k,); next to an element's edge it may be the neighbour."""
-        return self._tracks.element[spots.link]
+        return self._level_curves.element[spots.link]
 
     def _find(self, spots: Spots, near: Places | None = None) -> tuple[Places, Floats]:
         """Places of spots, and which way the chain's coordinate runs on their sheets, (k,)."""
-        t, link, ahead = self._tracks, spots.link, spots.ahead
-        way = t.way[link]
-        other = t.start[link] + ahead * way
+        t, link, ahead = self._level_curves, spots.link, spots.ahead
+        direction = t.direction[link]
+        other = t.start[link] + ahead * direction
         level = t.level[link].astype(float)
         is_a = self._is_a[spots.segment]
         target = np.stack([np.where(is_a, other, level), np.where(is_a, level, other)])
@@ -132,7 +132,7 @@ class ElementSegments:
         begin = t.local_start.take(link, 0)
         local[alone] = begin + share[:, None] * (t.local_end.take(link, 0) - begin)
         places, turn, _ = self.cells.invert(Places(element, local), target)
-        return places, turn * way
+        return places, turn * direction
 
     def velocity(self, spots: Spots, near: Places | None = None) -> tuple[Places, Floats, Floats]:
         """Places, positions (k, 3) and their derivatives by sigma (k, 3), m, at spots.
@@ -155,12 +155,12 @@ class ElementSegments:
         beside = sigma.copy()
         beside[some] = np.clip(sigma[some], BESIDE * first_is, 1 - BESIDE * last_is)
         moved = np.flatnonzero(beside != sigma)
-        places, way = self._find(self.spots(segment, beside) if len(moved) else spots, near)
+        places, direction = self._find(self.spots(segment, beside) if len(moved) else spots, near)
         (_, chi_x, chi_y), (position, first, second) = self.cells.jet_and_tangents(places)
         # along the level line, where the other part of chi does not change
         is_a = self._is_a[segment]
         held_x, held_y = (np.where(is_a, slope.imag, -slope.real) for slope in (chi_x, chi_y))
-        rate = way * self.reach[segment] / (chi_x.real * chi_y.imag - chi_x.imag * chi_y.real)
+        rate = direction * self.reach[segment] / (chi_x.real * chi_y.imag - chi_x.imag * chi_y.real)
         bent = np.flatnonzero(self._bent[segment])
         p, q = self._power[segment[bent]].T
         rate[bent] *= beside[bent] ** (p - 1) * (1 - beside[bent]) ** (q - 1) / beta(p, q)
@@ -174,7 +174,7 @@ class ElementSegments:
 
     def passages(self) -> tuple[Integers, Floats]:
         """Segments and parameters where they go over from one element to the next, each (k,)."""
-        chain, tau = passages(self.cells, self._tracks)
+        chain, tau = passages(self.cells, self._level_curves)
         starts = self.owner * self._stride + self._tau
         segment = np.searchsorted(starts, chain * self._stride + tau, side="right") - 1
         share = (tau - self._tau[segment]) / self.reach[segment]

@@ -17,19 +17,13 @@ from lamella.base.vectors import crosses, dots, images, lengths
 from lamella.network.assemble import Curves, CurveSamples, RimNodes, SampledCurves, assemble
 from lamella.network.elements.arc_lengths import ElementArcs
 from lamella.network.elements.crossings import Crossings, find_crossings
-from lamella.network.elements.integer_grid_map import CellMap
-from lamella.network.elements.level_curves import Tracks, make_tracks, rim_tips, singular_ends
-from lamella.network.elements.level_lines import (
-    CLOSED,
-    RIM,
-    SEAM_END,
-    SINGULAR_END,
-    level_chains,
-    small_triangles,
-)
+from lamella.network.elements.integer_grid_map import IntegerGridMap
+from lamella.network.elements.level_chains import CLOSED, RIM, SEAM_END, SINGULAR_END, level_chains
+from lamella.network.elements.level_curves import LevelCurves, make_level_curves, rim_tips, singular_ends
 from lamella.network.elements.numbering import numbered, rim_places
 from lamella.network.elements.rim_ends import Ends, along_rim, settled_ends, within_tips
 from lamella.network.elements.segments import ElementSegments
+from lamella.network.elements.small_triangles import small_triangles
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, A, B, Network, Period
 from lamella.network.sampling import Division, divide, parts_of
 from lamella.network.turning import sideways_slopes, turning
@@ -51,10 +45,10 @@ class _Stops:
     kinds: Integers  # of the nodes
 
 
-def _stops(tracks: Tracks, crossings: Crossings, singular: Integers, ends: Ends) -> _Stops:
+def _stops(level_curves: LevelCurves, crossings: Crossings, singular: Integers, ends: Ends) -> _Stops:
     """All stops of the chains; `singular` (c, 2) is the umbilic at each end."""
-    nodes, chains = len(ends.boundary), len(tracks.family)
-    closed = tracks.ends[:, 0] == CLOSED
+    nodes, chains = len(ends.boundary), len(level_curves.family)
+    closed = level_curves.ends[:, 0] == CLOSED
     kind_there = np.where(ends.boundary, BOUNDARY, REGULAR)
     parts = [(crossings.chain.ravel(), crossings.tau.ravel(), np.tile(np.arange(nodes), 2), np.tile(kind_there, 2))]
     shared = nodes + ends.shared
@@ -62,11 +56,11 @@ def _stops(tracks: Tracks, crossings: Crossings, singular: Integers, ends: Ends)
     for side in range(2):
         # where a crossing is the end it is a stop already
         mine = np.flatnonzero(~closed & ((ends.node[:, side] < 0) | (ends.node[:, side] >= nodes)))
-        kind, name = tracks.ends[mine, side], ends.node[mine, side]
+        kind, name = level_curves.ends[mine, side], ends.node[mine, side]
         name = np.where(name >= 0, name, own + mine + side * chains)
         name = np.where(kind == SINGULAR_END, shared + singular[mine, side], name)
-        told = np.where(kind == SINGULAR_END, SINGULAR, np.where(kind == SEAM_END, SEAM, BOUNDARY))
-        parts.append((mine, ends.tips[mine, side], name, told))
+        reported = np.where(kind == SINGULAR_END, SINGULAR, np.where(kind == SEAM_END, SEAM, BOUNDARY))
+        parts.append((mine, ends.tips[mine, side], name, reported))
     chain, tau, node, kind = (np.concatenate(column) for column in zip(*parts, strict=True))
     order = np.lexsort((tau, chain))
     chain, tau, node, kind = chain[order], tau[order], node[order], kind[order]
@@ -74,7 +68,7 @@ def _stops(tracks: Tracks, crossings: Crossings, singular: Integers, ends: Ends)
     looped = [k for k in np.flatnonzero(closed).tolist() if (chain == k).any()]
     for k in looped:
         at = np.flatnonzero(chain == k)
-        whole = tracks.tau[tracks.last[k]] + tracks.span[tracks.last[k]]
+        whole = level_curves.tau[level_curves.last[k]] + level_curves.span[level_curves.last[k]]
         place = at[-1] + 1
         chain, tau = np.insert(chain, place, k), np.insert(tau, place, tau[at[0]] + whole)
         node, kind = np.insert(node, place, node[at[0]]), np.insert(kind, place, kind[at[0]])
@@ -88,7 +82,7 @@ def _stops(tracks: Tracks, crossings: Crossings, singular: Integers, ends: Ends)
 
 
 def trace_elements(
-    cells: CellMap,
+    cells: IntegerGridMap,
     cut: Booleans,
     orders: Integers,
     *,
@@ -103,7 +97,7 @@ def trace_elements(
 
     Parameters
     ----------
-    cells : CellMap
+    cells : IntegerGridMap
     cut : (m, 3) bool
         Edges that are cut, see `Isothermic.cut`.
     orders : (z,) int
@@ -126,21 +120,21 @@ def trace_elements(
         No two lamellas cross, or the net is too coarse.
     """
     small = small_triangles(cells, cut, cells.mesh.umbilics[cells.mesh.umbilics >= 0])
-    found = make_tracks(small, (level_chains(small, cells, A), level_chains(small, cells, B)))
+    found = make_level_curves(small, (level_chains(small, cells, A), level_chains(small, cells, B)))
     rims = element_rims(cells.mesh.connectivity, cells.mesh.nodes, rim_loop)
     length, median = _lengths(cells, found)
     short = length < minimum_length * median
-    tracks, on_rim = _kept(cells, rims, found, ~short)
+    level_curves, on_rim = _kept(cells, rims, found, ~short)
     short &= ~on_rim
-    singular = singular_ends(cells, tracks)
-    crossings, rim_ends = _settled(cells, tracks)
-    stops = _stops(tracks, crossings, singular, rim_ends)
+    singular = singular_ends(cells, level_curves)
+    crossings, rim_ends = _settled(cells, level_curves)
+    stops = _stops(level_curves, crossings, singular, rim_ends)
     if not (stops.kinds == REGULAR).any():
         raise _none_cross(found, count, length / median, short, minimum_length, median)
-    curves, nodes, used = _curves(tracks, stops)
-    segments = _segments(cells, tracks, stops, singular, orders)
+    curves, nodes, used = _curves(level_curves, stops)
+    segments = _segments(cells, level_curves, stops, singular, orders)
     sampled, samples = _sampled(segments, curves, onto, mean_curvature)
-    loops, directions = _rims(cells, rims, tracks, stops, rim_ends, nodes)
+    loops, directions = _rims(cells, rims, level_curves, stops, rim_ends, nodes)
     return assemble(
         sampled,
         samples,
@@ -150,12 +144,12 @@ def trace_elements(
         step=cells.step,
         cells=count,
         periods=periods,
-        left_out=int(short.sum()) + len(tracks.family) - len(used),
+        left_out=int(short.sum()) + len(level_curves.family) - len(used),
     )
 
 
 def _none_cross(
-    found: Tracks, count: int, edges: Floats, short: Booleans, minimum_length: float, median: float
+    found: LevelCurves, count: int, edges: Floats, short: Booleans, minimum_length: float, median: float
 ) -> InputError:
     """Why no two of the chains cross that are `edges` median cell edges (c,) long, and with what they do."""
     if short.any():
@@ -173,27 +167,29 @@ def _none_cross(
     )
 
 
-def _curves(tracks: Tracks, stops: _Stops) -> tuple[Curves, Integers, Integers]:
+def _curves(level_curves: LevelCurves, stops: _Stops) -> tuple[Curves, Integers, Integers]:
     """The chains that have two stops, as curves of the net; the nodes (of the stops) and the chains that they keep."""
-    chains = len(tracks.family)
+    chains = len(level_curves.family)
     used = np.unique(stops.chain[1:][stops.chain[1:] == stops.chain[:-1]])
     curve_of = np.full(chains, -1)
     curve_of[used] = np.arange(len(used))
     kept = curve_of[stops.chain] >= 0
     nodes, number = np.unique(stops.node[kept], return_inverse=True)
-    closed = tracks.ends[used, 0] == CLOSED
-    curves = Curves(tracks.family[used], closed, curve_of[stops.chain[kept]], number.ravel(), stops.kinds[nodes])
+    closed = level_curves.ends[used, 0] == CLOSED
+    curves = Curves(level_curves.family[used], closed, curve_of[stops.chain[kept]], number.ravel(), stops.kinds[nodes])
     return curves, nodes, used
 
 
-def _segments(cells: CellMap, tracks: Tracks, stops: _Stops, singular: Integers, orders: Integers) -> ElementSegments:
+def _segments(
+    cells: IntegerGridMap, level_curves: LevelCurves, stops: _Stops, singular: Integers, orders: Integers
+) -> ElementSegments:
     """The pieces of the chains between neighbouring stops."""
     pair = np.flatnonzero(stops.chain[1:] == stops.chain[:-1])
     chain, reach = stops.chain[pair], stops.tau[pair + 1] - stops.tau[pair]
     begins = np.r_[True, stops.chain[1:] != stops.chain[:-1]][pair]
     ends = np.r_[stops.chain[1:] != stops.chain[:-1], True][pair + 1]
     zeros = np.where(np.stack([begins, ends], 1), singular[chain], -1)
-    return ElementSegments(cells, tracks, chain, stops.tau[pair], reach, zeros, orders)
+    return ElementSegments(cells, level_curves, chain, stops.tau[pair], reach, zeros, orders)
 
 
 class _Spots(NamedTuple):
@@ -251,7 +247,7 @@ def _inverse(order: Integers) -> Integers:
     return inverse
 
 
-def _frames(cells: CellMap, places: Places, directions: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+def _frames(cells: IntegerGridMap, places: Places, directions: Floats) -> tuple[Floats, Floats, Floats, Floats]:
     """Unit normals (n, 3), tangents nearest to directions (n, 3), and kn and tg from the surface's shape operator."""
     mesh = cells.mesh
     nodal = np.column_stack([mesh.normals, mesh.shape])[mesh.connectivity.elements]
@@ -273,17 +269,17 @@ def _frames(cells: CellMap, places: Places, directions: Floats) -> tuple[Floats,
 
 
 def _rims(
-    cells: CellMap,
+    cells: IntegerGridMap,
     rims: tuple[ElementRim, ...],
-    tracks: Tracks,
+    level_curves: LevelCurves,
     stops: _Stops,
     ends: Ends,
     nodes: Integers,
 ) -> tuple[list[Integers], Floats]:
     """Boundary nodes of each loop in order, and the rim's direction at all nodes: from where lamellas meet it."""
-    chain, side = np.nonzero(tracks.ends == RIM)
-    first = np.searchsorted(stops.chain, np.arange(len(tracks.family)))
-    last = np.searchsorted(stops.chain, np.arange(len(tracks.family)), side="right") - 1
+    chain, side = np.nonzero(level_curves.ends == RIM)
+    first = np.searchsorted(stops.chain, np.arange(len(level_curves.family)))
+    last = np.searchsorted(stops.chain, np.arange(len(level_curves.family)), side="right") - 1
     node = stops.node[np.where(side == 0, first[chain], last[chain])]
     # each node once, where it is one of the net
     there = np.isin(node, nodes)
@@ -296,36 +292,40 @@ def _rims(
     return [number[order[loop[order] == k]] for k in range(len(rims))], directions
 
 
-def _lengths(cells: CellMap, tracks: Tracks) -> tuple[Floats, float]:
+def _lengths(cells: IntegerGridMap, level_curves: LevelCurves) -> tuple[Floats, float]:
     """Rough lengths of the chains, m, (c,), and the median length of a cell, alike on fine and coarse elements."""
-    begin = cells.positions(Places(tracks.element, tracks.local_start))
+    begin = cells.positions(Places(level_curves.element, level_curves.local_start))
     # every link ends where the next one begins, but for the last ones
     end = np.roll(begin, -1, 0)
-    end[tracks.last] = cells.positions(Places(tracks.element[tracks.last], tracks.local_end[tracks.last]))
+    end[level_curves.last] = cells.positions(
+        Places(level_curves.element[level_curves.last], level_curves.local_end[level_curves.last])
+    )
     rough = lengths(end - begin)
     if not len(rough):
         return np.zeros(0), 0.0
-    edge = rough / np.maximum(tracks.span, 1e-12)
+    edge = rough / np.maximum(level_curves.span, 1e-12)
     order = np.argsort(edge)
-    share = np.cumsum(tracks.span[order])
+    share = np.cumsum(level_curves.span[order])
     median = float(edge[order[np.searchsorted(share, share[-1] / 2)]])
-    return np.asarray(np.bincount(tracks.owner, rough, len(tracks.family)), np.float64), median
+    return np.asarray(np.bincount(level_curves.owner, rough, len(level_curves.family)), np.float64), median
 
 
-def _kept(cells: CellMap, rims: tuple[ElementRim, ...], tracks: Tracks, long: Booleans) -> tuple[Tracks, Booleans]:
+def _kept(
+    cells: IntegerGridMap, rims: tuple[ElementRim, ...], level_curves: LevelCurves, long: Booleans
+) -> tuple[LevelCurves, Booleans]:
     """The chains that are lamellas, in order; and which of all are the rim, (c,)."""
-    crossings = find_crossings(tracks)
+    crossings = find_crossings(level_curves)
     crossings = crossings.of(long)
-    tips, _ = rim_tips(cells, tracks)
-    beam = along_rim(cells, rims, tracks, tips, crossings.take(within_tips(tracks, tips, crossings)))
+    tips, _ = rim_tips(cells, level_curves)
+    beam = along_rim(cells, rims, level_curves, tips, crossings.take(within_tips(level_curves, tips, crossings)))
     kept = long & ~beam
     crossings = crossings.of(kept)
-    return numbered(cells, rims, tracks, crossings, np.flatnonzero(kept)), beam
+    return numbered(cells, rims, level_curves, crossings, np.flatnonzero(kept)), beam
 
 
-def _settled(cells: CellMap, tracks: Tracks) -> tuple[Crossings, Ends]:
+def _settled(cells: IntegerGridMap, level_curves: LevelCurves) -> tuple[Crossings, Ends]:
     """Crossings, and how the chains end on the rim."""
-    tips, places = rim_tips(cells, tracks)
-    crossings = find_crossings(tracks)
-    crossings = crossings.take(within_tips(tracks, tips, crossings))
-    return crossings, settled_ends(cells, tracks, tips, places, crossings)
+    tips, places = rim_tips(cells, level_curves)
+    crossings = find_crossings(level_curves)
+    crossings = crossings.take(within_tips(level_curves, tips, crossings))
+    return crossings, settled_ends(cells, level_curves, tips, places, crossings)

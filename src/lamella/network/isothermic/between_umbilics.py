@@ -37,13 +37,13 @@ def between_umbilics(iso: Isothermic) -> Floats:
     for p, start in enumerate(first):
         _, before = dijkstra(graph, indices=start, return_predecessors=True)
         for q in range(p):
-            way = [first[q]]
-            while way[-1] != start:
-                way.append(int(before[way[-1]]))
-            way.reverse()
+            direction = [first[q]]
+            while direction[-1] != start:
+                direction.append(int(before[direction[-1]]))
+            direction.reverse()
             # w there is sign w + factors . shifts
             sign, factors = 1, np.zeros(count)
-            for here, there in pairwise(way):
+            for here, there in pairwise(direction):
                 through = int(iso.across[here, edge_to[here, there]])
                 if through:
                     s = iso.transitions[abs(through) - 1].sign

@@ -13,18 +13,18 @@ from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Booleans, Integers
 from lamella.base.ties import shortened
-from lamella.network.isothermic.integration_mesh import NetMesh
+from lamella.network.isothermic.integration_mesh import IntegrationMesh
 
 # how much longer an edge counts than it is, times the rosette's radius over its distance to the nearest umbilic
 CLEAR = 3.0
 
 
-def cut_edges(mesh: NetMesh, odd: Integers) -> Booleans:
+def cut_edges(mesh: IntegrationMesh, odd: Integers) -> Booleans:
     """Local edges (m, 3) to cut along, alike from both sides.
 
     Parameters
     ----------
-    mesh : NetMesh
+    mesh : IntegrationMesh
     odd : (z,) int
         Vertices that are umbilics of odd order.
     """

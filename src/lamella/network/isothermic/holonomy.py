@@ -9,7 +9,7 @@ import numpy as np
 from lamella.base.arrays import Floats, Integers
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
-from lamella.network.isothermic.integration_mesh import NetMesh
+from lamella.network.isothermic.integration_mesh import IntegrationMesh
 from lamella.network.isothermic.isothermic import Isothermic, Transition
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.rim import element_rims
@@ -55,7 +55,7 @@ def around_holes(iso: Isothermic) -> list[tuple[int, Integers]]:
     return result
 
 
-def tip_vertices(mesh: NetMesh, piece: Transition) -> tuple[int, int]:
+def tip_vertices(mesh: IntegrationMesh, piece: Transition) -> tuple[int, int]:
     """First and last vertex of a piece of the cut."""
     faces = mesh.connectivity.faces
     first = faces[piece.left[0], piece.left_edge[0]]
@@ -64,7 +64,7 @@ def tip_vertices(mesh: NetMesh, piece: Transition) -> tuple[int, int]:
 
 
 def vertex_relations(
-    mesh: NetMesh, pieces: tuple[Transition, ...], across: Integers, odd: Integers
+    mesh: IntegrationMesh, pieces: tuple[Transition, ...], across: Integers, odd: Integers
 ) -> dict[int, Integers]:
     """For each ordinary vertex where pieces meet: whole factors (t,) whose sum with the shifts is 0."""
     tips = [tip_vertices(mesh, piece) for piece in pieces]
@@ -89,7 +89,9 @@ def vertex_relations(
     return result
 
 
-def around_vertex(mesh: NetMesh, pieces: tuple[Transition, ...], across: Integers, vertex: int) -> tuple[int, Integers]:
+def around_vertex(
+    mesh: IntegrationMesh, pieces: tuple[Transition, ...], across: Integers, vertex: int
+) -> tuple[int, Integers]:
     """Once around a vertex, counter-clockwise, w comes back as sign w + factors (t,) . shifts."""
     sign, factors = 1, np.zeros(len(pieces), np.int64)
     for number, leaves in _around(mesh.connectivity, across, vertex):

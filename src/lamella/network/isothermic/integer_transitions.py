@@ -24,7 +24,7 @@ MOST_SUMS = 100_000
 
 
 @dataclass(frozen=True)
-class WholeShifts:
+class IntegerTransitions:
     """The lattice of shifts (in cells) with which a net closes and its umbilics of odd order are nodes.
 
     Attributes
@@ -43,7 +43,7 @@ class WholeShifts:
     energy: Floats
 
     @classmethod
-    def of(cls, iso: Isothermic, gram: Floats) -> WholeShifts:
+    def of(cls, iso: Isothermic, gram: Floats) -> IntegerTransitions:
         """All whole shifts of a surface's coordinates.
 
         Parameters
@@ -184,10 +184,10 @@ def _closest(upper: Floats, wanted: Floats, count: int) -> list[tuple[float, Int
         above = upper[level, level + 1 :] @ (x[level + 1 :] - wanted[level + 1 :])
         middle = wanted[level] - above / upper[level, level]
         nearest = round(middle)
-        way = 1 if middle >= nearest else -1
+        direction = 1 if middle >= nearest else -1
         for number in range(2 * count + 1000):
             # 0, 1, -1, 2, -2, ... beginning on the side of the middle
-            x[level] = nearest + way * ((number + 1) // 2) * (1 if number % 2 else -1)
+            x[level] = nearest + direction * ((number + 1) // 2) * (1 if number % 2 else -1)
             here = sum_above + (upper[level, level] * (x[level] - middle)) ** 2
             if here >= limit() or (found and looked_at > MOST_SUMS):
                 return

@@ -19,7 +19,7 @@ from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.vectors import diagonal, lengths
 from lamella.network.isothermic.beyond_rim import zeros_beyond_rim
 from lamella.network.isothermic.umbilic_depth import depth_errors
-from lamella.network.isothermic.umbilic_patch import RINGS, Rosette, rosette
+from lamella.network.isothermic.umbilic_patch import RINGS, UmbilicPatch, umbilic_patch
 from lamella.surface.element.bisect import Parts, bisect, whole
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.inverse_map import find_places
@@ -52,7 +52,7 @@ INNER = 0.5
 
 
 @dataclass(frozen=True)
-class NetMesh:
+class IntegrationMesh:
     """Elements of order 4 on a surface.
 
     Attributes
@@ -144,7 +144,7 @@ class _TangentPlane:
         return places, surface.frames(places).position
 
 
-def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
+def make_integration_mesh(surface: ElementSurface, umbilics: Umbilics) -> IntegrationMesh:
     """Elements with rosettes around the umbilics of a surface."""
     connectivity = surface.connectivity
     size = diagonal(surface.nodes)
@@ -174,7 +174,7 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     at = np.full(len(zeros), -1)
     leading = np.zeros(len(zeros), complex)
     count = len(parts.points)
-    patches: list[tuple[int, Rosette, int, int]] = []
+    patches: list[tuple[int, UmbilicPatch, int, int]] = []
     nodes_of_parts = _positions(parts, surface)
     for number in np.flatnonzero(inside).tolist():
         plane, radius = planes[number], float(radii[number])
@@ -182,7 +182,7 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
         kept &= ~hole
         order = int(umbilics.orders[number])
         leading[number] = _leading(surface, plane, order, MEASURED * radius)
-        rose = rosette(order, float(np.angle(leading[number])), radius, ORDER)
+        rose = umbilic_patch(order, float(np.angle(leading[number])), radius, ORDER)
         ring = _ring(parts.faces[hole])
         gap = _between(plane.down(parts.points[ring]), rose.vertices[rose.rim])
         names = np.concatenate([ring, count + rose.rim])
@@ -229,7 +229,7 @@ def make_net_mesh(surface: ElementSurface, umbilics: Umbilics) -> NetMesh:
     shape = shape_entries(frames.e_u, frames.e_v, mean, deviator)
     normals = surface.smooth_normal(every)
     corners = _corners(element_rims(new, positions, loop[new.rim_nodes[:, 0]]))
-    return NetMesh(new, positions, every, shape, normals, loop, at, radii, patch, surface.rim_starts, corners)
+    return IntegrationMesh(new, positions, every, shape, normals, loop, at, radii, patch, surface.rim_starts, corners)
 
 
 def _corners(rims: tuple[ElementRim, ...]) -> Integers:
@@ -245,7 +245,7 @@ def _near(points: Floats, others: Floats, reach: float) -> Booleans:
 
 
 def onto_surface(
-    mesh: NetMesh, surface: ElementSurface, umbilics: Umbilics, element: Integers, points: Floats
+    mesh: IntegrationMesh, surface: ElementSurface, umbilics: Umbilics, element: Integers, points: Floats
 ) -> Floats:
     """Points (n, 3) of elements (n,) exactly on the surface, m: those around umbilics are next to it only.
 
@@ -351,7 +351,7 @@ def _patch_nodes(
     start: int,
     petals: int,
     gaps: int,
-    rose: Rosette,
+    rose: UmbilicPatch,
     plane: _TangentPlane,
     positions: Floats,
 ) -> tuple[Integers, Complexes]:

@@ -18,7 +18,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components, mini
 
 from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.ties import MARGIN
-from lamella.network.isothermic.integration_mesh import NetMesh
+from lamella.network.isothermic.integration_mesh import IntegrationMesh
 from lamella.network.isothermic.poisson import Poisson, deviator_root
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.edge_basis import edge_values
@@ -60,7 +60,7 @@ class Isothermic:
 
     Attributes
     ----------
-    mesh : NetMesh
+    mesh : IntegrationMesh
     odd : (z,) int
         Vertices that are umbilics of odd order.
     sign : (m,) int
@@ -83,7 +83,7 @@ class Isothermic:
         What w was fitted to, not weighted.
     """
 
-    mesh: NetMesh
+    mesh: IntegrationMesh
     odd: Integers
     sign: Integers
     cut: Booleans
@@ -134,7 +134,7 @@ _MIDDLES = np.array([[0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 _DIRECTIONS = np.array([[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]])
 
 
-def root_signs(mesh: NetMesh, cut: Booleans) -> tuple[Integers, Booleans, Integers]:
+def root_signs(mesh: IntegrationMesh, cut: Booleans) -> tuple[Integers, Booleans, Integers]:
     """Sign of each element's root, (m,), alike across what is not cut; the cut; and what signs do over edges, (m, 3).
 
     Where an umbilic next to the rim was not cut to, the signs still disagree across some edges: these are cut as well.
@@ -183,12 +183,14 @@ def sectors(connectivity: Connectivity, cut: Booleans) -> Integers:
     return np.asarray(group.reshape(m, k), np.int64)
 
 
-def cut_pieces(mesh: NetMesh, cut: Booleans, turns: Integers, odd: Integers) -> tuple[tuple[Transition, ...], Integers]:
+def cut_pieces(
+    mesh: IntegrationMesh, cut: Booleans, turns: Integers, odd: Integers
+) -> tuple[tuple[Transition, ...], Integers]:
     """The pieces of the cut, their shifts still 0, and the transition through each local edge (m, 3).
 
     Parameters
     ----------
-    mesh : NetMesh
+    mesh : IntegrationMesh
     cut : (m, 3) bool
     turns : (m, 3) int
         -1 where the roots of the elements on both sides of an edge run against each other.
@@ -224,7 +226,7 @@ def cut_pieces(mesh: NetMesh, cut: Booleans, turns: Integers, odd: Integers) -> 
     for piece in range(pieces):
         mine = _chained(np.flatnonzero(group == piece), ends)
         index = np.array([i for i, _ in mine])
-        forward = np.array([way for _, way in mine])
+        forward = np.array([direction for _, direction in mine])
         one, one_edge = element[index], edge[index]
         two, two_edge = connectivity.neighbours[one, one_edge], connectivity.neighbour_edges[one, one_edge]
         # left of the way along the piece is the element that has the edge in this direction
@@ -239,13 +241,13 @@ def cut_pieces(mesh: NetMesh, cut: Booleans, turns: Integers, odd: Integers) -> 
     return tuple(replace(piece, stub=_is_stub(mesh, piece, odd, met)) for piece in result), across
 
 
-def _is_stub(mesh: NetMesh, piece: Transition, odd: Integers, met: Counter[int]) -> bool:
+def _is_stub(mesh: IntegrationMesh, piece: Transition, odd: Integers, met: Counter[int]) -> bool:
     """Whether a piece ends in no umbilic and on no other piece, next to a corner of the rim."""
     tips = [end for end in piece.ends if end >= 0 and met[end] == 1 and end not in odd]
     return bool(mesh.at_corner(mesh.nodes[tips]).any())
 
 
-def _end(mesh: NetMesh, vertex: int) -> int:
+def _end(mesh: IntegrationMesh, vertex: int) -> int:
     loop = int(mesh.loop[vertex])
     return -1 - loop if loop >= 0 else vertex
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Complexes, Floats
-from lamella.network.isothermic.integer_transitions import WholeShifts
+from lamella.network.isothermic.integer_transitions import IntegerTransitions
 from lamella.network.isothermic.isothermic import Isothermic
 
 _MIDDLE = np.array([[1 / 3, 1 / 3]])
@@ -19,7 +19,7 @@ _MIDDLE = np.array([[1 / 3, 1 / 3]])
 UNSURE = 0.4
 
 
-class Carrier:
+class TransitionMatcher:
     """Carries changes of shifts from one surface to a near one.
 
     Parameters
@@ -28,11 +28,11 @@ class Carrier:
         On the first surface.
     new : Isothermic
         On the near surface.
-    whole : WholeShifts
+    whole : IntegerTransitions
         Of the near surface.
     """
 
-    def __init__(self, old: Isothermic, new: Isothermic, whole: WholeShifts) -> None:
+    def __init__(self, old: Isothermic, new: Isothermic, whole: IntegerTransitions) -> None:
         self.whole = whole
         there, _, fields = _derivatives(old)
         here, area, own = _derivatives(new)
@@ -51,7 +51,7 @@ class Carrier:
         one, other = np.split(found, 2, 1)
         return np.asarray(one + 1j * other, np.complex128)
 
-    def whole_shifts(self, change: Complexes, shifts: Complexes) -> Complexes | None:
+    def match(self, change: Complexes, shifts: Complexes) -> Complexes | None:
         """The whole shifts of the near surface that stand for those of the first one.
 
         Parameters

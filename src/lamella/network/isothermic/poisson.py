@@ -9,7 +9,7 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.sparse import SymmetricPattern, packed
-from lamella.network.isothermic.integration_mesh import NetMesh
+from lamella.network.isothermic.integration_mesh import IntegrationMesh
 from lamella.surface.element.geometry import tangents, weighted_dirichlet_blocks
 from lamella.surface.element.quadrature import triangle_rule
 
@@ -41,7 +41,7 @@ class Poisson:
     y: Floats
 
     @classmethod
-    def of(cls, mesh: NetMesh, sign: Integers) -> Poisson:
+    def of(cls, mesh: IntegrationMesh, sign: Integers) -> Poisson:
         """The problem on a mesh with signs (m,) of the roots, not weighted."""
         basis = mesh.connectivity.basis
         points, weights = triangle_rule(2 * basis.order)
@@ -158,7 +158,9 @@ class Poisson:
         return float(np.sqrt(miss / energy(self.form_a, self.form_b)))
 
 
-def _frames(mesh: NetMesh, local: Floats) -> tuple[Complexes, Complexes, tuple[Floats, Floats, Floats], Complexes]:
+def _frames(
+    mesh: IntegrationMesh, local: Floats
+) -> tuple[Complexes, Complexes, tuple[Floats, Floats, Floats], Complexes]:
     """Tangents as complex numbers in the frame along the first one, metric, and D, at local points (m, q)."""
     connectivity = mesh.connectivity
     basis = connectivity.basis
@@ -192,7 +194,7 @@ def _square(value: Complexes) -> Floats:
 
 
 def deviator_root(
-    mesh: NetMesh, local: Floats
+    mesh: IntegrationMesh, local: Floats
 ) -> tuple[Complexes, Complexes, Complexes, tuple[Floats, Floats, Floats]]:
     """sqrt(D), one branch an element, with the tangents and the metric, at local points (m, q)."""
     along, other, metric, deviator = _frames(mesh, np.vstack([local, [[1 / 3, 1 / 3]]]))
@@ -203,7 +205,7 @@ def deviator_root(
     return root[:, :-1], along[:, :-1], other[:, :-1], (e, f, g)
 
 
-def _forms(mesh: NetMesh, local: Floats) -> tuple[Complexes, Complexes, tuple[Floats, Floats, Floats]]:
+def _forms(mesh: IntegrationMesh, local: Floats) -> tuple[Complexes, Complexes, tuple[Floats, Floats, Floats]]:
     """dw along both local coordinates at local points (m, q), and the metric."""
     root, along, other, metric = deviator_root(mesh, local)
     return root * along, root * other, metric

@@ -60,22 +60,22 @@ def cut_straight(iso: Isothermic, surface: ElementSurface) -> Isothermic:
     region, of_region = _regions(split, cut, across)
     slope = before @ plain.x.T, before @ plain.y.T
     agrees = (slope[0] * plain.form_a.conj() + slope[1] * plain.form_b.conj()).real.sum(1)
-    way = np.where(np.bincount(region, agrees) > 0, 1, -1)
-    offset = _offsets(iso, split, cut, across, region, of_region, way)
+    direction = np.where(np.bincount(region, agrees) > 0, 1, -1)
+    offset = _offsets(iso, split, cut, across, region, of_region, direction)
     pieces, through = cut_pieces(mesh, cut, turns, iso.odd)
     shifts = np.array([piece.shift for piece in iso.transitions], complex)
-    value = way[region, None] * before + (offset @ shifts)[region, None]
+    value = direction[region, None] * before + (offset @ shifts)[region, None]
     rows = np.zeros((len(pieces), len(shifts)))
     for number, piece in enumerate(pieces):
         left, right, edge = int(piece.left[0]), int(piece.right[0]), int(piece.left_edge[0])
         turn, row = _through(iso, int(across[left, edge]))
         one, other = region[left], region[right]
-        if way[other] * turn * way[one] != piece.sign:
+        if direction[other] * turn * direction[one] != piece.sign:
             raise CrossedError("coordinates turn across a cut in another way than their roots")
-        rows[number] = way[other] * row + offset[other] - piece.sign * offset[one]
+        rows[number] = direction[other] * row + offset[other] - piece.sign * offset[one]
     pieces = tuple(replace(piece, shift=complex(row @ shifts)) for piece, row in zip(pieces, rows, strict=True))
     back = _inverse(iso, rows)
-    moves = np.tensordot(back.T, np.asarray(split.restricted(iso.moves), np.float64), 1) * way[region, None]
+    moves = np.tensordot(back.T, np.asarray(split.restricted(iso.moves), np.float64), 1) * direction[region, None]
     moves += (offset @ back).T[:, region, None]
     _check(mesh.connectivity, cut, value, iso.longest)
     return replace(
@@ -114,7 +114,7 @@ def _regions(split: Split, cut: Booleans, across: Integers) -> tuple[Integers, i
 
 
 def _offsets(
-    iso: Isothermic, split: Split, cut: Booleans, across: Integers, region: Integers, count: int, way: Integers
+    iso: Isothermic, split: Split, cut: Booleans, across: Integers, region: Integers, count: int, direction: Integers
 ) -> Floats:
     """What is added to w in each region, times the shifts, (r, t), so that it goes on where nothing is cut any more."""
     connectivity = split.mesh.connectivity
@@ -132,7 +132,7 @@ def _offsets(
             if there in done:
                 continue
             done.add(there)
-            offset[there] = offset[here] - way[there] * _through(iso, through)[1]
+            offset[there] = offset[here] - direction[there] * _through(iso, through)[1]
             stack.append(there)
     if len(done) < count:
         raise CrossedError("the cut separates parts of the surface")

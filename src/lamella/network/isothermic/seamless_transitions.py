@@ -13,7 +13,7 @@ import numpy as np
 from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.network.isothermic.cut import cut_edges
 from lamella.network.isothermic.holonomy import vertex_relations
-from lamella.network.isothermic.integration_mesh import NetMesh
+from lamella.network.isothermic.integration_mesh import IntegrationMesh
 from lamella.network.isothermic.isothermic import Isothermic, Transition, cut_pieces, root_signs, sectors
 from lamella.network.isothermic.poisson import Poisson
 
@@ -31,12 +31,12 @@ class FoldedError(ValueError):
         self.place = place
 
 
-def integrate(mesh: NetMesh, odd: Integers) -> Isothermic:
+def integrate(mesh: IntegrationMesh, odd: Integers) -> Isothermic:
     """Isothermic coordinates of a surface.
 
     Parameters
     ----------
-    mesh : NetMesh
+    mesh : IntegrationMesh
     odd : (z,) int
         Vertices that are umbilics of odd order.
     """
@@ -115,7 +115,7 @@ def best_shifts(gram: Floats, right: Complexes, rows: list[Integers], goal: Comp
 
 
 def links(
-    mesh: NetMesh, pieces: tuple[Transition, ...], sector: Integers
+    mesh: IntegrationMesh, pieces: tuple[Transition, ...], sector: Integers
 ) -> tuple[Integers, Floats, Floats, dict[int, Floats]]:
     """Sectors joined across the cut: unknown of each, sign, offset per shift (s, t), and unknowns held by shifts."""
     nodes = mesh.connectivity.basis.edge_nodes
@@ -138,9 +138,9 @@ def links(
         done.add(first)
         while stack:
             one = stack.pop()
-            for other, turn, number, way in links[one]:
+            for other, turn, number, direction in links[one]:
                 there = turn * offset[one]
-                there[number] += way
+                there[number] += direction
                 if other not in done:
                     done.add(other)
                     home[other], sign[other], offset[other] = first, turn * sign[one], there

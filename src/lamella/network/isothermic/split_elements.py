@@ -12,7 +12,7 @@ import pythoncdt
 from numpy.typing import NDArray
 
 from lamella.base.arrays import Booleans, Floats, Integers
-from lamella.network.isothermic.integration_mesh import NetMesh
+from lamella.network.isothermic.integration_mesh import IntegrationMesh
 from lamella.network.isothermic.straight_cuts import CrossedError
 from lamella.network.isothermic.straight_walk import FlatTriangles, share_of_edge
 from lamella.network.isothermic.tight_lines import Course
@@ -31,7 +31,7 @@ class Split:
 
     Attributes
     ----------
-    mesh : NetMesh
+    mesh : IntegrationMesh
     parent : (m,) int
         The element that each is, or is part of.
     corners : (m, 3, 2)
@@ -40,7 +40,7 @@ class Split:
         Local edges that lie on the lines.
     """
 
-    mesh: NetMesh
+    mesh: IntegrationMesh
     parent: Integers
     corners: Floats
     cut: Booleans
@@ -208,7 +208,7 @@ def _inside(corners: Floats, local: Floats) -> Floats:
     return np.asarray(barycentric @ corners)
 
 
-def _fields(split: Split, faces: Integers, loop: Integers, surface: ElementSurface) -> NetMesh:
+def _fields(split: Split, faces: Integers, loop: Integers, surface: ElementSurface) -> IntegrationMesh:
     """The mesh of the parts."""
     old = split.mesh
     new = connect(faces, len(loop), old.connectivity.basis.order)

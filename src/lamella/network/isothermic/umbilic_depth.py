@@ -99,7 +99,7 @@ def depth_errors(surface: ElementSurface) -> Floats:
 def _slopes(surface: ElementSurface, places: Places, axis: int) -> tuple[Complexes, Floats]:
     """Derivatives of the deviator, 1/m, (n,), and of the position, m, (n, 3), by a local coordinate."""
     beside = BESIDE * np.eye(2)[axis]
-    ahead, behind = (surface.at(Places(places.element, places.local + way * beside)) for way in (1.0, -1.0))
+    ahead, behind = (surface.at(Places(places.element, places.local + direction * beside)) for direction in (1.0, -1.0))
     return (
         np.asarray((ahead.deviator - behind.deviator) / (2 * BESIDE)),
         np.asarray((ahead.position - behind.position) / (2 * BESIDE)),

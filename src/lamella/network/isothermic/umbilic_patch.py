@@ -20,7 +20,7 @@ RINGS = 3
 
 
 @dataclass(frozen=True)
-class Rosette:
+class UmbilicPatch:
     """Triangles around z = 0; vertex 0 is there, and the last ones run around the rim counter-clockwise.
 
     Attributes
@@ -39,7 +39,7 @@ class Rosette:
     rim: Integers
 
 
-def rosette(zero_order: int, argument: float, radius: float, order: int) -> Rosette:
+def umbilic_patch(zero_order: int, argument: float, radius: float, order: int) -> UmbilicPatch:
     """Wedges between the principal lines that leave a zero: one lamella leaves in the middle of each.
 
     Parameters
@@ -74,4 +74,4 @@ def rosette(zero_order: int, argument: float, radius: float, order: int) -> Rose
         faces.append(number[triangles])
         nodes.append((barycentric @ zeta[triangles].T).T ** power)
     rim = np.arange(1 + wedges * RINGS * (RINGS - 1) // 2, len(vertices))
-    return Rosette(vertices, np.concatenate(faces), np.concatenate(nodes), rim)
+    return UmbilicPatch(vertices, np.concatenate(faces), np.concatenate(nodes), rim)

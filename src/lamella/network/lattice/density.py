@@ -76,10 +76,10 @@ def _median_edge(surface: ClosedForm, whole: float, lines: Lines, pattern: Patte
 
 def _nearest(surface: ClosedForm, whole: float, cells: int, spacing: float, pattern: Pattern) -> int:
     """The number of cells near a first guess whose net, pieces cut off by the rim included, has the nearest median."""
-    misses: dict[int, float] = {}
+    residuals: dict[int, float] = {}
 
-    def miss(count: int) -> float:
-        if count not in misses:
+    def residual(count: int) -> float:
+        if count not in residuals:
             domain = domain_of(surface, whole / count, pattern)
             lines = domain.lines()
             lines = lines.take(lines.end > lines.start)
@@ -87,11 +87,13 @@ def _nearest(surface: ClosedForm, whole: float, cells: int, spacing: float, patt
                 length = ArcLengths(Segments(domain, build_lattice(domain, lines))).length
             except Stretched:
                 length = np.zeros(0)
-            misses[count] = abs(float(np.median(length)) - spacing) if len(length) else np.inf
-        return misses[count]
+            residuals[count] = abs(float(np.median(length)) - spacing) if len(length) else np.inf
+        return residuals[count]
 
     while True:
-        best = min((n for n in (cells - 1, cells, cells + 1) if n >= CELLS_MIN), key=lambda n: (miss(n), n != cells))
+        best = min(
+            (n for n in (cells - 1, cells, cells + 1) if n >= CELLS_MIN), key=lambda n: (residual(n), n != cells)
+        )
         if best == cells:
             return cells
         cells = best

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from lamella.network.lattice.domain import Band, DiscDomain, Domain, RectangleDomain, ScherkDomain, StarDomain
-from lamella.network.lattice.principal_domain import TurnedRectangle, TurnedScherk
-from lamella.network.lattice.skew_band import LeaningBand
+from lamella.network.lattice.principal_domain import PrincipalRectangle, PrincipalScherk
+from lamella.network.lattice.skew_band import SkewBand
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.outline import Disc, Rectangle, Ring, Square
@@ -17,12 +17,12 @@ def domain_of(surface: ClosedForm, step: float, pattern: Pattern = LAMELLAS) -> 
     turned = pattern.kind == "principal"
     if pattern.normal_curvature not in (None, surface.mean_curvature):
         assert isinstance(surface, SurfaceOfRevolution)
-        return LeaningBand(surface, step, pattern)
+        return SkewBand(surface, step, pattern)
     if isinstance(surface.outline, Ring):
         return Band(surface, step, pattern)
     if isinstance(surface.outline, Rectangle):
-        return (TurnedRectangle if turned else RectangleDomain)(surface, step, pattern)
+        return (PrincipalRectangle if turned else RectangleDomain)(surface, step, pattern)
     if isinstance(surface, Scherk):
-        return (TurnedScherk if turned else ScherkDomain)(surface, step, pattern)
+        return (PrincipalScherk if turned else ScherkDomain)(surface, step, pattern)
     assert isinstance(surface.outline, Disc | Square)
     return (StarDomain if surface.hopf_order else DiscDomain)(surface, step, pattern)

@@ -13,7 +13,7 @@ from lamella.surface.closed_forms.closed_form import ClosedForm
 HALVINGS = 60
 
 
-class TurnedRectangle(RectangleDomain):
+class PrincipalRectangle(RectangleDomain):
     """A rectangle that principal lines cross at 45 degrees: a node or a cell in its middle."""
 
     def __init__(self, surface: ClosedForm, step: float, pattern: Pattern = LAMELLAS) -> None:
@@ -36,7 +36,7 @@ class TurnedRectangle(RectangleDomain):
         return np.asarray(start, np.float64), np.asarray(end, np.float64)
 
 
-class TurnedScherk(ScherkDomain):
+class PrincipalScherk(ScherkDomain):
     """Scherk's curved diamond, which is convex, and symmetric about its diagonals, as principal lines cross it."""
 
     def extent(self) -> tuple[Floats, Floats]:

@@ -64,7 +64,7 @@ def check_normal_curvature(surface: ClosedForm, wanted: float) -> None:
         )
 
 
-class LeaningBand(Band):
+class SkewBand(Band):
     """A band whose lines have a normal curvature of their own: U is a function of the plane's p."""
 
     def __init__(self, surface: SurfaceOfRevolution, step: float, pattern: Pattern) -> None:
@@ -94,9 +94,9 @@ class LeaningBand(Band):
         u = low + (inside - ends.start) / (ends.end - ends.start) * (high - low)
         below, above = np.full_like(u, low), np.full_like(u, high)
         for _ in range(STEPS):
-            miss = self._p(u) - inside
-            below, above = np.where(miss < 0, u, below), np.where(miss > 0, u, above)
-            moved = u - miss / self._rate(u)
+            residual = self._p(u) - inside
+            below, above = np.where(residual < 0, u, below), np.where(residual > 0, u, above)
+            moved = u - residual / self._rate(u)
             moved = np.where((moved >= below) & (moved <= above), moved, (below + above) / 2)
             change = np.abs(moved - u).max(initial=0.0)
             u = moved

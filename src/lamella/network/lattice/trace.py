@@ -18,7 +18,7 @@ from lamella.network.lattice.domain_of import domain_of
 from lamella.network.lattice.lattice import Lattice, build_lattice
 from lamella.network.lattice.less_stretched import less_stretched
 from lamella.network.lattice.segments import Segments
-from lamella.network.lattice.skew_band import LeaningBand, line_darboux
+from lamella.network.lattice.skew_band import SkewBand, line_darboux
 from lamella.network.network import BOUNDARY, REGULAR, Network
 from lamella.network.pattern import Pattern
 from lamella.network.sampling import Division, divide, parts_of
@@ -59,14 +59,14 @@ def _sample(surface: ClosedForm, segments: Segments, arcs: ArcLengths, division:
         np.empty(count),
         np.empty(count, np.complex128),
     )
-    leaning = isinstance(segments.domain, LeaningBand)
+    skew = isinstance(segments.domain, SkewBand)
     for block in blocks(count):
         zeta, derivative = segments.where(segment[block], arcs.parameter(segment[block], fraction[block]))
         at = surface.at(zeta)
         heading = derivative / np.abs(derivative)
         samples.points[block], samples.normals[block] = at.position, at.normal
         samples.tangents[block] = at.vector(heading)
-        samples.darboux[:, block] = line_darboux(at, heading) if leaning else lamella_darboux(at, heading)
+        samples.darboux[:, block] = line_darboux(at, heading) if skew else lamella_darboux(at, heading)
         samples.slopes[block] = sideways_slope(at, heading)
         # at a singular node, where rays begin, the gradient of ln mu has no bound, and its product with mu^2 a limit
         zero = np.flatnonzero(at.deviator == 0)

@@ -14,7 +14,7 @@ def is_traced(surface: Surface[Any], pattern: Pattern) -> bool:
     return not surface.has_lattice(pattern.normal_curvature)
 
 
-def told_mean_curvature(surface: Surface[Any], pattern: Pattern) -> float:
+def reported_mean_curvature(surface: Surface[Any], pattern: Pattern) -> float:
     """What a net tells as its surface's mean curvature, 1/m: where that varies, the lamellas' normal curvature.
 
     So the radius of the unrolled strips is 1 / |mean_curvature| for those who know of nothing else.
@@ -38,10 +38,10 @@ def check_traced(surface: Surface[Any], pattern: Pattern, closing: Literal["open
             'of constant mean curvature: mean_curvature = "fit"',
             "normal_curvature",
         )
-    refuse_lattice_wishes(pattern, closing)
+    refuse_lattice_options(pattern, closing)
 
 
-def refuse_lattice_wishes(pattern: Pattern, closing: Literal["open", "round", "adjust"]) -> None:
+def refuse_lattice_options(pattern: Pattern, closing: Literal["open", "round", "adjust"]) -> None:
     """Refuse what asks for a lattice, of lines that have none.
 
     Raises

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Floats, Integers
-from lamella.network.streamlines.streamlines import Flow
+from lamella.network.streamlines.streamlines import Streamlines
 
 # of a chord: how far beyond its ends a crossing may seem to be at first
 SLACK = 0.6
@@ -39,17 +39,17 @@ class _Chords(NamedTuple):
     length: Floats
 
 
-def find_crossings(flow: Flow, spacing: float) -> Crossings:
+def find_crossings(lines: Streamlines, spacing: float) -> Crossings:
     """All crossings of A lines with B lines.
 
     Parameters
     ----------
-    flow : Flow
+    lines : Streamlines
     spacing : float
         Typical distance of nodes, m.
     """
-    chords = _chords(flow)
-    is_a = flow.is_a[chords.line]
+    chords = _chords(lines)
+    is_a = lines.is_a[chords.line]
     a, b = np.flatnonzero(is_a), np.flatnonzero(~is_a)
     nothing = np.zeros(0, np.int64)
     if not len(a) or not len(b):
@@ -70,20 +70,20 @@ def find_crossings(flow: Flow, spacing: float) -> Crossings:
     inside = (np.abs(x) <= (0.5 + SLACK) * chords.length[a]) & (np.abs(y) <= (0.5 + SLACK) * chords.length[b])
     a, b, x, y = a[inside], b[inside], x[inside], y[inside]
     lines_a, lines_b = chords.line[a], chords.line[b]
-    return _refined(flow, lines_a, lines_b, chords.s[a] + x, chords.s[b] + y, spacing)
+    return _refined(lines, lines_a, lines_b, chords.s[a] + x, chords.s[b] + y, spacing)
 
 
-def _refined(flow: Flow, a: Integers, b: Integers, s_a: Floats, s_b: Floats, spacing: float) -> Crossings:
+def _refined(lines: Streamlines, a: Integers, b: Integers, s_a: Floats, s_b: Floats, spacing: float) -> Crossings:
     """Crossings from guesses of them, each once."""
-    lengths = flow.lengths
+    lengths = lines.lengths
     off = np.full(len(a), np.inf)
     for _ in range(NEWTON_STEPS):
         s_a, s_b = np.clip(s_a, 0, lengths[a]), np.clip(s_b, 0, lengths[b])
-        _, look_a, t_a = flow.at(a, s_a)
-        _, look_b, t_b = flow.at(b, s_b)
-        apart = look_b.position - look_a.position
+        _, sample_a, t_a = lines.at(a, s_a)
+        _, sample_b, t_b = lines.at(b, s_b)
+        apart = sample_b.position - sample_a.position
         off = np.linalg.norm(apart, axis=1)
-        off[(look_a.normal * look_b.normal).sum(1) < SAME_SIDE] = np.inf
+        off[(sample_a.normal * sample_b.normal).sum(1) < SAME_SIDE] = np.inf
         if not (off > FINE * spacing).any():
             break
         x, y = _meet(t_a, t_b, apart)
@@ -108,21 +108,21 @@ def _meet(u: Floats, v: Floats, apart: Floats) -> tuple[Floats, Floats]:
     return (along_u - across * along_v) / determinant, (across * along_u - along_v) / determinant
 
 
-def _chords(flow: Flow) -> _Chords:
+def _chords(lines: Streamlines) -> _Chords:
     """All chords; the last one of a half goes to its end."""
-    halves = np.arange(len(flow.length))
+    halves = np.arange(len(lines.length))
     line = halves // 2
     forward = halves % 2 == 1
-    lengths = flow.lengths
-    _, ends, _ = flow.at(line, np.where(forward, lengths[line], 0.0))
-    last = np.searchsorted(flow.half, halves, side="right") - 1
-    end, way = np.empty_like(flow.position), np.empty_like(flow.way)
-    end[:-1], way[:-1] = flow.position[1:], flow.way[1:]
-    end[last], way[last] = ends.position, flow.length
-    sense = np.where(flow.half % 2 == 1, 1.0, -1.0)
-    vector = sense[:, None] * (end - flow.position)
-    owner = flow.half // 2
-    s = flow.length[2 * owner] + sense * (flow.way + way) / 2
+    lengths = lines.lengths
+    _, ends, _ = lines.at(line, np.where(forward, lengths[line], 0.0))
+    last = np.searchsorted(lines.half, halves, side="right") - 1
+    end, way = np.empty_like(lines.position), np.empty_like(lines.way)
+    end[:-1], way[:-1] = lines.position[1:], lines.way[1:]
+    end[last], way[last] = ends.position, lines.length
+    sense = np.where(lines.half % 2 == 1, 1.0, -1.0)
+    vector = sense[:, None] * (end - lines.position)
+    owner = lines.half // 2
+    s = lines.length[2 * owner] + sense * (lines.way + way) / 2
     length = np.linalg.norm(vector, axis=1)
     some = length > 0
-    return _Chords(owner[some], ((flow.position + end) / 2)[some], vector[some], s[some], length[some])
+    return _Chords(owner[some], ((lines.position + end) / 2)[some], vector[some], s[some], length[some])

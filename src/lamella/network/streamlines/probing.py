@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.base.arrays import Booleans
-from lamella.network.charts.charts import Ground, Look
+from lamella.network.charts.charts import Charts, ChartSample
 from lamella.network.streamlines.direction_field import LineField
-from lamella.network.streamlines.streamlines import Flow, trace
+from lamella.network.streamlines.streamlines import Streamlines, trace
 from lamella.surface.element.places import Places
 
 # lines of each family that are tried, spread over the surface
@@ -18,14 +18,18 @@ BESIDE = 0.25
 STEPS, LONGEST = 3, 12.0
 
 
-def wound(ground: Ground, field: LineField, seeds: Places, is_a: Booleans, *, spacing: float, size: float) -> Flow:
+def wound(
+    charts: Charts, field: LineField, seeds: Places, is_a: Booleans, *, spacing: float, size: float
+) -> Streamlines:
     """Streamlines from seeds; those that come back to their seed are given up there."""
-    return trace(ground, field, seeds, is_a, step=spacing / STEPS, longest=LONGEST * size, beside=BESIDE * spacing)
+    return trace(charts, field, seeds, is_a, step=spacing / STEPS, longest=LONGEST * size, beside=BESIDE * spacing)
 
 
-def probes(ground: Ground, field: LineField, where: Places, look: Look, spacing: float, size: float) -> Flow:
+def probes(
+    charts: Charts, field: LineField, where: Places, sample: ChartSample, spacing: float, size: float
+) -> Streamlines:
     """Some lines of both families, through places spread over those (n,) that have directions."""
-    usable = np.flatnonzero(field.margin(look.mean, look.deviator) > 0)
+    usable = np.flatnonzero(field.margin(sample.mean, sample.deviator) > 0)
     some = usable[np.linspace(0, len(usable) - 1, min(PROBES, len(usable))).astype(np.int64)]
     is_a = np.repeat([True, False], len(some))
-    return wound(ground, field, where[np.tile(some, 2)], is_a, spacing=spacing, size=size)
+    return wound(charts, field, where[np.tile(some, 2)], is_a, spacing=spacing, size=size)

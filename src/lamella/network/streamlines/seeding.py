@@ -17,10 +17,10 @@ from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.ragged import ragged_ranges
 from lamella.base.ties import MARGIN, nearest_whole
-from lamella.network.charts.charts import Ground, Look
+from lamella.network.charts.charts import Charts, ChartSample
 from lamella.network.streamlines.direction_field import LineField
 from lamella.network.streamlines.probing import LONGEST, wound
-from lamella.network.streamlines.streamlines import Flow, finished, joined, trace
+from lamella.network.streamlines.streamlines import Streamlines, finished, joined, trace
 from lamella.surface.element.places import Places
 
 # share of the seeds around a hole that must have directions, and sine of the angle to the rim they must have
@@ -58,44 +58,44 @@ class Guide:
     share: float
 
 
-def choose_guide(ground: Ground, field: LineField, size: float) -> Guide:
+def choose_guide(charts: Charts, field: LineField, size: float) -> Guide:
     """The first guide of a surface, whose size is the diagonal of its bounding box (m)."""
-    hole = ground.hole(RIM_POINTS)
+    hole = charts.hole(RIM_POINTS)
     if hole is not None:
         where, length = hole
-        look = ground.look(where)
-        usable = field.margin(look.mean, look.deviator) > 0
-        sines = _sines_to_rim(ground, field, where, look)
+        sample = charts.evaluate(where)
+        usable = field.margin(sample.mean, sample.deviator) > 0
+        sines = _sines_to_rim(charts, field, where, sample)
         if usable.mean() >= AROUND and np.median(sines) > ACROSS:
-            crossing = field.crossing_sine(look.mean, look.deviator)
+            crossing = field.crossing_sine(sample.mean, sample.deviator)
             return Guide(True, where, length, float(np.median((sines / crossing)[usable])))
-    middle = _middle(ground, field, size)
+    middle = _middle(charts, field, size)
     twice, families = middle[np.zeros(2, np.int64)], np.array([True, False])
-    lines = finished(trace(ground, field, twice, families, step=size / 50, longest=LONGEST * size))
+    lines = finished(trace(charts, field, twice, families, step=size / 50, longest=LONGEST * size))
     return Guide(False, middle, float(lines.lengths.max()), 1.0)
 
 
-def _sines_to_rim(ground: Ground, field: LineField, where: Places, look: Look) -> Floats:
+def _sines_to_rim(charts: Charts, field: LineField, where: Places, sample: ChartSample) -> Floats:
     """Sine of the angle between the rim and the nearer of the two families, (n,)."""
-    rim = ground.rim_places(where).tangent
+    rim = charts.rim_places(where).tangent
     sines = []
     for family in (True, False):
-        heading = field.heading(look.mean, look.deviator, np.full(len(where), family))
-        tangent = heading.real[:, None] * look.e_u + heading.imag[:, None] * look.e_v
+        heading = field.heading(sample.mean, sample.deviator, np.full(len(where), family))
+        tangent = heading.real[:, None] * sample.e_u + heading.imag[:, None] * sample.e_v
         sines.append(np.sqrt(np.maximum(1 - (tangent * rim).sum(1) ** 2, 0)))
     return np.asarray(np.minimum(*sines))
 
 
-def _middle(ground: Ground, field: LineField, size: float) -> Places:
+def _middle(charts: Charts, field: LineField, size: float) -> Places:
     """The sample deepest inside of where the directions are, of those as deep the one nearest to the middle."""
-    where, area = ground.samples()
-    look = ground.look(where)
-    usable = field.margin(look.mean, look.deviator) > 0
-    rim = ground.look(ground.rim_points(RIM_POINTS)).position
-    tree = cKDTree(np.concatenate([rim, look.position[~usable]]))
-    depth = tree.query(look.position)[0]
-    centre = (look.position[usable] * area[usable, None]).sum(0) / area[usable].sum()
-    off = np.linalg.norm(look.position - centre, axis=1) / size
+    where, area = charts.samples()
+    sample = charts.evaluate(where)
+    usable = field.margin(sample.mean, sample.deviator) > 0
+    rim = charts.evaluate(charts.rim_points(RIM_POINTS)).position
+    tree = cKDTree(np.concatenate([rim, sample.position[~usable]]))
+    depth = tree.query(sample.position)[0]
+    centre = (sample.position[usable] * area[usable, None]).sum(0) / area[usable].sum()
+    off = np.linalg.norm(sample.position - centre, axis=1) / size
     score = np.where(usable, depth / depth[usable].max() - off / OFF_MIDDLE, -np.inf)
     # of equally good ones on a symmetric surface the first
     return where[np.array([np.rint(score / MARGIN).argmax()])]
@@ -107,7 +107,7 @@ class Seeded:
 
     Attributes
     ----------
-    flow : Flow
+    streamlines : Streamlines
         A before B.
     guides : int
         How many guides they took, over both families.
@@ -115,17 +115,17 @@ class Seeded:
         Seeds of a family on the first guide.
     """
 
-    flow: Flow
+    streamlines: Streamlines
     guides: int
     count: int
 
 
-def seeded_lines(ground: Ground, field: LineField, guide: Guide, distance: float, size: float) -> Seeded:
+def seeded_lines(charts: Charts, field: LineField, guide: Guide, distance: float, size: float) -> Seeded:
     """Lines of both families.
 
     Parameters
     ----------
-    ground : Ground
+    charts : Charts
     field : LineField
     guide : Guide
     distance : float
@@ -134,11 +134,11 @@ def seeded_lines(ground: Ground, field: LineField, guide: Guide, distance: float
         Of the surface, m.
     """
     spacing = distance * guide.share
-    how = _How(ground, field, spacing, size)
+    how = _How(charts, field, spacing, size)
     both = np.array([True, False])
     if guide.around_hole:
         count = max(round(guide.length / distance), 3)
-        around = ground.hole(count)
+        around = charts.hole(count)
         assert around is not None
         index = np.tile(np.arange(count), 2)
         lines = how.accepted(around[0][index], np.repeat(both, count), None)
@@ -147,11 +147,11 @@ def seeded_lines(ground: Ground, field: LineField, guide: Guide, distance: float
         lines = how.accepted(seeds, family, None)
         count = int(max(family.sum(), (~family).sum()))
     guides = 1 if guide.around_hole else 2
-    samples, _ = ground.samples()
-    look = ground.look(samples)
-    usable = field.margin(look.mean, look.deviator) > 0
-    samples, position = samples[usable], look.position[usable]
-    across = spacing * field.crossing_sine(look.mean, look.deviator)[usable]
+    samples, _ = charts.samples()
+    sample = charts.evaluate(samples)
+    usable = field.margin(sample.mean, sample.deviator) > 0
+    samples, position = samples[usable], sample.position[usable]
+    across = spacing * field.crossing_sine(sample.mean, sample.deviator)[usable]
     for _ in range(MOST_ROUNDS):
         # lines that do not end are refused: more of them tell nothing
         if lines is None or lines.endless.any():
@@ -190,13 +190,13 @@ def _gaps(position: Floats, wide: Floats, apart: float) -> Integers:
 class _How:
     """How lines are traced and kept apart."""
 
-    ground: Ground
+    charts: Charts
     field: LineField
     spacing: float
     size: float
 
-    def lines(self, seeds: Places, is_a: Booleans) -> Flow:
-        return wound(self.ground, self.field, seeds, is_a, spacing=self.spacing, size=self.size)
+    def lines(self, seeds: Places, is_a: Booleans) -> Streamlines:
+        return wound(self.charts, self.field, seeds, is_a, spacing=self.spacing, size=self.size)
 
     def along(
         self, places: Places, is_a: Booleans, distance: float, *, centred: bool = False
@@ -223,17 +223,17 @@ class _How:
         where, _, _ = guides.at(guide, s)
         return where, is_a[guide]
 
-    def accepted(self, seeds: Places, is_a: Booleans, others: Flow | None) -> Flow | None:
+    def accepted(self, seeds: Places, is_a: Booleans, others: Streamlines | None) -> Streamlines | None:
         """Lines from those seeds that no line of an earlier one, nor another line, of their family passes close by."""
-        look = self.ground.look(seeds)
-        near = CLOSE * self.spacing * self.field.crossing_sine(look.mean, look.deviator)
-        usable = self.field.margin(look.mean, look.deviator) > 0
+        sample = self.charts.evaluate(seeds)
+        near = CLOSE * self.spacing * self.field.crossing_sine(sample.mean, sample.deviator)
+        usable = self.field.margin(sample.mean, sample.deviator) > 0
         if others is not None:
             for one in (True, False):
-                usable &= (is_a != one) | (self.distances(look.position, others, one) >= near)
+                usable &= (is_a != one) | (self.distances(sample.position, others, one) >= near)
         if not usable.any():
             return None
-        is_a, near, position = is_a[usable], near[usable], look.position[usable]
+        is_a, near, position = is_a[usable], near[usable], sample.position[usable]
         lines = self.lines(seeds[usable], is_a)
         kept = np.zeros(len(is_a), bool)
         for one in (True, False):
@@ -247,7 +247,7 @@ class _How:
                 kept[k] = not kept[owner[np.asarray(close, np.int64)]].any()
         return lines.take(np.flatnonzero(kept))
 
-    def distances(self, points: Floats, lines: Flow, is_a: bool) -> Floats:
+    def distances(self, points: Floats, lines: Streamlines, is_a: bool) -> Floats:
         """Distances of points from the lines of a family, m, (n,)."""
         dense, _ = _dense(lines, is_a)
         if not len(dense):
@@ -255,7 +255,7 @@ class _How:
         return np.asarray(cKDTree(dense).query(points)[0])
 
 
-def _dense(lines: Flow, is_a: bool) -> tuple[Floats, Integers]:
+def _dense(lines: Streamlines, is_a: bool) -> tuple[Floats, Integers]:
     """Points along the lines of a family, a step from each other, and the line of each."""
     line = lines.half // 2
     mine = lines.is_a[line] == is_a

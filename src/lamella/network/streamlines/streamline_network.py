@@ -19,7 +19,7 @@ from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import rounded
 from lamella.network.assemble import Curves, CurveSamples, SampledCurves, assemble
-from lamella.network.charts.charts import Ground, Look
+from lamella.network.charts.charts import Charts, ChartSample
 from lamella.network.density_request import DensityRequest
 from lamella.network.network import A, B, Network
 from lamella.network.pattern import Pattern
@@ -37,8 +37,8 @@ from lamella.network.streamlines.stops import (
     whole_edge,
     without_short,
 )
-from lamella.network.streamlines.streamline_plan import Reach, lay_lines
-from lamella.network.streamlines.streamlines import Flow
+from lamella.network.streamlines.streamline_plan import Reach, plan_streamlines
+from lamella.network.streamlines.streamlines import Streamlines
 from lamella.network.streamlines.winding import refuse_winding
 from lamella.network.turning import sideways_slopes, turning
 from lamella.network.written_lines import WrittenLines, angle_figures
@@ -127,7 +127,7 @@ class TracedNetwork:
                 f"{', '.join(parts)}: no lamellas there, {self.inner_ends} of their ends lie inside the surface "
                 "(another normal_curvature moves that edge)",
             )
-        most, usual = (miss / finer for miss in self.missed)
+        most, usual = (residual / finer for residual in self.missed)
         if wanted is not None and most > PROMISED * self.scale:
             yield Message(
                 "lamellas_off",
@@ -139,7 +139,7 @@ class TracedNetwork:
 
 
 def traced_network(
-    ground: Ground,
+    charts: Charts,
     pattern: Pattern,
     *,
     mean_curvature: float,
@@ -152,11 +152,12 @@ def traced_network(
 
     Parameters
     ----------
-    ground : Ground
+    charts : Charts
     pattern : Pattern
         With a normal curvature, or of kind "principal".
     mean_curvature : float
-        What the net tells as its surface's H, 1/m, see `lamella.network.streamlines.applicability.told_mean_curvature`.
+        What the net reports as its surface's H, 1/m, see
+        `lamella.network.streamlines.applicability.reported_mean_curvature`.
     cells : int, optional
         Lamellas of a family around the first hole; without a hole cells along the longer lamella through the middle.
         24 when spacing is not given either.
@@ -170,38 +171,38 @@ def traced_network(
     ------
     InputError
     """
-    laid = lay_lines(ground, pattern, cells=cells, spacing=spacing)
-    request, field, guide, distance, size = laid.request, laid.field, laid.guide, laid.distance, laid.size
+    plan = plan_streamlines(charts, pattern, cells=cells, spacing=spacing)
+    request, field, guide, distance, size = plan.request, plan.field, plan.guide, plan.distance, plan.size
     best, known, chosen = np.inf, [], None
     for _ in range(MOST_TRIES):
-        tried = seeded_lines(ground, field, guide, distance, size)
-        refuse_winding(ground, field, tried.flow, pattern, distance * guide.share, size)
-        met = find_crossings(tried.flow, distance * guide.share)
-        flow, met = without_short(tried.flow, met, minimum_length)
-        median = median_edge(flow, met)
+        tried = seeded_lines(charts, field, guide, distance, size)
+        refuse_winding(charts, field, tried.streamlines, pattern, distance * guide.share, size)
+        met = find_crossings(tried.streamlines, distance * guide.share)
+        streamlines, met = without_short(tried.streamlines, met, minimum_length)
+        median = median_edge(streamlines, met)
         progress(
             Report.step(
-                f"{flow.count} lines from even seeds, {len(met.a):,} crossings, median cell edge {median:.3g} m"
+                f"{streamlines.count} lines from even seeds, {len(met.a):,} crossings, median cell edge {median:.3g} m"
             )
         )
         off = 0.0 if spacing is None else abs(np.log(median / spacing)) if np.isfinite(median) else np.inf
         if chosen is None or off < best:
-            best, chosen = off, (tried, flow, met, distance)
+            best, chosen = off, (tried, streamlines, met, distance)
         if spacing is None or off <= OFF_SPACING or not np.isfinite(median):
             break
         known.append((np.log(distance), np.log(median / spacing)))
         distance = _next_distance(known)
     assert chosen is not None
-    seeded, flow, crossings, step = chosen
+    seeded, streamlines, crossings, step = chosen
     network, inner, missed = _network(
-        ground, seeded, flow, crossings, pattern, mean_curvature, step, minimum_length, request
+        charts, seeded, streamlines, crossings, pattern, mean_curvature, step, minimum_length, request
     )
     written = WrittenLines.of(network)
     if pattern.normal_curvature is not None:
         missed = np.maximum(missed, written.bend_off(network, pattern.normal_curvature))
     worst = float(missed.max()), float(np.percentile(missed, 95))
     angles = written.node_angles(network)
-    return TracedNetwork(network, str(request), laid.reach, seeded.guides, inner, worst, angles, laid.field.scale)
+    return TracedNetwork(network, str(request), plan.reach, seeded.guides, inner, worst, angles, plan.field.scale)
 
 
 def _next_distance(known: list[tuple[float, float]]) -> float:
@@ -216,10 +217,10 @@ def _next_distance(known: list[tuple[float, float]]) -> float:
 
 
 def _none_cross(
-    seeded: Seeded, kept: Flow, distance: float, minimum_length: float, request: DensityRequest
+    seeded: Seeded, kept: Streamlines, distance: float, minimum_length: float, request: DensityRequest
 ) -> InputError:
     """Why no two of the seeded lines that are kept cross; seeds are a distance (m) apart."""
-    count, longest = seeded.flow.count, float(seeded.flow.lengths.max())
+    count, longest = seeded.streamlines.count, float(seeded.streamlines.lengths.max())
     short = count - kept.count
     if short:
         return InputError(
@@ -238,9 +239,9 @@ def _none_cross(
 
 
 def _network(
-    ground: Ground,
+    charts: Charts,
     seeded: Seeded,
-    flow: Flow,
+    streamlines: Streamlines,
     crossings: Crossings,
     pattern: Pattern,
     mean_curvature: float,
@@ -254,42 +255,42 @@ def _network(
     operator.
     """
     if not len(crossings.a):
-        raise _none_cross(seeded, flow, distance, minimum_length, request)
-    whole = whole_edge(flow, crossings)
+        raise _none_cross(seeded, streamlines, distance, minimum_length, request)
+    whole = whole_edge(streamlines, crossings)
     spacing = whole if np.isfinite(whole) else distance
-    stops = merged_stops(flow, line_stops(flow, crossings), SAME_NODE * spacing)
-    node, kinds, inner = stop_nodes(ground, flow, stops, SAME_NODE * spacing)
+    stops = merged_stops(streamlines, line_stops(streamlines, crossings), SAME_NODE * spacing)
+    node, kinds, inner = stop_nodes(charts, streamlines, stops, SAME_NODE * spacing)
 
-    curves = Curves(np.where(flow.is_a, A, B), np.zeros(flow.count, bool), stops.line, node, kinds)
-    sampled, found = _sampled(flow, stops.s, curves, spacing)
-    look, tangents, where = found.look, found.tangents, found.where
+    curves = Curves(np.where(streamlines.is_a, A, B), np.zeros(streamlines.count, bool), stops.line, node, kinds)
+    sampled, found = _sampled(streamlines, stops.s, curves, spacing)
+    sample, tangents, where = found.sample, found.tangents, found.where
     s, offsets, closed = found.arclengths, sampled.offsets, curves.closed
 
-    heading = (tangents * look.e_u).sum(1) + 1j * (tangents * look.e_v).sum(1)
-    turned = look.deviator * heading**2
-    sideways = np.cross(look.normal, tangents)
-    darboux = Darboux(look.mean + turned.real, turning(tangents, sideways, s, offsets, closed), -turned.imag)
-    mean, deviator = ground.measured(where)
-    missed = np.abs(mean - look.mean + ((deviator - look.deviator) * heading**2).real) + ground.uncertain(where)
+    heading = (tangents * sample.e_u).sum(1) + 1j * (tangents * sample.e_v).sum(1)
+    turned = sample.deviator * heading**2
+    sideways = np.cross(sample.normal, tangents)
+    darboux = Darboux(sample.mean + turned.real, turning(tangents, sideways, s, offsets, closed), -turned.imag)
+    mean, deviator = charts.measured(where)
+    missed = np.abs(mean - sample.mean + ((deviator - sample.deviator) * heading**2).real) + charts.uncertain(where)
     network = assemble(
         sampled,
         CurveSamples(
-            look.position,
-            look.normal,
+            sample.position,
+            sample.normal,
             tangents,
             darboux,
-            look.mean,
-            sideways_slopes(darboux, look.mean, s, offsets, closed),
+            sample.mean,
+            sideways_slopes(darboux, sample.mean, s, offsets, closed),
             np.column_stack([where.element, where.local]),
             s,
         ),
-        rim_nodes(ground, where[sampled.node_samples], kinds, inner),
+        rim_nodes(charts, where[sampled.node_samples], kinds, inner),
         pattern=pattern,
         mean_curvature=mean_curvature,
         step=distance,
         cells=seeded.count,
         periods=(),
-        left_out=seeded.flow.count - flow.count,
+        left_out=seeded.streamlines.count - streamlines.count,
     )
     return network, int(inner.sum()), np.asarray(missed, np.float64)
 
@@ -299,22 +300,22 @@ class _Samples(NamedTuple):
 
     tangents: Floats
     where: Places
-    look: Look
+    sample: ChartSample
     arclengths: Floats
 
 
-def _sampled(flow: Flow, stops: Floats, curves: Curves, spacing: float) -> tuple[SampledCurves, _Samples]:
+def _sampled(streamlines: Streamlines, stops: Floats, curves: Curves, spacing: float) -> tuple[SampledCurves, _Samples]:
     """Samples along the lines between stops (q,), m, of a net with a spacing (m)."""
     first = curves.first_stops
     owner = curves.owner[first]
     length = stops[first + 1] - stops[first]
     # a lamella shorter than a cell is sampled as finely as a whole cell
-    whole = np.minimum(np.bincount(owner, length, flow.count)[owner], spacing)
+    whole = np.minimum(np.bincount(owner, length, streamlines.count)[owner], spacing)
 
-    def sample(division: Division) -> _Samples:
+    def along(division: Division) -> _Samples:
         line, s = owner[division.piece], stops[first[division.piece]] + division.fraction * length[division.piece]
-        where, look, tangents = flow.at(line, s)
-        return _Samples(tangents, where, look, s)
+        where, sample, tangents = streamlines.at(line, s)
+        return _Samples(tangents, where, sample, s)
 
-    division, samples = divide(parts_of(length / whole, len(curves.kinds)), owner, sample)
+    division, samples = divide(parts_of(length / whole, len(curves.kinds)), owner, along)
     return SampledCurves(curves, division), samples

@@ -11,7 +11,7 @@ from lamella.base.arrays import Booleans, Floats
 from lamella.base.errors import InputError
 from lamella.base.vectors import dots, lengths
 from lamella.base.wording import rounded
-from lamella.network.charts.charts import Ground
+from lamella.network.charts.charts import Charts
 from lamella.network.density_request import CELLS_MIN, NODES_MAX, DensityRequest
 from lamella.network.pattern import Pattern
 from lamella.network.streamlines.direction_field import LEAST_ANGLE, LineField
@@ -42,7 +42,7 @@ class Reach(NamedTuple):
 
 
 @dataclass(frozen=True)
-class LaidLines:
+class StreamlinePlan:
     """How a net of lines from seeds is laid on a surface.
 
     Attributes
@@ -72,12 +72,14 @@ class LaidLines:
         return round(self.guide.length / self.distance)
 
 
-def lay_lines(ground: Ground, pattern: Pattern, *, cells: int | None = None, spacing: float | None = None) -> LaidLines:
+def plan_streamlines(
+    charts: Charts, pattern: Pattern, *, cells: int | None = None, spacing: float | None = None
+) -> StreamlinePlan:
     """Where lines of a pattern run on a surface, and how far apart.
 
     Parameters
     ----------
-    ground, pattern, cells, spacing
+    charts, pattern, cells, spacing
         See `lamella.network.streamlines.streamline_network.traced_network`.
 
     Raises
@@ -86,33 +88,33 @@ def lay_lines(ground: Ground, pattern: Pattern, *, cells: int | None = None, spa
         There are no such lines, or they do not end; too few cells, or too many nodes.
     """
     request = DensityRequest.of(cells, spacing)
-    where, area = ground.samples()
-    look = ground.look(where)
-    size = float(np.linalg.norm(np.ptp(look.position, axis=0)))
-    scale = float(np.sqrt(np.average(look.mean**2 + np.abs(look.deviator) ** 2, weights=area)))
+    where, area = charts.samples()
+    sample = charts.evaluate(where)
+    size = float(np.linalg.norm(np.ptp(sample.position, axis=0)))
+    scale = float(np.sqrt(np.average(sample.mean**2 + np.abs(sample.deviator) ** 2, weights=area)))
     field = LineField(pattern.normal_curvature, max(scale, 1e-9 / size))
-    real, usable = field.is_real(look.mean, look.deviator), field.margin(look.mean, look.deviator) > 0
-    half = np.abs(look.deviator)
+    real, usable = field.is_real(sample.mean, sample.deviator), field.margin(sample.mean, sample.deviator) > 0
+    half = np.abs(sample.deviator)
     total = area.sum()
     reach = Reach(
         float(area[~real].sum() / total),
         float(area[real & ~usable].sum() / total),
-        float((look.mean + half).max()),
-        float((look.mean - half).min()),
+        float((sample.mean + half).max()),
+        float((sample.mean - half).min()),
     )
-    _refuse_nowhere(reach, usable, look.mean, half, pattern)
-    guide = choose_guide(ground, field, size)
+    _refuse_nowhere(reach, usable, sample.mean, half, pattern)
+    guide = choose_guide(charts, field, size)
     distance = _distance(guide, request)
-    sines = field.crossing_sine(look.mean, look.deviator)[usable]
+    sines = field.crossing_sine(sample.mean, sample.deviator)[usable]
     spacing_there = distance * guide.share
     # a cell has the area spacing^2 sin(angle)
     crossings = area[usable].sum() / (spacing_there**2 * float(np.median(sines)))
-    nodes = crossings + _ends(ground, field, spacing_there)
+    nodes = crossings + _ends(charts, field, spacing_there)
     least = spacing_there * float(np.sqrt(nodes / NODES_MAX))
     request.refuse_many(nodes, guide.length * guide.share / least, least)
-    few = probes(ground, field, where, look, spacing_there, size)
-    refuse_winding(ground, field, few, pattern, spacing_there, size)
-    return LaidLines(reach, field, guide, distance, request, size, round(nodes))
+    few = probes(charts, field, where, sample, spacing_there, size)
+    refuse_winding(charts, field, few, pattern, spacing_there, size)
+    return StreamlinePlan(reach, field, guide, distance, request, size, round(nodes))
 
 
 def _refuse_nowhere(reach: Reach, usable: Booleans, mean: Floats, half: Floats, pattern: Pattern) -> None:
@@ -148,22 +150,22 @@ def _distance(guide: Guide, request: DensityRequest) -> float:
     return request.spacing / guide.share
 
 
-def _ends(ground: Ground, field: LineField, spacing: float) -> float:
+def _ends(charts: Charts, field: LineField, spacing: float) -> float:
     """Lamellas' ends on the rim: lines of a family are the spacing times the sine of the crossing angle apart."""
-    where = ground.rim_points(RIM_POINTS)
-    look, rim = ground.look(where), ground.rim_places(where)
-    usable = field.margin(look.mean, look.deviator) > 0
+    where = charts.rim_points(RIM_POINTS)
+    sample, rim = charts.evaluate(where), charts.rim_places(where)
+    usable = field.margin(sample.mean, sample.deviator) > 0
     arc = np.zeros(len(where))
     for loop in np.unique(rim.loop):
         mine = np.flatnonzero(rim.loop == loop)
         mine = mine[np.argsort(rim.along[mine], kind="stable")]
-        arc[mine] = lengths(np.roll(look.position[mine], -1, 0) - look.position[mine])
-    look, arc, tangent = look.take(usable), arc[usable], rim.tangent[usable]
-    apart = spacing * field.crossing_sine(look.mean, look.deviator)
+        arc[mine] = lengths(np.roll(sample.position[mine], -1, 0) - sample.position[mine])
+    sample, arc, tangent = sample.take(usable), arc[usable], rim.tangent[usable]
+    apart = spacing * field.crossing_sine(sample.mean, sample.deviator)
     ends = 0.0
     for family in (True, False):
-        heading = field.heading(look.mean, look.deviator, np.full(len(arc), family))
-        line = heading.real[:, None] * look.e_u + heading.imag[:, None] * look.e_v
+        heading = field.heading(sample.mean, sample.deviator, np.full(len(arc), family))
+        line = heading.real[:, None] * sample.e_u + heading.imag[:, None] * sample.e_v
         across = np.sqrt(np.maximum(1 - dots(line, tangent) ** 2, 0))
         ends += float((arc * across / apart).sum())
     return ends

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
-from lamella.network.charts.charts import Ground, Look
+from lamella.network.charts.charts import Charts, ChartSample
 from lamella.network.streamlines.direction_field import LineField
 from lamella.surface.element.places import Places
 
@@ -32,7 +32,7 @@ APPROACH, SLOWEST = 0.5, 8
 
 
 @dataclass(frozen=True)
-class Flow:
+class Streamlines:
     """Lines through seeds; half 2 k leaves seed k against its direction, half 2 k + 1 along it.
 
     Attributes
@@ -54,7 +54,7 @@ class Flow:
         Unit tangents outwards from the seed; m.
     """
 
-    ground: Ground
+    charts: Charts
     field: LineField
     is_a: Booleans
     length: Floats
@@ -81,7 +81,7 @@ class Flow:
         """Lines that do not end, (m,): those that end have the step in which they do, or are finished."""
         return np.asarray(((self.ends == ENDLESS) & (self.tail == 0)).reshape(-1, 2).any(1))
 
-    def at(self, line: Integers, s: Floats) -> tuple[Places, Look, Floats]:
+    def at(self, line: Integers, s: Floats) -> tuple[Places, ChartSample, Floats]:
         """Places, what is seen there, and unit tangents (n, 3), at arc lengths s (n,) from the starts of lines (n,)."""
         back = self.length[2 * line]
         forward = s >= back
@@ -90,20 +90,20 @@ class Flow:
         state = _last_before(self.half, self.way, half, way)
         rest = way - self.way[state]
         start = self.where[state]
-        moved = _step(self.ground, self.field, start, self.tangent[state], self.is_a[line], rest)
-        where = self.ground.settle(moved)
-        look = self.ground.look(where)
-        tangent = _tangent(self.field, look, self.is_a[line], self.tangent[state])
-        return where, look, np.where(forward, 1.0, -1.0)[:, None] * tangent
+        moved = _step(self.charts, self.field, start, self.tangent[state], self.is_a[line], rest)
+        where = self.charts.settle(moved)
+        sample = self.charts.evaluate(where)
+        tangent = _tangent(self.field, sample, self.is_a[line], self.tangent[state])
+        return where, sample, np.where(forward, 1.0, -1.0)[:, None] * tangent
 
-    def take(self, lines: Integers) -> Flow:
+    def take(self, lines: Integers) -> Streamlines:
         """Some of the lines, in a given order."""
         halves = np.column_stack([2 * lines, 2 * lines + 1]).ravel()
         first, last = (np.searchsorted(self.half, halves, side=side) for side in ("left", "right"))
         count = last - first
         state = np.repeat(first - np.cumsum(count) + count, count) + np.arange(count.sum())
-        return Flow(
-            self.ground,
+        return Streamlines(
+            self.charts,
             self.field,
             self.is_a[lines],
             self.length[halves],
@@ -117,30 +117,30 @@ class Flow:
         )
 
 
-def joined(flows: list[Flow]) -> Flow:
+def joined(line_sets: list[Streamlines]) -> Streamlines:
     """Lines of several flows on one surface, one after the other."""
-    first = flows[0]
-    offsets = np.cumsum([0, *[2 * flow.count for flow in flows[:-1]]])
+    first = line_sets[0]
+    offsets = np.cumsum([0, *[2 * streamlines.count for streamlines in line_sets[:-1]]])
     element, local, tangent, position, way, half = (
         np.concatenate(parts)
         for parts in zip(
             *(
                 (f.where.element, f.where.local, f.tangent, f.position, f.way, f.half + offset)
-                for f, offset in zip(flows, offsets.tolist(), strict=True)
+                for f, offset in zip(line_sets, offsets.tolist(), strict=True)
             ),
             strict=True,
         )
     )
     is_a, length, ends, tail = (
-        np.concatenate(parts) for parts in zip(*((f.is_a, f.length, f.ends, f.tail) for f in flows), strict=True)
+        np.concatenate(parts) for parts in zip(*((f.is_a, f.length, f.ends, f.tail) for f in line_sets), strict=True)
     )
-    return Flow(
-        first.ground, first.field, is_a, length, ends, tail, half, way, Places(element, local), tangent, position
+    return Streamlines(
+        first.charts, first.field, is_a, length, ends, tail, half, way, Places(element, local), tangent, position
     )
 
 
 def trace(
-    ground: Ground,
+    charts: Charts,
     field: LineField,
     seeds: Places,
     is_a: Booleans,
@@ -148,12 +148,12 @@ def trace(
     step: float,
     longest: float,
     beside: float = 0.0,
-) -> Flow:
+) -> Streamlines:
     """Trace lines both ways from seeds, up to the step in which they end (see `finished`).
 
     Parameters
     ----------
-    ground : Ground
+    charts : Charts
     field : LineField
     seeds : Places
         (m,) places.
@@ -170,36 +170,36 @@ def trace(
     line = np.repeat(np.arange(m), 2)
     family = is_a[line]
     where = seeds[line]
-    look = ground.look(where)
+    sample = charts.evaluate(where)
     outwards = np.tile([-1.0, 1.0], m)[:, None]
-    heading = field.heading(look.mean, look.deviator, family)
-    tangent = outwards * (heading.real[:, None] * look.e_u + heading.imag[:, None] * look.e_v)
-    origin, sense, away = look.position, tangent, np.zeros(2 * m, bool)
+    heading = field.heading(sample.mean, sample.deviator, family)
+    tangent = outwards * (heading.real[:, None] * sample.e_u + heading.imag[:, None] * sample.e_v)
+    origin, sense, away = sample.position, tangent, np.zeros(2 * m, bool)
     way, length, tail = np.zeros(2 * m), np.zeros(2 * m), np.zeros(2 * m)
     ends = np.full(2 * m, ENDLESS)
     left = np.arange(2 * m)
     kept: list[tuple[Integers, Floats, Places, Floats, Floats]] = []
-    margin, most = field.margin(look.mean, look.deviator), np.full(2 * m, step / SLOWEST)
+    margin, most = field.margin(sample.mean, sample.deviator), np.full(2 * m, step / SLOWEST)
     for _ in range(MOST_STEPS):
-        velocity = _velocity(field, look, family[left], tangent)
+        velocity = _velocity(field, sample, family[left], tangent)
         # the principal curvatures bound how a line turns
-        bend = np.abs(look.mean) + np.abs(look.deviator)
-        ds = np.minimum(ground.reach(where) / np.linalg.norm(velocity, axis=1), step)
+        bend = np.abs(sample.mean) + np.abs(sample.deviator)
+        ds = np.minimum(charts.reach(where) / np.linalg.norm(velocity, axis=1), step)
         ds = np.minimum(np.minimum(ds, most), MOST_TURN / np.maximum(bend, 1e-300))
-        kept.append((left, way, where, tangent, look.position))
-        ahead, seen, ds = _gentle_step(ground, field, where, tangent, family[left], ds, velocity)
+        kept.append((left, way, where, tangent, sample.position))
+        ahead, seen, ds = _gentle_step(charts, field, where, tangent, family[left], ds, velocity)
         before, margin = margin, field.margin(seen.mean, seen.deviator)
         # a step must not pass over a place without directions, around a flat point for instance
         fall = np.maximum(before - margin, 1e-300) / ds
         most = np.maximum(APPROACH * margin / fall, step / SLOWEST)
-        on = (ground.gap(ahead) >= 0) & (margin >= 0)
+        on = (charts.gap(ahead) >= 0) & (margin >= 0)
         length[left], tail[left[~on]] = way, ds[~on]
         tangent = _tangent(field, seen, family[left], tangent)
-        back = away[left] & (_from_chord(origin[left], look.position, seen.position) < beside)
+        back = away[left] & (_from_chord(origin[left], sample.position, seen.position) < beside)
         on &= (way + ds < longest) & ~(back & ((tangent * sense[left]).sum(1) > SAME_SENSE))
         away[left] |= np.linalg.norm(seen.position - origin[left], axis=1) > AWAY * beside
         tangent = tangent[on]
-        left, way, where, look = left[on], (way + ds)[on], ahead[on], seen.take(on)
+        left, way, where, sample = left[on], (way + ds)[on], ahead[on], seen.take(on)
         margin, most = margin[on], most[on]
         if not len(left):
             break
@@ -209,8 +209,8 @@ def trace(
         for parts in zip(*((h, w, p.element, p.local, t, x) for h, w, p, t, x in kept), strict=True)
     )
     order = np.argsort(half, kind="stable")
-    return Flow(
-        ground,
+    return Streamlines(
+        charts,
         field,
         is_a,
         length,
@@ -225,31 +225,31 @@ def trace(
 
 
 def _gentle_step(
-    ground: Ground,
+    charts: Charts,
     field: LineField,
     start: Places,
     tangent: Floats,
     is_a: Booleans,
     ds: Floats,
     first: Floats,
-) -> tuple[Places, Look, Floats]:
+) -> tuple[Places, ChartSample, Floats]:
     """Places a step further on, what is seen there, and the steps, m, (n,), in which lines turn by `MOST_TURN` or less.
 
     Next to umbilics lines turn within the surface, by far more than its curvatures tell.
     """
-    ahead = ground.settle(_step(ground, field, start, tangent, is_a, ds, first))
-    seen, ds = ground.look(ahead), ds.copy()
+    ahead = charts.settle(_step(charts, field, start, tangent, is_a, ds, first))
+    seen, ds = charts.evaluate(ahead), ds.copy()
     again = np.arange(len(ds))
     for _ in range(MOST_HALVED):
         onwards = _tangent(field, seen.take(again), is_a[again], tangent[again])
         turned = (onwards * tangent[again]).sum(1) < np.cos(MOST_TURN)
-        again = again[turned & (ground.gap(ahead[again]) >= 0)]
+        again = again[turned & (charts.gap(ahead[again]) >= 0)]
         if not len(again):
             break
         ds[again] /= 2
-        near = ground.settle(_step(ground, field, start[again], tangent[again], is_a[again], ds[again], first[again]))
+        near = charts.settle(_step(charts, field, start[again], tangent[again], is_a[again], ds[again], first[again]))
         ahead.element[again], ahead.local[again] = near.element, near.local
-        for part, value in zip(seen, ground.look(near), strict=True):
+        for part, value in zip(seen, charts.evaluate(near), strict=True):
             part[again] = value
     return ahead, seen, ds
 
@@ -262,49 +262,49 @@ def _from_chord(points: Floats, begin: Floats, end: Floats) -> Floats:
     return np.asarray(np.linalg.norm(off - share[:, None] * chord, axis=1))
 
 
-def finished(flow: Flow) -> Flow:
+def finished(streamlines: Streamlines) -> Streamlines:
     """The lines up to where they leave the surface or the field, found by halving the step in which they do."""
-    ground, field = flow.ground, flow.field
-    half = np.flatnonzero(flow.tail > 0)
+    charts, field = streamlines.charts, streamlines.field
+    half = np.flatnonzero(streamlines.tail > 0)
     if not len(half):
-        return flow
-    state = np.searchsorted(flow.half, half, side="right") - 1
-    start, tangent, is_a = flow.where[state], flow.tangent[state], flow.is_a[half // 2]
-    inside, outside = np.zeros(len(half)), flow.tail[half]
+        return streamlines
+    state = np.searchsorted(streamlines.half, half, side="right") - 1
+    start, tangent, is_a = streamlines.where[state], streamlines.tangent[state], streamlines.is_a[half // 2]
+    inside, outside = np.zeros(len(half)), streamlines.tail[half]
     by_rim = np.zeros(len(half), bool)
     for number in range(HALVINGS):
         # the whole step first, which is known to leave
         middle = (inside + outside) / 2 if number else outside
-        there = ground.settle(_step(ground, field, start, tangent, is_a, middle))
-        seen = ground.look(there)
-        beyond = ground.gap(there) < 0
+        there = charts.settle(_step(charts, field, start, tangent, is_a, middle))
+        seen = charts.evaluate(there)
+        beyond = charts.gap(there) < 0
         off = beyond | (field.margin(seen.mean, seen.deviator) < 0)
         by_rim = np.where(off, beyond, by_rim)
         inside, outside = np.where(off, inside, middle), np.where(off, middle, outside)
-    length, ends = flow.length.copy(), flow.ends.copy()
+    length, ends = streamlines.length.copy(), streamlines.ends.copy()
     length[half] += inside
     ends[half] = np.where(by_rim, RIM, UNREAL)
-    return replace(flow, length=length, ends=ends, tail=np.zeros(len(length)))
+    return replace(streamlines, length=length, ends=ends, tail=np.zeros(len(length)))
 
 
-def _velocity(field: LineField, look: Look, is_a: Booleans, onwards: Floats) -> Floats:
+def _velocity(field: LineField, sample: ChartSample, is_a: Booleans, onwards: Floats) -> Floats:
     """d(x, y) / ds of lines that go on along tangents nearby, (n, 2)."""
-    heading = field.heading(look.mean, look.deviator, is_a)
-    along = heading.real * (look.e_u * onwards).sum(1) + heading.imag * (look.e_v * onwards).sum(1)
+    heading = field.heading(sample.mean, sample.deviator, is_a)
+    along = heading.real * (sample.e_u * onwards).sum(1) + heading.imag * (sample.e_v * onwards).sum(1)
     heading = np.where(along < 0, -heading, heading)
     components = np.stack([heading.real, heading.imag], 1)[:, :, None]
-    return np.asarray(np.matmul(look.to_local, components)[:, :, 0])
+    return np.asarray(np.matmul(sample.to_local, components)[:, :, 0])
 
 
-def _tangent(field: LineField, look: Look, is_a: Booleans, onwards: Floats) -> Floats:
+def _tangent(field: LineField, sample: ChartSample, is_a: Booleans, onwards: Floats) -> Floats:
     """Unit tangents of lines that go on along tangents nearby, (n, 3)."""
-    heading = field.heading(look.mean, look.deviator, is_a)
-    tangent = heading.real[:, None] * look.e_u + heading.imag[:, None] * look.e_v
+    heading = field.heading(sample.mean, sample.deviator, is_a)
+    tangent = heading.real[:, None] * sample.e_u + heading.imag[:, None] * sample.e_v
     return np.asarray(np.where((tangent * onwards).sum(1) < 0, -1.0, 1.0)[:, None] * tangent)
 
 
 def _step(
-    ground: Ground,
+    charts: Charts,
     field: LineField,
     start: Places,
     onwards: Floats,
@@ -315,7 +315,7 @@ def _step(
     """Places arc lengths ds (n,) further on, in the charts of their starts; `first`: d(x, y) / ds there, if known."""
 
     def rate(local: Floats) -> Floats:
-        return _velocity(field, ground.look(Places(start.element, local)), is_a, onwards)
+        return _velocity(field, charts.evaluate(Places(start.element, local)), is_a, onwards)
 
     h, x = ds[:, None], start.local
     k1 = rate(x) if first is None else first

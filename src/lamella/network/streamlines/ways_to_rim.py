@@ -14,10 +14,10 @@ from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Floats
 from lamella.base.ties import MARGIN
-from lamella.network.charts.charts import Ground
+from lamella.network.charts.charts import Charts
 from lamella.network.streamlines.direction_field import LineField
 from lamella.network.streamlines.probing import LONGEST, STEPS, probes, wound
-from lamella.network.streamlines.streamlines import RIM, UNREAL, Flow, finished, joined, trace
+from lamella.network.streamlines.streamlines import RIM, UNREAL, Streamlines, finished, joined, trace
 
 # normal curvatures that are looked at: so many between the principal curvatures; those lines are offered that cross at
 # no less than these degrees on all but this share of the area
@@ -34,12 +34,12 @@ NEAR = 0.1
 RIM_POINTS = 400
 
 
-def reaching_curvature(ground: Ground, field: LineField, spacing: float, size: float) -> float | None:
+def reaching_curvature(charts: Charts, field: LineField, spacing: float, size: float) -> float | None:
     """A normal curvature, 1/m, whose lines cover the surface, cross well and end on the rim; None: none was found."""
-    where, area = ground.samples()
-    look = ground.look(where)
-    half = np.abs(look.deviator)
-    lowest, highest = float((look.mean - half).max()), float((look.mean + half).min())
+    where, area = charts.samples()
+    sample = charts.evaluate(where)
+    half = np.abs(sample.deviator)
+    lowest, highest = float((sample.mean - half).max()), float((sample.mean + half).min())
     if not lowest < highest:
         # no value lies between the principal curvatures everywhere
         return None
@@ -47,12 +47,14 @@ def reaching_curvature(ground: Ground, field: LineField, spacing: float, size: f
     choices = []
     for value in sorted(values):
         other = LineField(value, field.scale)
-        sines = np.where(other.is_real(look.mean, look.deviator), other.crossing_sine(look.mean, look.deviator), 0.0)
+        sines = np.where(
+            other.is_real(sample.mean, sample.deviator), other.crossing_sine(sample.mean, sample.deviator), 0.0
+        )
         well = sines >= np.sin(np.radians(CROSSING))
         if area[~well].sum() <= LEFT_OUT * area.sum():
             choices.append((-np.rint(np.average(sines, weights=area) / MARGIN), abs(value), value))
     for _, _, value in sorted(choices)[:MOST_TRIED]:
-        few = probes(ground, LineField(value, field.scale), where, look, spacing, size)
+        few = probes(charts, LineField(value, field.scale), where, sample, spacing, size)
         if not few.endless.any() and (finished(few).ends == RIM).all():
             return value
     return None
@@ -74,14 +76,14 @@ class Cut:
     divides: bool
 
 
-def cut_across(ground: Ground, field: LineField, winding: Flow, spacing: float, size: float) -> Cut | None:
+def cut_across(charts: Charts, field: LineField, winding: Streamlines, spacing: float, size: float) -> Cut | None:
     """A line of the other family that crosses all lines that wind.
 
     Parameters
     ----------
-    ground : Ground
+    charts : Charts
     field : LineField
-    winding : Flow
+    winding : Streamlines
         Lines of `field` that do not end.
     spacing, size : float
         Of the net and of the surface, m.
@@ -93,22 +95,22 @@ def cut_across(ground: Ground, field: LineField, winding: Flow, spacing: float, 
         apart, which passes between the two umbilics that the lines go around, or through the one.
     """
     step, family = spacing / STEPS, bool(winding.is_a[0])
-    where, _ = ground.samples()
-    look = ground.look(where)
-    usable = np.flatnonzero(field.margin(look.mean, look.deviator) > 0)
+    where, _ = charts.samples()
+    sample = charts.evaluate(where)
+    usable = np.flatnonzero(field.margin(sample.mean, sample.deviator) > 0)
     seeds = where[usable[np.unique(np.linspace(0, len(usable) - 1, FINER).astype(np.int64))]]
-    finer = wound(ground, field, seeds, np.full(len(seeds), family), spacing=spacing, size=size)
+    finer = wound(charts, field, seeds, np.full(len(seeds), family), spacing=spacing, size=size)
     winding = joined([winding, finer.take(np.flatnonzero(finer.endless))])
     trees = [cKDTree(winding.position[winding.half // 2 == k]) for k in range(winding.count)]
-    lines = finished(trace(ground, field, seeds, np.full(len(seeds), not family), step=step, longest=LONGEST * size))
-    disc = ground.hole(1) is None
+    lines = finished(trace(charts, field, seeds, np.full(len(seeds), not family), step=step, longest=LONGEST * size))
+    disc = charts.hole(1) is None
     courses = [_course(lines, k) for k in np.flatnonzero((lines.ends == RIM).reshape(-1, 2).all(1)).tolist()]
     if disc:
         courses += _through_umbilics(lines, NEAR * size)
         worth = [-float(np.linalg.norm(course[-1] - course[0])) for course in courses]
     else:
-        rim = cKDTree(ground.look(ground.rim_points(RIM_POINTS)).position)
-        loop = ground.rim_places(ground.rim_points(RIM_POINTS)).loop
+        rim = cKDTree(charts.evaluate(charts.rim_points(RIM_POINTS)).position)
+        loop = charts.rim_places(charts.rim_points(RIM_POINTS)).loop
         ends = [loop[rim.query(course[[0, -1]])[1]] for course in courses]
         courses = [course for course, (first, last) in zip(courses, ends, strict=True) if first != last]
         worth = [float(np.linalg.norm(np.diff(course, axis=0), axis=1).sum()) for course in courses]
@@ -119,14 +121,14 @@ def cut_across(ground: Ground, field: LineField, winding: Flow, spacing: float, 
     return None
 
 
-def _course(lines: Flow, line: int) -> Floats:
+def _course(lines: Streamlines, line: int) -> Floats:
     """Points (n, 3) at equal lengths along a line, closer together than the steps it was traced by."""
     count = np.count_nonzero(lines.half // 2 == line) + DENSE
     s = np.linspace(0, 1, count - count % DENSE + 1) * lines.lengths[line]
     return lines.at(np.full(len(s), line), s)[1].position
 
 
-def _through_umbilics(lines: Flow, near: float) -> list[Floats]:
+def _through_umbilics(lines: Streamlines, near: float) -> list[Floats]:
     """From rim to rim by two lines that end at one umbilic, of which nothing else is known than that they end there."""
     ends = lines.ends.reshape(-1, 2)
     found = []

@@ -10,14 +10,16 @@ import numpy as np
 
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
-from lamella.network.charts.charts import Ground
+from lamella.network.charts.charts import Charts
 from lamella.network.pattern import Pattern
 from lamella.network.streamlines.direction_field import LineField
-from lamella.network.streamlines.streamlines import Flow
+from lamella.network.streamlines.streamlines import Streamlines
 from lamella.network.streamlines.ways_to_rim import cut_across, reaching_curvature
 
 
-def refuse_winding(ground: Ground, field: LineField, flow: Flow, pattern: Pattern, spacing: float, size: float) -> None:
+def refuse_winding(
+    charts: Charts, field: LineField, lines: Streamlines, pattern: Pattern, spacing: float, size: float
+) -> None:
     """Refuse lines that do not end.
 
     Raises
@@ -25,16 +27,16 @@ def refuse_winding(ground: Ground, field: LineField, flow: Flow, pattern: Patter
     InputError
         With what lets them end: a normal curvature whose lines reach the rim, a cut.
     """
-    winding = flow.endless
+    winding = lines.endless
     if not winding.any():
         return
     principal = pattern.kind == "principal"
     ways = []
-    better = reaching_curvature(ground, field, spacing, size)
+    better = reaching_curvature(charts, field, spacing, size)
     if better is not None:
         kind = 'kind = "lamellas" and ' if principal else ""
         ways.append(f"write {kind}normal_curvature = {better:g}, whose lines reach the rim")
-    cut = cut_across(ground, field, flow.take(np.flatnonzero(winding)), spacing, size)
+    cut = cut_across(charts, field, lines.take(np.flatnonzero(winding)), spacing, size)
     if cut is not None:
         # nanometres are rounding
         places = ", ".join(f"({coordinates(np.round(point, 9) + 0.0)})" for point in cut.points)
@@ -43,9 +45,9 @@ def refuse_winding(ground: Ground, field: LineField, flow: Flow, pattern: Patter
             if cut.divides
             else f"cut the mesh open: take out the faces along the line through {places} m"
         )
-    through = flow.position[flow.half == 2 * int(winding.argmax())][0]
+    through = lines.position[lines.half == 2 * int(winding.argmax())][0]
     raise InputError(
-        f"{winding.sum()} of {flow.count} lines wind around without reaching the rim, one of them through "
+        f"{winding.sum()} of {lines.count} lines wind around without reaching the rim, one of them through "
         f"({coordinates(through)}) m: closed lines are offered on surfaces of constant mean curvature only",
         "; or ".join(ways) or "cut the surface open where they go around",
         "kind" if principal else "normal_curvature",

@@ -130,16 +130,16 @@ class Course:
         active = np.arange(len(s))
         for _ in range(60):
             p, x = piece[active], s[active]
-            miss = self._integral(p, start[active], x) - wanted[active]
-            low[active] = np.where(miss < 0, x, low[active])
-            high[active] = np.where(miss > 0, x, high[active])
+            residual = self._integral(p, start[active], x) - wanted[active]
+            low[active] = np.where(residual < 0, x, low[active])
+            high[active] = np.where(residual > 0, x, high[active])
             with np.errstate(divide="ignore", invalid="ignore"):
-                new = x - miss / self._speed(p, x)
+                new = x - residual / self._speed(p, x)
             inside = (new >= low[active]) & (new <= high[active])
             new = np.where(inside, new, (low[active] + high[active]) / 2)
-            s[active] = np.where(miss == 0, x, new)
+            s[active] = np.where(residual == 0, x, new)
             # Newton squares its error: the step after this one would be below rounding
-            active = active[np.abs(miss) > 1e-9 * np.minimum(size[active], wanted[active] + 1e-6 * size[active])]
+            active = active[np.abs(residual) > 1e-9 * np.minimum(size[active], wanted[active] + 1e-6 * size[active])]
             if not len(active):
                 break
         return piece, s

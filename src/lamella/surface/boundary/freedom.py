@@ -134,13 +134,13 @@ class Freedom:
             first += len(part.ranges)
         return film
 
-    def curvature_rates(self) -> Floats:
+    def curvature_sensitivities(self) -> Floats:
         """Change of H, 1/m, per share of each parameter, (count,)."""
         rates = [part.ranges if part.apply is _with_curvature else np.zeros(len(part.ranges)) for part in self._parts]
         return np.concatenate([np.zeros(0), *rates])
 
 
-def refuse_held(freedom: Freedom) -> None:
+def refuse_fixed(freedom: Freedom) -> None:
     """Raise an `InputError` where nothing of the boundary may change."""
     if freedom.count:
         return

@@ -34,11 +34,11 @@ def join_in_order(parts: Sequence[Pieces], names: Sequence[str], where: str) -> 
         k = int(np.argmax(gaps > GAP_LIMIT * size))
         following = (k + 1) % len(parts)
         if len(parts) == 1:
-            told = f"{names[k]} is not closed: its end {place(ends[k])} is {gaps[k]:.4g} m from its beginning"
+            reported = f"{names[k]} is not closed: its end {place(ends[k])} is {gaps[k]:.4g} m from its beginning"
         else:
-            told = f"{names[k]} ends at {place(ends[k])}, {gaps[k]:.4g} m from where {names[following]} begins"
+            reported = f"{names[k]} ends at {place(ends[k])}, {gaps[k]:.4g} m from where {names[following]} begins"
         raise InputError(
-            f"{told}, {place(after[k])} (limit {GAP_LIMIT * size:.2g} m)",
+            f"{reported}, {place(after[k])} (limit {GAP_LIMIT * size:.2g} m)",
             "join the parts end to end, in order and the last one with the first",
             where,
         )

@@ -74,7 +74,7 @@ def _smooth(points: Floats, *, closed: bool) -> tuple[Floats, float]:
     following = np.roll(points, -1, axis=0) if closed else points[1:]
     steps = np.linalg.norm(following - points[: len(following)], axis=1)
     mean = float(steps.mean())
-    (six, _), (eight, correlation) = (_missed(points, steps, reach, closed) for reach in (3, 4))
+    (six, _), (eight, correlation) = (_residual(points, steps, reach, closed) for reach in (3, 4))
     if not LEAST * mean < eight < MOST * mean or eight < NO_SMOOTHER * six or correlation > ALTERNATING:
         return points, 0.0
     operator = _differences(steps / mean, closed)
@@ -103,7 +103,7 @@ def _smooth(points: Floats, *, closed: bool) -> tuple[Floats, float]:
     return result, eight
 
 
-def _missed(points: Floats, steps: Floats, reach: int, closed: bool) -> tuple[float, float]:
+def _residual(points: Floats, steps: Floats, reach: int, closed: bool) -> tuple[float, float]:
     """Scatter across the curve that the polynomials through `reach` neighbours on either side say, m.
 
     And the correlation of what they miss at neighbouring vertices. Were all coordinates off by s, a polynomial with

@@ -61,17 +61,17 @@ def smooth_curve(
         # few points of a curve, none of which is a corner where the project says spline
         corner = np.zeros(len(points), bool)
     pieces, off = _curve(points, corner, where)
-    told = f"the polyline of {counted(len(points), 'vertex', 'vertices')} is taken as a smooth curve"
+    reported = f"the polyline of {counted(len(points), 'vertex', 'vertices')} is taken as a smooth curve"
     if corner.any():
-        told += f" with {counted(int(corner.sum()), 'corner')}"
+        reported += f" with {counted(int(corner.sum()), 'corner')}"
     if off > 0:
-        told += f", which passes its vertices within {1000 * off:.2g} mm"
+        reported += f", which passes its vertices within {1000 * off:.2g} mm"
     if interpolation is None:
-        told += (
+        reported += (
             f': they turn by {np.degrees(turns[~corner].max()):.2g} deg at most; write interpolation = "spline" '
             'to say so, or interpolation = "polyline" to keep every one of them as a corner'
         )
-    return pieces, Message("polyline_smooth", told)
+    return pieces, Message("polyline_smooth", reported)
 
 
 def _curve(points: Floats, corner: Booleans, where: str) -> tuple[Pieces, float]:

@@ -57,16 +57,16 @@ def _interpolate(points: Floats, degree: int, where: str, *, closed: bool) -> Pi
     points = points - origin
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     chords = np.concatenate([[0.0], np.cumsum(steps)])
-    miss = np.inf
+    residual = np.inf
     with warnings.catch_warnings():
         warnings.simplefilter("error", LinAlgWarning)
         try:
             spline = make_interp_spline(chords, points, k=degree, bc_type="periodic" if closed else None)
-            miss = float(np.abs(spline(chords) - points).max())
+            residual = float(np.abs(spline(chords) - points).max())
         except (LinAlgError, LinAlgWarning, ValueError):
             pass
     remedy = 'space the points more evenly, add points, or write interpolation = "polyline"'
-    if not miss <= _LARGEST_MISS * chords[-1]:
+    if not residual <= _LARGEST_MISS * chords[-1]:
         raise InputError(
             f"the points are spaced too unevenly for a spline: {steps.min():.4g} m after point {np.argmin(steps)} "
             f"(counted from 0), {steps.max():.4g} m after point {np.argmax(steps)}",

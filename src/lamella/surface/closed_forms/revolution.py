@@ -55,15 +55,15 @@ class SurfaceOfRevolution(ClosedForm):
         if z == 0.0:
             return 0.0
 
-        def miss(u: float) -> float:
+        def residual(u: float) -> float:
             return float(self.profile(np.array([u])).z[0]) - z
 
-        sign = 1.0 if miss(1e-3) > miss(-1e-3) else -1.0
+        sign = 1.0 if residual(1e-3) > residual(-1e-3) else -1.0
         reach = 1.0
-        while miss(sign * np.sign(z) * reach) * np.sign(z) < 0:
+        while residual(sign * np.sign(z) * reach) * np.sign(z) < 0:
             reach *= 2
         ends = sorted((0.0, sign * np.sign(z) * reach))
-        return float(brentq(miss, *ends, xtol=1e-15, rtol=1e-15))
+        return float(brentq(residual, *ends, xtol=1e-15, rtol=1e-15))
 
     def between(self, z0: float, z1: float) -> Ring:
         """The outline between two heights.

@@ -67,10 +67,10 @@ def find_places(
 
     for _ in range(MOST_STEPS):
         value, by_x, by_y = jet(Places(element, local.T))
-        miss = target.take(active, 1) - value
-        there = np.maximum(np.abs(miss[0]), np.abs(miss[1])) < FINE
+        residual = target.take(active, 1) - value
+        there = np.maximum(np.abs(residual[0]), np.abs(residual[1])) < FINE
         determinant = by_x[0] * by_y[1] - by_x[1] * by_y[0]
-        step = np.stack([miss[0] * by_y[1] - miss[1] * by_y[0], by_x[0] * miss[1] - by_x[1] * miss[0]])
+        step = np.stack([residual[0] * by_y[1] - residual[1] * by_y[0], by_x[0] * residual[1] - by_x[1] * residual[0]])
         step /= np.where(np.abs(determinant) < 1e-300, 1.0, determinant)
         size = np.maximum(np.abs(step[0]), np.abs(step[1]))
         step *= np.where(there, 0.0, np.minimum(1, 0.5 / np.maximum(size, 1e-300)))

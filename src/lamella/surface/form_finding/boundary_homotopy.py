@@ -21,7 +21,7 @@ from lamella.surface.form_finding.continuation import Reached
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.film import Film, Loop, Slide, moved_with_rim
 from lamella.surface.form_finding.meshing import SAMPLES_OF_A_LOOP, is_worn, on_surface, renewed
-from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, find_equilibrium
+from lamella.surface.form_finding.newton import Equilibrium, FixedH, NoFilmError, Volume, find_equilibrium
 from lamella.surface.remesh.remesh import TriangleMesh
 
 # of the whole way: first step, and the least one; Newton steps of a film, and after which a path that fails ends
@@ -236,10 +236,10 @@ def along_loops(
     def found(film: Film, there: Loops, at: float) -> Equilibrium:
         moved = _moved(film, there)
         if volume is None:
-            return find_equilibrium(moved, curvature, stable=stable, most_steps=MANY)
+            return find_equilibrium(moved, curvature, FixedH(stable), most_steps=MANY)
         wanted = begin + (volume - begin) * (at - first) / (1 - first)
         missing = wanted - enclosed_volume(moved)
-        return find_equilibrium(moved, curvature, volume=missing, stable=False, most_steps=MANY)
+        return find_equilibrium(moved, curvature, Volume(missing), most_steps=MANY)
 
     try:
         while share < 1:

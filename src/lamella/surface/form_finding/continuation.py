@@ -10,7 +10,7 @@ from lamella.base.progress import Progress
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.family import MANY, Member, Stretch, member_of, stretches
 from lamella.surface.form_finding.film import Film
-from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, Way, find_equilibrium
+from lamella.surface.form_finding.newton import Along, Equilibrium, FixedH, NoFilmError, Volume, find_equilibrium
 
 # of its first size, of the radius 1 / H or of the volume's edge: a film larger than this many times has left for good
 FAR = 5.0
@@ -172,7 +172,7 @@ def _on_stretch(stretch: Stretch, target: float, progress: Progress, unstable: b
     for root in stretch.roots("mean_curvature", target):
         with suppress(NoFilmError):
             near = _part(stretch, float(root))
-            found = find_equilibrium(near.film, target, stable=False, most_steps=MANY, progress=progress)
+            found = find_equilibrium(near.film, target, FixedH(stable=False), most_steps=MANY, progress=progress)
             steps += near.steps + found.steps
             if (found.negative > 0) == unstable and _between(stretch, found.film):
                 return Reached(found, steps)
@@ -201,7 +201,7 @@ def to_volume(start: Equilibrium, volume: float, progress: Progress) -> Reached:
             with suppress(NoFilmError):
                 near = _part(stretch, float(root))
                 left = volume - enclosed_volume(near.film)
-                found = find_equilibrium(near.film, near.mean_curvature, volume=left, stable=False, progress=progress)
+                found = find_equilibrium(near.film, near.mean_curvature, Volume(left), progress=progress)
                 return Reached(found, stretch.steps + near.steps + found.steps)
         if stretch.second.growth * missing < 0:
             fold = fold if turned else stretch.extreme("volume")
@@ -214,9 +214,7 @@ def to_volume(start: Equilibrium, volume: float, progress: Progress) -> Reached:
 def _part(stretch: Stretch, step: float) -> Equilibrium:
     """A film on the way from the first to the second."""
     first = stretch.first
-    return find_equilibrium(
-        first.film, first.mean_curvature, way=Way(first.weights, step), stable=False, most_steps=MANY
-    )
+    return find_equilibrium(first.film, first.mean_curvature, Along(first.weights, step), most_steps=MANY)
 
 
 def _between(stretch: Stretch, film: Film) -> bool:

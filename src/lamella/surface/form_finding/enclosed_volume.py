@@ -23,7 +23,7 @@ from lamella.surface.element.geometry import tangents
 from lamella.surface.element.placing import rim_parameters
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.form_finding.film import Film, Loop, Slide
-from lamella.surface.form_finding.free_boundary import SlidRim, within
+from lamella.surface.form_finding.free_boundary import FreeRim, within
 
 # pieces of a drawn loop between two corners at least, and points of each
 PIECES, POINTS = 64, 8
@@ -52,7 +52,7 @@ def enclosed_volume(film: Film) -> float:
         if not loop.slides:
             total += _lid((curve, step))
             continue
-        held = loop.loop if isinstance(loop, SlidRim) else loop
+        held = loop.loop if isinstance(loop, FreeRim) else loop
         start, pieces = _pieces(held)
         drawn, drawn_step = _along(pieces - origin)
         sense = np.sign(span[mine][0])

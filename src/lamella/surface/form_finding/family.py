@@ -21,7 +21,7 @@ from lamella.base.sparse import SingularError
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.meshing import is_worn, renewed
-from lamella.surface.form_finding.newton import NoFilmError, Way, find_equilibrium
+from lamella.surface.form_finding.newton import Along, NoFilmError, find_equilibrium
 from lamella.surface.form_finding.variation import Variation
 
 # largest shift of a first step and of any, over the film's size; a path that needs smaller ones than the last ends
@@ -146,9 +146,7 @@ def stretches(start: Member, progress: Progress, largest: float) -> Iterator[Str
     for _ in range(MOST_FILMS):
         step = min(step, LARGEST_STEP * here.film.size)
         try:
-            found = find_equilibrium(
-                here.film, here.mean_curvature, way=Way(here.weights, step), stable=False, most_steps=MANY
-            )
+            found = find_equilibrium(here.film, here.mean_curvature, Along(here.weights, step), most_steps=MANY)
             there = member_of(found.film, found.mean_curvature)
             if abs(there.negative - here.negative) > CHANGED and step > SHORT_STEP * here.film.size:
                 # worn elements have solutions of their own, which no film is near to
@@ -186,7 +184,7 @@ def _renewed(member: Member) -> Member:
     """The same film on new elements."""
     film = renewed(member.film)
     new = member_of(film, member.mean_curvature)
-    film = find_equilibrium(film, member.mean_curvature, way=Way(new.weights, 0.0), stable=False, most_steps=MANY).film
+    film = find_equilibrium(film, member.mean_curvature, Along(new.weights, 0.0), most_steps=MANY).film
     new = member_of(film, member.mean_curvature)
     # H and volume run on as they did
     same = new.rise * member.rise * film.size**4 + new.growth * member.growth

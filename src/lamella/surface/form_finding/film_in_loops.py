@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lamella.base.drawing_origin import origin_figure, origin_of, told_from
+from lamella.base.drawing_origin import origin_figure, origin_of, reported_from
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, silent
 from lamella.surface.boundary.checks import check_corner_count, check_loops
@@ -89,7 +89,7 @@ def film(
     origin = origin_of(curves[0].at(np.arange(8) / 8))
     if any(origin):
         curves = tuple(curve.scaled(1.0, -np.array(origin)) for curve in curves)
-    with told_from(origin):
+    with reported_from(origin):
         check_loops(curves)
         check_corner_count(curves, most_nodes, tolerance)
         found = find_film(

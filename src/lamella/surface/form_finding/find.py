@@ -21,7 +21,7 @@ from lamella.surface.form_finding.necessary_conditions import (
     refuse_impossible,
     refuse_single,
 )
-from lamella.surface.form_finding.newton import Equilibrium, find_equilibrium
+from lamella.surface.form_finding.newton import Equilibrium, FixedH, Volume, find_equilibrium
 from lamella.surface.form_finding.not_found import impossible, not_found
 from lamella.surface.form_finding.refinement import adapted
 from lamella.surface.form_finding.search_error import SearchError
@@ -209,8 +209,8 @@ def _found(
         if volume is not None:
             missing = volume - enclosed_volume(film)
             guess = first.equilibrium.mean_curvature
-            return find_equilibrium(film, guess, volume=missing, stable=False, progress=progress)
-        return find_equilibrium(film, mean_curvature, stable=not unstable, progress=progress)
+            return find_equilibrium(film, guess, Volume(missing), progress=progress)
+        return find_equilibrium(film, mean_curvature, FixedH(stable=not unstable), progress=progress)
 
     found = adapted(first.equilibrium, settled, tolerance, most_nodes, first.steps, first.followed, progress)
     verdict = found.stability

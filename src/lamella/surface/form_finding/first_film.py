@@ -28,8 +28,8 @@ from lamella.surface.form_finding.film import Film, Loop, NoFilmError, harmonic_
 from lamella.surface.form_finding.fixed_support import held
 from lamella.surface.form_finding.meshing import renewed, start_film
 from lamella.surface.form_finding.necessary_conditions import refuse_apart
-from lamella.surface.form_finding.newton import Equilibrium, find_equilibrium
-from lamella.surface.form_finding.release import let_go
+from lamella.surface.form_finding.newton import Equilibrium, FixedH, find_equilibrium
+from lamella.surface.form_finding.release import release
 from lamella.surface.form_finding.search_error import SearchError
 
 # Newton steps from the harmonic start before a path is taken
@@ -115,7 +115,7 @@ class FirstFilm:
 
     def _starts(self, mean_curvature: float) -> Iterator[Equilibrium]:
         """Films in the given loops, of the wanted mean curvature or without pressure, the shorter ways first."""
-        yield from self._from_held(mean_curvature, None)
+        yield from self._from_fixed_support(mean_curvature, None)
         minimal = not self._no_minimal()
         if mean_curvature and minimal:
             calm = self._direct(self.loops, 0.0)
@@ -139,7 +139,7 @@ class FirstFilm:
         calm = self._direct(self.loops, 0.0) if minimal else None
         if calm and (first := self._inflated(calm, volume)):
             return first
-        for start in self._from_held(0.0, volume):
+        for start in self._from_fixed_support(0.0, volume):
             return First(start, self.steps, True)
         for start in self._from_drawn(0.0, volume):
             return First(start, self.steps, True)
@@ -164,7 +164,7 @@ class FirstFilm:
         """Whether a short search finds a film of a mean curvature (1/m)."""
         if self._direct(self.loops, mean_curvature):
             return True
-        let = next(self._from_held(mean_curvature, None), None)
+        let = next(self._from_fixed_support(mean_curvature, None), None)
         if let and let.mean_curvature == mean_curvature:
             return True
         # where there is a film without pressure, it is from there that one is missing, not for the sign
@@ -274,7 +274,7 @@ class FirstFilm:
         self.steps += reached.steps
         return reached.equilibrium
 
-    def _from_held(self, mean_curvature: float, volume: float | None) -> Iterator[Equilibrium]:
+    def _from_fixed_support(self, mean_curvature: float, volume: float | None) -> Iterator[Equilibrium]:
         """Films of a mean curvature (1/m) or near it, or of a volume (m^3), with edges held near where they are drawn.
 
         Where nothing comes of that, straight between their ends.
@@ -299,7 +299,7 @@ class FirstFilm:
             own = enclosed_volume(replace(start.film, loops=self.loops))
             for fixed in (None, own) if volume is None else (volume,):
                 try:
-                    reached = let_go(start, self.loops, fixed, self.progress)
+                    reached = release(start, self.loops, fixed, self.progress)
                 except NoFilmError as error:
                     kept = "mean curvature" if fixed is None else "volume"
                     self.tell(f"from its sliding edges held, which are let go at the same {kept}: {error}")
@@ -349,12 +349,12 @@ def _exactly(here: Equilibrium, mean_curvature: float) -> Equilibrium:
     if abs(here.mean_curvature - mean_curvature) * here.film.size > NEARLY:
         return here
     try:
-        return find_equilibrium(here.film, mean_curvature, stable=False, most_steps=FEW)
+        return find_equilibrium(here.film, mean_curvature, FixedH(stable=False), most_steps=FEW)
     except NoFilmError:
         return here
 
 
-def _lids_apart(held_loops: tuple[Loop, ...], loops: tuple[Loop, ...], order: int) -> float:
+def _lids_apart(fixed_loops: tuple[Loop, ...], loops: tuple[Loop, ...], order: int) -> float:
     """By how much the volume of a film is larger (m^3) in loops that are held: their lids are others."""
-    film = start_film(make_chart(held_loops), held_loops, order)
+    film = start_film(make_chart(fixed_loops), fixed_loops, order)
     return enclosed_volume(film) - enclosed_volume(replace(film, loops=loops))

@@ -21,8 +21,8 @@ SAMPLES, DEGREE, MODES, LENGTH_SAMPLES = 200, 3, 3, 2000
 
 
 @dataclass(frozen=True)
-class HeldLoop:
-    """A loop with nothing free to slide, see `held_loop`.
+class FixedLoop:
+    """A loop with nothing free to slide, see `fixed_loop`.
 
     Attributes
     ----------
@@ -60,11 +60,11 @@ class HeldLoop:
 
 
 def held(loops: tuple[Loop, ...], *, straight: bool = False) -> tuple[Loop, ...]:
-    """The loops with nothing free to slide, see `held_loop`."""
-    return tuple(held_loop(loop, straight=straight) if loop.slides else loop for loop in loops)
+    """The loops with nothing free to slide, see `fixed_loop`."""
+    return tuple(fixed_loop(loop, straight=straight) if loop.slides else loop for loop in loops)
 
 
-def held_loop(loop: Loop, *, straight: bool = False) -> HeldLoop:
+def fixed_loop(loop: Loop, *, straight: bool = False) -> FixedLoop:
     """A loop whose parts that slide on a plane are smooth curves there between the same ends.
 
     Near the parts as drawn, or `straight` where they do not go around.
@@ -88,10 +88,10 @@ def held_loop(loop: Loop, *, straight: bool = False) -> HeldLoop:
         parts.append((slide, coefficients))
         kept &= ~within(np.asarray(loop.corners), slide.start, slide.end)
     corners, smooth = np.asarray(loop.corners)[kept], np.asarray(loop.smooth)[kept]
-    rough = HeldLoop(loop, loop.length, corners, smooth, tuple(parts))
+    rough = FixedLoop(loop, loop.length, corners, smooth, tuple(parts))
     points = rough.at(np.arange(LENGTH_SAMPLES) / LENGTH_SAMPLES)
     length = float(np.linalg.norm(np.roll(points, -1, 0) - points, axis=1).sum())
-    return HeldLoop(loop, length, corners, smooth, tuple(parts))
+    return FixedLoop(loop, length, corners, smooth, tuple(parts))
 
 
 def _basis(share: Floats, slide: Slide) -> Complexes:

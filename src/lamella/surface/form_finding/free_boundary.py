@@ -18,7 +18,7 @@ SHRUNK = 0.02
 
 
 @dataclass(frozen=True)
-class SlidRim:
+class FreeRim:
     """A loop whose sliding parts are the edges of a film, the parameter running evenly along them.
 
     A parameter that ran unevenly from edge to edge would roughen the elements made on it.
@@ -89,7 +89,7 @@ def settled_rims(film: Film) -> Film:
     return replace(film, mesh=replace(film.mesh, parameter=parameter), loops=loops)
 
 
-def _slid(film: Film, index: int, parameter: Floats) -> SlidRim:
+def _slid(film: Film, index: int, parameter: Floats) -> FreeRim:
     """A film's rim along one of its loops; `parameter` (v,) of its vertices is made even along sliding parts."""
     loop = film.loops[index]
     rim_nodes = film.connectivity.rim_nodes
@@ -117,10 +117,10 @@ def _slid(film: Film, index: int, parameter: Floats) -> SlidRim:
         later = moves if whole >= 1 else moves[1:]
         parameter[ends[later, 0]] = start[later]
     order = np.argsort(start)
-    held = loop.loop if isinstance(loop, SlidRim) else loop
+    held = loop.loop if isinstance(loop, FreeRim) else loop
     if length.sum() < SHRUNK * held.length:
         raise NoFilmError(f"the sliding rim {loop.name!r} shrinks away", film)
-    return SlidRim(held, float(length.sum()), start[order], span[order], nodes[order], shares[order], basis)
+    return FreeRim(held, float(length.sum()), start[order], span[order], nodes[order], shares[order], basis)
 
 
 def _arc_lengths(nodes: Floats, basis: Floats) -> tuple[Floats, Floats]:

@@ -149,16 +149,16 @@ def refuse_apart(loops: Sequence[Curve]) -> None:
         limit = _catenary_limit(most0, most1)
         if distance > limit:
             same = abs(most0 - most1) < 1e-6 * size
-            told = (
+            reported = (
                 f"{distance / most0:.6g} radii; a film between two equal rings exists up to a distance of "
                 f"{RINGS:.7f} radii ({limit:.6g} m)"
                 if same
                 else f"a film between rings of radius {most0:.5g} and {most1:.5g} m exists up to {limit:.6g} m"
             )
             raise ImpossibleError(
-                f"the two rings are {distance:.6g} m apart, which is {told}"
+                f"the two rings are {distance:.6g} m apart, which is {reported}"
                 if same
-                else f"the two rings are {distance:.6g} m apart; {told}",
+                else f"the two rings are {distance:.6g} m apart; {reported}",
                 "loops",
                 limit,
             )

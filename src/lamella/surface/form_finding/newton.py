@@ -23,6 +23,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -66,8 +67,28 @@ class Equilibrium:
 
 
 @dataclass(frozen=True)
-class Way:
-    """A way to go along a family of films: the sum of weights . (x - x0) is to be an amount.
+class FixedH:
+    """H is given.
+
+    Attributes
+    ----------
+    stable : bool
+        Look for a minimum of area + 2 H volume (shift the second variation while it has negative eigenvalues).
+    """
+
+    stable: bool = True
+
+
+@dataclass(frozen=True)
+class Volume:
+    """A volume is swept from the start along its normals, m^3; H follows."""
+
+    amount: float
+
+
+@dataclass(frozen=True)
+class Along:
+    """A step along a family of films: the sum of weights . (x - x0) is to be an amount; H follows.
 
     Attributes
     ----------
@@ -83,11 +104,9 @@ class Way:
 def find_equilibrium(
     film: Film,
     mean_curvature: float = 0.0,
+    condition: FixedH | Volume | Along = FixedH(),
     *,
-    volume: float | None = None,
-    way: Way | None = None,
     springs: Floats | None = None,
-    stable: bool = True,
     most_steps: int = 30,
     progress: Progress = silent,
 ) -> Equilibrium:
@@ -98,102 +117,156 @@ def find_equilibrium(
     film : Film
         Where to start.
     mean_curvature : float
-        H, 1/m; with `volume` where the search for it starts.
-    volume : float, optional
-        Volume to sweep from the start along its normals, m^3; H follows.
-    way : Way, optional
-        How far to go along a family; H follows.
+        H, 1/m; where the condition is none of H, where the search for it starts.
+    condition : FixedH or Volume or Along
+        What is given besides the boundary.
     springs : (n,), optional
         Stiffness (no unit: force over the tension 1 of the film, times length over length) with which each node is held
         where it starts.
-    stable : bool
-        Look for a minimum of area + 2 H volume (shift the second variation while it has negative eigenvalues).
     most_steps : int
     progress : callable
-        Is told each step.
+        Reports each step.
 
     Raises
     ------
     NoFilmError
         No equilibrium was reached.
     """
-    unknowns = film.unknowns
-    free = unknowns >= 0
-    held = None if springs is None else springs[free]
+    search = _Search(film, mean_curvature, condition, springs)
     size = film.size
     moves: list[float] = []
-    swept = 0.0
-    begin = film.nodes
-    shifted = np.zeros(len(free))
-    directions = film.directions()
-    variation = Variation(film.connectivity, directions)
-    first = variation.first(film.nodes)
-
-    def pull(nodes: Floats, there: FirstVariation, curvature: float) -> Floats:
-        total = there.area_gradient + 2 * curvature * there.volume_gradient
-        if springs is not None:
-            total = total + springs * (shifted + ((nodes - film.nodes) * directions).sum(1))
-        return np.asarray(total)
-
-    for step in range(most_steps):
-        # the normals at the integration points against the directions of their element
-        if step and _turned(film, directions, first) < TURNED:
-            directions = film.directions()
-            variation = Variation(film.connectivity, directions)
-            first = variation.first(film.nodes)
-        gradient = pull(film.nodes, first, mean_curvature)[free]
-        blocks = variation.second(film.nodes, first, mean_curvature)
-        if way is not None:
-            left = way.amount - float((way.weights * (film.nodes - begin)).sum())
-            row = (way.weights * directions).sum(1)[free]
-            shift_of, change, negative = _step_along(film, blocks, gradient, first.volume_gradient[free], row, left)
-        elif volume is None:
-            again, negative = _factored(film, variation, first, _entries(film.pattern, blocks, held), stable)
-            shift_of, change = -again.solve(gradient), 0.0
-        else:
-            border = np.append(first.volume_gradient[free], 0.0)
-            pattern = film.bordered_pattern
-            try:
-                factor = pattern.factor(_entries(pattern, blocks, held, border))
-            except SingularError as error:
-                raise NoFilmError(str(error), film) from None
-            solution = factor.solve(-np.append(gradient, swept - volume))
-            shift_of, change, negative = solution[:-1], solution[-1] / 2, factor.negative - 1
-        if not np.isfinite(shift_of).all():
-            raise NoFilmError("the second variation is singular", film)
-        shift = np.zeros(len(free))
-        shift[free] = shift_of
-        slope = float(gradient @ shift_of)
-        free_to_rise = volume is not None or way is not None
-        there = partial(pull, curvature=mean_curvature + change)
-        film, first, share = _search(film, variation, first, shift, slope, there, not free_to_rise)
-        shifted += share * shift
-        mean_curvature += share * change
-        if volume is not None:
-            swept += _swept(film, variation, shift, share)
-        if volume is None and way is None and share == 1:
-            left_over = there(film.nodes, first)[free]
-            if np.abs(left_over).max() > MUCH_LEFT * np.abs(gradient).max():
-                more = np.zeros(len(free))
-                more[free] = -again.solve(left_over)
-                slope = float(left_over @ more[free])
-                # without the correction the step is still a step
-                with suppress(NoFilmError):
-                    film, first, part = _search(film, variation, first, more, slope, there, True)
-                    shift += part * more
-                    shifted += part * more
-        move = float(np.abs(shift).max()) * share
-        moves.append(move)
+    for number in range(1, most_steps + 1):
+        step = search.step()
+        moves.append(step.move)
         progress(
             Report.detail(
-                f"step {step + 1}: largest shift {move:.2e} m, residual {np.abs(gradient).max() / size:.2e}"
-                + (f", {share:.2g} of the step" if share < 1 else "")
-                + (f", {negative} negative eigenvalues" if negative else "")
+                f"step {number}: largest shift {step.move:.2e} m, residual {step.residual / size:.2e}"
+                + (f", {step.share:.2g} of the step" if step.share < 1 else "")
+                + (f", {step.negative} negative eigenvalues" if step.negative else "")
             )
         )
-        if share == 1 and move <= LAST_STEP * size and abs(change) * size <= 1e-6:
-            return Equilibrium(film, mean_curvature, step + 1, negative, tuple(moves))
-    raise NoFilmError(f"no convergence in {most_steps} steps (last shift {moves[-1]:.2g} m)", film)
+        if step.share == 1 and step.move <= LAST_STEP * size and abs(step.change) * size <= 1e-6:
+            return Equilibrium(search.film, search.mean_curvature, number, step.negative, tuple(moves))
+    raise NoFilmError(f"no convergence in {most_steps} steps (last shift {moves[-1]:.2g} m)", search.film)
+
+
+class _Solved(NamedTuple):
+    """Shifts of the free nodes, the change of H, 1/m, negative eigenvalues; the factors where H is given."""
+
+    shift: Floats
+    change: float
+    negative: int
+    factor: Factor | None = None
+
+
+class _Step(NamedTuple):
+    """Largest shift of a node, m; the share of the step that was taken; residual, m; change of H, 1/m."""
+
+    move: float
+    share: float
+    residual: float
+    change: float
+    negative: int
+
+
+class _Search:
+    """Newton's method on one film."""
+
+    def __init__(
+        self, film: Film, mean_curvature: float, condition: FixedH | Volume | Along, springs: Floats | None
+    ) -> None:
+        self.film, self.mean_curvature, self.condition, self.springs = film, mean_curvature, condition, springs
+        self.free = film.unknowns >= 0
+        self.begin = film.nodes
+        self.swept = 0.0
+        # since the search began
+        self.shifted = np.zeros(len(self.free))
+        self._take_directions()
+
+    def _take_directions(self) -> None:
+        """Directions of the shifts from the present normals."""
+        self.directions = self.film.directions()
+        self.variation = Variation(self.film.connectivity, self.directions)
+        self.first = self.variation.first(self.film.nodes)
+
+    def pull(self, nodes: Floats, there: FirstVariation, curvature: float) -> Floats:
+        """Gradient of area + 2 H volume at nodes, with the springs' forces, (n,), m."""
+        total = there.area_gradient + 2 * curvature * there.volume_gradient
+        if self.springs is not None:
+            shift = self.shifted + ((nodes - self.film.nodes) * self.directions).sum(1)
+            total = total + self.springs * shift
+        return np.asarray(total)
+
+    def step(self) -> _Step:
+        """One step, as far as no element folds."""
+        # the normals at the integration points against the directions of their element
+        if _turned(self.film, self.directions, self.first) < TURNED:
+            self._take_directions()
+        gradient = self.pull(self.film.nodes, self.first, self.mean_curvature)[self.free]
+        solved = self._solve(gradient)
+        if not np.isfinite(solved.shift).all():
+            raise NoFilmError("the second variation is singular", self.film)
+        shift = self._spread(solved.shift)
+        there = partial(self.pull, curvature=self.mean_curvature + solved.change)
+        share = self._go(shift, float(gradient @ solved.shift), there)
+        self.mean_curvature += share * solved.change
+        if isinstance(self.condition, Volume):
+            self.swept += _swept(self.film, self.variation, shift, share)
+        if solved.factor is not None and share == 1:
+            shift = self._corrected(solved.factor, gradient, shift, there)
+        move = float(np.abs(shift).max()) * share
+        return _Step(move, share, float(np.abs(gradient).max()), solved.change, solved.negative)
+
+    def _solve(self, gradient: Floats) -> _Solved:
+        """The linear system of a step."""
+        film, first, condition = self.film, self.first, self.condition
+        blocks = self.variation.second(film.nodes, first, self.mean_curvature)
+        sweep = first.volume_gradient[self.free]
+        if isinstance(condition, Along):
+            left = condition.amount - float((condition.weights * (film.nodes - self.begin)).sum())
+            row = (condition.weights * self.directions).sum(1)[self.free]
+            return _Solved(*_step_along(film, blocks, gradient, sweep, row, left))
+        held = None if self.springs is None else self.springs[self.free]
+        if isinstance(condition, FixedH):
+            values = _entries(film.pattern, blocks, held)
+            factor, negative = _factored(film, self.variation, first, values, condition.stable)
+            return _Solved(-factor.solve(gradient), 0.0, negative, factor)
+        pattern = film.bordered_pattern
+        try:
+            factor = pattern.factor(_entries(pattern, blocks, held, np.append(sweep, 0.0)))
+        except SingularError as error:
+            raise NoFilmError(str(error), film) from None
+        solution = factor.solve(-np.append(gradient, self.swept - condition.amount))
+        return _Solved(solution[:-1], solution[-1] / 2, factor.negative - 1)
+
+    def _go(self, shift: Floats, slope: float, there: Callable[[Floats, FirstVariation], Floats]) -> float:
+        """Move by a shift (n,), or by the share of it that is returned."""
+        downhill = isinstance(self.condition, FixedH)
+        self.film, self.first, share = _line_search(
+            self.film, self.variation, self.first, shift, slope, there, downhill
+        )
+        self.shifted += share * shift
+        return share
+
+    def _corrected(
+        self, factor: Factor, gradient: Floats, shift: Floats, there: Callable[[Floats, FirstVariation], Floats]
+    ) -> Floats:
+        """The shift (n,) of a step with what the same factors undo of the residual that it left."""
+        left = there(self.film.nodes, self.first)[self.free]
+        if np.abs(left).max() <= MUCH_LEFT * np.abs(gradient).max():
+            return shift
+        more = -factor.solve(left)
+        # without the correction the step is still a step
+        with suppress(NoFilmError):
+            spread = self._spread(more)
+            return np.asarray(shift + self._go(spread, float(left @ more), there) * spread)
+        return shift
+
+    def _spread(self, shift: Floats) -> Floats:
+        """Shifts of all nodes, (n,), from those of the free ones."""
+        total = np.zeros(len(self.free))
+        total[self.free] = shift
+        return total
 
 
 def _entries(pattern: SymmetricPattern, blocks: Floats, springs: Floats | None, border: Floats | None = None) -> Floats:
@@ -255,7 +328,7 @@ def _turned(film: Film, directions: Floats, first: FirstVariation) -> float:
     return float(np.einsum("ceq,ec->eq", first.normals, middle).min())
 
 
-def _search(
+def _line_search(
     film: Film,
     variation: Variation,
     first: FirstVariation,
@@ -287,4 +360,4 @@ def _swept(film: Film, variation: Variation, shift: Floats, share: float) -> flo
     return total
 
 
-__all__ = ["Equilibrium", "NoFilmError", "Way", "find_equilibrium"]
+__all__ = ["Along", "Equilibrium", "FixedH", "NoFilmError", "Volume", "find_equilibrium"]

@@ -19,7 +19,7 @@ from lamella.surface.form_finding.continuation import Reached
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.film import Film, Loop
 from lamella.surface.form_finding.meshing import is_worn, renewed
-from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, find_equilibrium
+from lamella.surface.form_finding.newton import Equilibrium, FixedH, NoFilmError, Volume, find_equilibrium
 
 # stiffness of the first springs times the film's size, how it falls and rises, and the most and least of it
 FIRST, FALL, RISE, MOST, LEAST = 10.0, 4.0, 8.0, 1e6, 1e-3
@@ -29,7 +29,7 @@ MOST_FILMS, MANY = 60, 15
 CALM = 0.05
 
 
-def let_go(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, progress: Progress) -> Reached:
+def release(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, progress: Progress) -> Reached:
     """The film of a held one's mean curvature, or of a volume, with its edges free to slide.
 
     Parameters
@@ -50,10 +50,8 @@ def let_go(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, pr
     size = start.film.size
 
     def found(springs: Floats | None) -> Equilibrium:
-        missing = None if volume is None else volume - enclosed_volume(film)
-        return find_equilibrium(
-            film, curvature, volume=missing, springs=springs, stable=volume is None, most_steps=MANY, progress=progress
-        )
+        condition = FixedH() if volume is None else Volume(volume - enclosed_volume(film))
+        return find_equilibrium(film, curvature, condition, springs=springs, most_steps=MANY, progress=progress)
 
     stiffness, calm = FIRST / size, True
     for _ in range(MOST_FILMS):

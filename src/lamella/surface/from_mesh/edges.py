@@ -63,9 +63,9 @@ class Edges:
             return np.zeros(len(one), dtype=bool)
         base = int(max(self.ends.max(), one.max(), two.max())) + 1
         keys = self.ends[:, 0] * base + self.ends[:, 1]
-        asked = np.minimum(one, two) * base + np.maximum(one, two)
-        where = np.minimum(np.searchsorted(keys, asked), len(keys) - 1)
-        return np.asarray(keys[where] == asked)
+        requested = np.minimum(one, two) * base + np.maximum(one, two)
+        where = np.minimum(np.searchsorted(keys, requested), len(keys) - 1)
+        return np.asarray(keys[where] == requested)
 
 
 def find_edges(faces: Integers) -> Edges:

@@ -19,7 +19,7 @@ from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.film import Film, harmonic_over_itself
 from lamella.surface.form_finding.find import adapted, notes_on
 from lamella.surface.form_finding.meshing import on_surface
-from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, find_equilibrium
+from lamella.surface.form_finding.newton import Equilibrium, FixedH, NoFilmError, Volume, find_equilibrium
 from lamella.surface.from_mesh.clean import CleanMesh, clean
 from lamella.surface.from_mesh.edges import face_normals, find_edges, vertex_areas
 from lamella.surface.from_mesh.fit_options import FitOptions
@@ -31,7 +31,7 @@ from lamella.surface.from_mesh.to_elements import as_film, checked_loops
 
 # of the curvature scale: an H below it, and below what a mesh can tell, is that of a minimal surface; above the other
 # the user is warned of it
-MINIMAL, TOLD = 2e-3, 1e-4
+MINIMAL, REPORTED = 2e-3, 1e-4
 # vertices of a mesh whose curvature may be read wrongly for its coarseness alone: the surface itself decides then
 COARSE = 400
 # 1/m; a radius of a thousand kilometres
@@ -136,13 +136,13 @@ def _constant(
     nearest = first.mean_curvature
     if given is None:
         first = _without_curvature(first, fit.scale, progress)
-        notes += _told_zero(first.mean_curvature, nearest)
+        notes += _reported_zero(first.mean_curvature, nearest)
 
     def settled(film: Film) -> Equilibrium:
         if given is not None or not first.mean_curvature:
-            return find_equilibrium(film, first.mean_curvature, stable=False, progress=progress)
+            return find_equilibrium(film, first.mean_curvature, FixedH(stable=False), progress=progress)
         # by the volume: at a fold of H there may be no surface of the H of the elements before
-        here = find_equilibrium(film, first.mean_curvature, volume=0.0, stable=False, progress=progress)
+        here = find_equilibrium(film, first.mean_curvature, Volume(0.0), progress=progress)
         return nearest_of_family(here, mesh.points, areas, progress)
 
     found = adapted(first, settled, options.tolerance, options.most_nodes, first.steps, False, progress)
@@ -155,7 +155,7 @@ def _constant(
         "mesh",
         (
             *_doubts(fit, mean_curvature, nearest, given, exact),
-            *_told_off(distance, found.equilibrium.film.size, fit),
+            *_reported_off(distance, found.equilibrium.film.size, fit),
             *notes_on(found, given_curvature=False),
         ),
         source=raw.source,
@@ -238,7 +238,7 @@ def _refuse_far(distance: Floats, here: Equilibrium) -> None:
         )
 
 
-def _told_off(distance: Floats, size: float, fit: Fit) -> tuple[Message, ...]:
+def _reported_off(distance: Floats, size: float, fit: Fit) -> tuple[Message, ...]:
     """That the surface is not the mesh."""
     typical = float(np.sqrt((distance**2).mean()))
     if typical <= OFF * size:
@@ -253,7 +253,7 @@ def _told_off(distance: Floats, size: float, fit: Fit) -> tuple[Message, ...]:
     )
 
 
-def _told_zero(mean_curvature: float, nearest: float) -> tuple[Message, ...]:
+def _reported_zero(mean_curvature: float, nearest: float) -> tuple[Message, ...]:
     """That H was taken as 0, if it was and is more than rounding."""
     if mean_curvature == nearest or abs(nearest) < LEAST:
         return ()
@@ -277,7 +277,7 @@ def _doubts(fit: Fit, mean_curvature: float, nearest: float, given: float | None
             )
         return ()
     doubts = []
-    if not mean_curvature and abs(nearest) > TOLD * fit.scale:
+    if not mean_curvature and abs(nearest) > REPORTED * fit.scale:
         doubts.append(
             Message(
                 "curvature_zero",
@@ -302,7 +302,7 @@ def _without_curvature(here: Equilibrium, scale: float, progress: Progress) -> E
     if abs(here.mean_curvature) > MINIMAL * scale:
         return here
     with suppress(NoFilmError):
-        minimal = find_equilibrium(here.film, 0.0, stable=False, progress=progress)
+        minimal = find_equilibrium(here.film, 0.0, FixedH(stable=False), progress=progress)
         return replace(minimal, steps=here.steps + minimal.steps)
     return here
 
@@ -322,9 +322,10 @@ def _film(mesh: CleanMesh, loops: tuple[Loop, ...], order: int, mean_curvature: 
 def _near(film: Film, mean_curvature: float, free: bool, progress: Progress) -> Equilibrium:
     """A surface near a film: of that H, or where H is free of the film's volume."""
     reasons = []
-    for volume in (0.0, None) if free else (None,):
+    fixed = FixedH(stable=False)
+    for condition in (Volume(0.0), fixed) if free else (fixed,):
         try:
-            return find_equilibrium(film, mean_curvature, volume=volume, stable=False, progress=progress)
+            return find_equilibrium(film, mean_curvature, condition, progress=progress)
         except NoFilmError as error:
             progress(Report.detail(f"{error}"))
             reasons.append(str(error))

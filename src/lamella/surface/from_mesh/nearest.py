@@ -21,7 +21,7 @@ from lamella.base.progress import Progress, Report
 from lamella.base.sparse import SingularError
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.form_finding.film import Film
-from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, find_equilibrium
+from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, Volume, find_equilibrium
 from lamella.surface.form_finding.variation import Variation
 
 MOST_STEPS = 12
@@ -78,7 +78,7 @@ def _stepped(
     """The surface a volume further, or a part of it, that is nearer; None: there is none."""
     for _ in range(MOST_HALVINGS):
         try:
-            new = find_equilibrium(here.film, here.mean_curvature, volume=volume, stable=False, most_steps=12)
+            new = find_equilibrium(here.film, here.mean_curvature, Volume(volume), most_steps=12)
             off, answer = _distances(new, points)
         except (NoFilmError, SingularError):
             volume /= 2

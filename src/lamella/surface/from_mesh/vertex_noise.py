@@ -198,10 +198,10 @@ def _form(points: Floats, faces: Integers, normals: Floats, degree: int) -> _For
     if not shortest > 0:
         return form
     moves = -_factor(form.matrix, 10 ** DECADES[-1] / shortest).solve(pull) * 10 ** DECADES[-1] / shortest
-    return form._replace(out=max(_missed(form, form.matrix, pull, moves), 0.0))
+    return form._replace(out=max(_residual(form, form.matrix, pull, moves), 0.0))
 
 
-def _missed(form: _Form, matrix: csc_array, pull: Floats, moves: Floats) -> float:
+def _residual(form: _Form, matrix: csc_array, pull: Floats, moves: Floats) -> float:
     """|r + J d|^2 that moves d could take away."""
     return form.left - form.out + float(2 * pull @ moves + moves @ (matrix @ moves))
 
@@ -219,7 +219,7 @@ def _fitted(form: _Form, free: Booleans) -> _Fitted | None:
         weight = 10**decade / shortest
         factor = _factor(matrix, weight)
         moves = -weight * factor.solve(pull)
-        least = float(moves @ moves) + weight * max(_missed(form, matrix, pull, moves), 0.0)
+        least = float(moves @ moves) + weight * max(_residual(form, matrix, pull, moves), 0.0)
         determinant = float(np.log(np.abs(factor.U.diagonal())).sum())
         return moves, least, float(degrees * np.log(max(least / weight, np.finfo(float).tiny)) + determinant)
 

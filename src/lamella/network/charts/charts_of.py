@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from lamella.network.charts.charts import Ground
-from lamella.network.charts.element_charts import ElementGround
-from lamella.network.charts.plane_charts import PlaneGround
+from lamella.network.charts.charts import Charts
+from lamella.network.charts.element_charts import ElementCharts
+from lamella.network.charts.plane_charts import PlaneCharts
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 
 
-def ground_of(surface: Surface[Any]) -> Ground:
+def charts_of(surface: Surface[Any]) -> Charts:
     """The surface as lines are traced on it."""
     if isinstance(surface, ClosedForm):
-        return PlaneGround(surface)
+        return PlaneCharts(surface)
     assert isinstance(surface, ElementSurface)
-    return ElementGround(surface)
+    return ElementCharts(surface)
