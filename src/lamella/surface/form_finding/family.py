@@ -2,7 +2,7 @@
 
 Films of all mean curvatures in the same loops form a curve. Neither H nor the volume tells where on it a film is: a
 bubble on a ring has its largest H as a hemisphere, a nodoid between near rings its least volume before its neck gets
-thin. So the steps are steps along the curve itself (`lamella.surface.form_finding.newton.Way`), whose direction is
+thin. So the steps are steps along the curve itself (`lamella.surface.form_finding.newton.Along`), whose direction is
 dx/dH from K dx = -2 v dH, made as long as its largest shift; H and the volume are what comes out. Between two films
 both are taken as cubics with the right slopes at either end: where a wanted value or a fold lies follows from them.
 """
