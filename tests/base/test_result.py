@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import copy
+import inspect
 import multiprocessing
 import pickle
+import re
 import xml.etree.ElementTree as ET
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import FrozenInstanceError, replace
+from dataclasses import FrozenInstanceError, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,7 @@ import lamella
 from lamella.base.compare import close
 from lamella.base.result import Shown
 from lamella.base.sparse import SymmetricPattern
+from lamella.files.quad_mesh_files import QuadFile
 
 TURNS = 2 * np.pi * np.arange(8) / 8
 RIM = lamella.spline(np.stack([3 * np.cos(TURNS), 2.5 * np.sin(TURNS), 0.5 * np.cos(2 * TURNS)], 1))
@@ -41,8 +44,30 @@ def made() -> dict[str, Any]:
         lamella.Scherk(1.0, 1.0),
         lamella.Unduloid(0.5, 1.5, (-1.0, 1.0)),
     ]
-    project = lamella.parse_project({"surface": {"kind": "catenoid", "neck_radius": 2.0, "height": [-1.0, 1.0]}})
-    return {f"{type(x).__name__} {k}": x for k, x in enumerate([*results, *closed, project])}
+    catenoid = {"surface": {"kind": "catenoid", "neck_radius": 2.0, "height": [-1.0, 1.0]}, "network": {"cells": 6}}
+    project = lamella.parse_project(catenoid)
+    runs = [lamella.compute(project), lamella.compute(project, until="surface")]
+    every = [*results, *closed, project, *runs, *projected()]
+    return {f"{type(x).__name__} {k}": x for k, x in enumerate(every)}
+
+
+def projected() -> list[Any]:
+    """Results of guided projection, on a catenoid's lamellas."""
+    u, v = np.mgrid[0:5, 0:5].reshape(2, -1) / 6 - 1 / 3
+    k = np.arange(25).reshape(5, 5)
+    faces = np.stack([k[:-1, :-1], k[1:, :-1], k[1:, 1:], k[:-1, 1:]], -1).reshape(-1, 4)
+    surface = lamella.Catenoid(2.0, (-2.0, 2.0))
+    along = lamella.quad_mesh(surface.at(u + 1j * v).position, faces)
+    across = lamella.quad_mesh(surface.at((u + v) / 2 + 1j * (u - v) / 2).position, faces)
+    feet = lamella.foot_surface(surface)
+    curve = surface.at(np.linspace(-0.3, 0.3, 9) * (1 + 1j)).position
+    return [
+        lamella.asymptotic(across),
+        lamella.straighten(along, feet),
+        lamella.planar_strips([curve], feet, 0.05, rounds=1),
+        lamella.deform(across, k.diagonal(), 0.99, closed=False, iterations=3)[0],
+        QuadFile(across),
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -118,6 +143,20 @@ def test_frozen(results: dict[str, Any]) -> None:
     assert len({results["Network 1"], results["Network 9"]}) == 2
 
 
+def test_arrays_are_documented(results: dict[str, Any]) -> None:
+    """Every array of a public result with its shape, in the section of attributes."""
+    seen = 0
+    for kind in {type(result) for result in results.values() if is_dataclass(result)}:
+        sections = " ".join(inspect.getdoc(cls) or "" for cls in kind.__mro__ if is_dataclass(cls))
+        told = re.findall(r"^([\w, ]+) : (.*)", sections.replace("    ", ""), re.M)
+        shapes = {name: shape for names, shape in told for name in names.split(", ")}
+        for field in fields(kind):
+            if re.search(r"Floats|Integers|Booleans|Complexes|NDArray", str(field.type)):
+                assert "(" in shapes.get(field.name, ""), f"{kind.__name__}.{field.name}"
+                seen += 1
+    assert seen > 70
+
+
 def test_printed_in_a_line(results: dict[str, Any]) -> None:
     for name, result in results.items():
         if name.startswith(("Section", "Material", "Project")):
@@ -125,7 +164,7 @@ def test_printed_in_a_line(results: dict[str, Any]) -> None:
         line = repr(result)
         assert line.startswith(f"{type(result).__name__}("), name
         assert line.endswith(")"), name
-        assert len(line) < 140, name
+        assert len(line) < 150, name
         assert "\n" not in line, name
     net = results["Network 1"]
     assert f"6 cells: {len(net.ids)} lamellas, {len(net.node_points)} nodes, " in repr(net)

@@ -13,6 +13,7 @@ from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.plausible_size import SMALLEST
+from lamella.base.result import Result
 from lamella.base.units import RHINO_METRES, metres_of, unit_name
 from lamella.base.wording import counted, one_line
 from lamella.files.compas_json import compas_bytes, read_compas
@@ -33,8 +34,8 @@ LARGEST_JSON = 64_000_000
 FIGURE_UNITS = "star_sphericity star_planarity star_radius moved in m; star_curvature in 1/m; angle in degrees"
 
 
-@dataclass(frozen=True)
-class QuadFile:
+@dataclass(frozen=True, eq=False, repr=False)
+class QuadFile(Result):
     """A quad mesh with what is needed to write it back.
 
     Attributes
@@ -54,6 +55,9 @@ class QuadFile:
     notes: tuple[Message, ...] = ()
     vertex_keys: tuple[str, ...] = ()
     face_keys: tuple[str, ...] = ()
+
+    def _line(self) -> str:
+        return f"{self.mesh}, {self.metres:g} m a unit"
 
 
 def read_quad_mesh(path: str | Path, unit: str | None = None) -> QuadFile:

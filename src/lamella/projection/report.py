@@ -60,7 +60,7 @@ class Iteration:
     step: float
     length: float
     damping: float
-    seconds: float
+    seconds: float = field(compare=False)
 
     def __str__(self) -> str:
         parts = ", ".join(f"{name} {value:.1e}" for name, value in self.residual.items())

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import partial
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,8 @@ from lamella.base.drawing_origin import Origin, drawing_origin, reported_from, w
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, in_stage, silent
+from lamella.base.result import Result, Shown
+from lamella.base.wording import counted
 from lamella.fabrication import Nesting, Parts, make_parts, nest
 from lamella.fabrication.defaults import default_end_distance, default_hub_radius, default_slot_width
 from lamella.fabrication.rules import Rules, clear_hub
@@ -40,6 +43,8 @@ from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from lamella.network.elements.element_network import ElementNetwork
     from lamella.network.streamlines.streamline_network import TracedNetwork
     from lamella.stages.adjusted_table import AdjustedTable
@@ -48,8 +53,8 @@ STAGES = ("surface", "network", "lamellas", "fabrication", "structure")
 LAST_STAGE = "fabrication"
 
 
-@dataclass(frozen=True)
-class Results:
+@dataclass(frozen=True, eq=False, repr=False)
+class Results(Result):
     """Everything a run has computed; what was not asked for is None.
 
     Points are measured from `origin`, those of files and of the summary from the drawing's own.
@@ -90,9 +95,25 @@ class Results:
     lamellas: Lamellas | None
     parts: Parts | None
     nesting: Nesting | None
-    summary: dict[str, Any] = field(repr=False)
-    folder: Path = Path()
+    summary: dict[str, Any] = field(compare=False)
+    folder: Path = field(default=Path(), compare=False)
     adjusted: AdjustedTable | None = None
+
+    def _line(self) -> str:
+        last = next(stage for stage in reversed(STAGES) if self.summary.get(stage) is not None)
+        return f"{self.surface.kind}, up to {last}: {counted(len(self.summary['warnings']), 'warning')}"
+
+    @property
+    def _last(self) -> Shown:
+        """What is shown of a run."""
+        return self.lamellas or self.network or self.mesh
+
+    def _repr_html_(self) -> str:
+        return f"<div>{self._last._repr_html_()}<div><code>{escape(repr(self))}</code></div></div>"
+
+    def plot(self, ax: Axes | None = None, **options: Any) -> Axes:
+        """The strips, the net or the surface, whichever the run came to, see `lamella.Shown.plot`."""
+        return self._last.plot(ax, **options)
 
     @property
     def origin(self) -> Origin:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
+from lamella.base.result import Result
 from lamella.base.sparse import Backend
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.curved_star import CurvedStar
@@ -32,8 +33,8 @@ FAIR, FADE = 0.03, 0.1
 ROUNDING = 4.0
 
 
-@dataclass(frozen=True)
-class DeformedState:
+@dataclass(frozen=True, eq=False, repr=False)
+class DeformedState(Result):
     """One state on the way.
 
     Attributes
@@ -51,6 +52,9 @@ class DeformedState:
     mesh: QuadMesh
     solution: Solution
     angle_change: Floats
+
+    def _line(self) -> str:
+        return f"share {self.share:.4g}, {self.mesh}, {self.solution.verdict}"
 
 
 def deform(

@@ -11,7 +11,9 @@ from numpy.typing import ArrayLike
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError, require_positive
+from lamella.base.result import Result
 from lamella.base.sparse import Backend
+from lamella.base.wording import counted
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.closeness import Closeness
 from lamella.projection.constraints.fairness import THIRD, Fairness
@@ -32,8 +34,8 @@ FAIR, STAY, FADE = 0.1, 0.03, 0.5
 RED = 0.005
 
 
-@dataclass(frozen=True)
-class PlanarStrips:
+@dataclass(frozen=True, eq=False, repr=False)
+class PlanarStrips(Result):
     """Strips of quads, each between a border on the surface and one on its parallel surface.
 
     Attributes
@@ -68,6 +70,10 @@ class PlanarStrips:
     tilt: tuple[Floats, ...]
     turn: tuple[Floats, ...]
     solutions: tuple[Solution, ...]
+
+    def _line(self) -> str:
+        worst = float(np.concatenate(self.after).max())
+        return f"{counted(len(self.lower), 'strip')} {self.height:g} m high, planarity up to {worst:.2g}"
 
     def figures(self) -> dict[str, float]:
         """Scores before and after, shares of quads in full red, what it took, share that cannot be developable."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
+from lamella.base.result import Result
 from lamella.base.sparse import Backend
 from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.unit_length import UnitLength
@@ -28,8 +29,8 @@ ACCURACY = 0.01
 LEAST_RADIUS = 2.0
 
 
-@dataclass(frozen=True)
-class StarNet:
+@dataclass(frozen=True, eq=False, repr=False)
+class StarNet(Result):
     """A net with spherical or planar vertex stars.
 
     Attributes
@@ -51,6 +52,9 @@ class StarNet:
     radius_uncertainty: float
     normals: Floats
     solution: Solution
+
+    def _line(self) -> str:
+        return f"{self.mesh}, radius {self.radius:.6g} m, {self.solution.verdict}"
 
     @property
     def ill_determined(self) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
+from lamella.base.result import Result
 from lamella.base.sparse import Backend
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.closeness import Closeness
@@ -27,8 +28,8 @@ BEYOND = 0.1
 FAIR, FADE = 0.1, 0.3
 
 
-@dataclass(frozen=True)
-class Straightened:
+@dataclass(frozen=True, eq=False, repr=False)
+class Straightened(Result):
     """The three meshes of the paper's Figure 6 but the first, which was given.
 
     Attributes
@@ -48,6 +49,9 @@ class Straightened:
     lamellas: QuadMesh
     circles: Floats
     solution: Solution
+
+    def _line(self) -> str:
+        return f"isothermic {self.isothermic}, lamellas {self.lamellas}, {self.solution.verdict}"
 
 
 def straighten(
