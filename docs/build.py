@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from lamella import __version__, compute, read_project, write
+from lamella.base.material import MATERIALS
 from lamella.command.examples import list_examples
 from lamella.files.write.network_json import network_schema
 from lamella.files.write.optimise_json import optimise_schema
@@ -33,7 +34,6 @@ from lamella.project.tables import (
     project_schema,
 )
 from lamella.stages.pipeline import Results
-from lamella.strip.material import MATERIALS
 from lamella.view.drawing_picture import draw_part, draw_sheets
 from lamella.view.picture import draw
 from lamella.view.surface_picture import Panel, draw_surface

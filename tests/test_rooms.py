@@ -44,7 +44,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "projection": ("base", *SURFACES, "surface.boundary", "strip", "projection.constraints"),
     "projection.constraints": ("base", "projection"),
     "projection.problems": ("base", "projection", "projection.constraints", "strip"),
-    "project": ("base", "network", "network.streamlines", "strip"),
+    "project": ("base",),
     "files": ("base", "files.read", "files.write", *PROJECTIONS, "version"),
     "files.read": ("base", *FILMS, "surface.from_mesh", "network"),
     "files.write": ("base", "files", *FILMS, "network", "strip", *PROJECTIONS, "version"),
@@ -66,15 +66,12 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "command": ("base", *FILMS, "surface.from_mesh", "project", *PROJECTIONS, *FILES, "view", "stages", "version"),
 }
 # imports against the table, still to be turned round
-PENDING = (
-    ("lamella.files.write.optimise_json", "command"),
-    ("lamella.view.", "stages"),
-)
+PENDING = (("lamella.view.", "stages"),)
 # circles still to be cut
 PENDING_CIRCLES = {"lamella.stages.pipeline": {"lamella.stages.output"}}
 # methods of results that make the next stage's result; these imports are inside the method, or for annotations only
 METHODS = {
-    "lamella.network.network": {"lamella.strip.lamellas", "lamella.strip.material"},
+    "lamella.network.network": {"lamella.strip.lamellas", "lamella.base.material"},
     "lamella.strip.lamellas": {"lamella.fabrication.part", "lamella.fabrication.parts"},
     "lamella.fabrication.part": {"lamella.fabrication.sheet"},
 }
@@ -82,7 +79,7 @@ METHODS = {
 ABOVE = {"lamella.network.net": "network.net"}
 # results whose methods lead on to a later module by lamella.base.onward: their signatures name its types
 ONWARD = {
-    "lamella.network.network": {"lamella.strip.lamellas", "lamella.strip.material"},
+    "lamella.network.network": {"lamella.strip.lamellas", "lamella.base.material"},
     "lamella.strip.lamellas": {"lamella.fabrication.part"},
     "lamella.fabrication.part": {"lamella.fabrication.sheet"},
 }

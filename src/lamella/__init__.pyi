@@ -4,6 +4,8 @@ Type checkers read this file; the package itself imports each name from where it
 """
 
 from lamella.base.errors import InputError as InputError
+from lamella.base.material import Material as Material
+from lamella.base.material import find_material as find_material
 from lamella.base.result import Result as Result
 from lamella.base.result import Shown as Shown
 from lamella.fabrication.part import Part as Part
@@ -36,8 +38,6 @@ from lamella.stages.pipeline import write as write
 from lamella.stages.surface_of_table import make_surface as make_surface
 from lamella.strip.lamellas import Lamellas as Lamellas
 from lamella.strip.lamellas import Section as Section
-from lamella.strip.material import Material as Material
-from lamella.strip.material import find_material as find_material
 from lamella.surface.boundary import Loop as Loop
 from lamella.surface.boundary.curves import arc as arc
 from lamella.surface.boundary.curves import circle as circle

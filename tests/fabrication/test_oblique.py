@@ -7,10 +7,10 @@ import pytest
 
 import lamella
 from lamella import Catenoid
+from lamella.base.material import MATERIALS
 from lamella.fabrication import Parts, make_parts
 from lamella.network.network import REGULAR, Network
 from lamella.strip.lamellas import Section, make_lamellas
-from lamella.strip.material import MATERIALS
 
 SECTION = Section(height=0.04, thickness=0.001, layers=2, offset=0.012)
 SLOT = 0.002

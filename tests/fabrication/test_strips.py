@@ -8,11 +8,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 import pytest
 
+from lamella.base.material import find_material
 from lamella.network.network import BOUNDARY, REGULAR, SINGULAR, Network
 from lamella.network.pattern import LAMELLAS
 from lamella.strip.lamellas import Lamellas, Section
 from lamella.strip.layers import Layers
-from lamella.strip.material import find_material
 from lamella.surface.darboux import Darboux
 
 KINDS = {"o": REGULAR, "|": BOUNDARY, "+": BOUNDARY, "*": SINGULAR}

@@ -18,15 +18,16 @@ from scipy.spatial import cKDTree
 import lamella
 from conftest import KINDS, draw_surface
 from lamella import Catenoid, Cylinder, Enneper, Helicoid, InputError, Scherk, Unduloid, compute, parse_project
+from lamella.base.material import MATERIALS
 from lamella.files.write.network_json import network_bytes, network_schema
 from lamella.network.cell_sizes import MOST_RATIO, large_cells
 from lamella.network.elements.element_network import ElementNetwork, element_network
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
 from lamella.network.pattern import Pattern, fitting_cells
 from lamella.project.tables import project_schema
+from lamella.stages.pattern_of_table import pattern_of
 from lamella.stages.summary import network_summary, principal_summary
 from lamella.strip.lamellas import Section, make_lamellas
-from lamella.strip.material import MATERIALS
 from lamella.surface.closed_forms.outline import Ring
 from lamella.surface.form_finding.find import find_film
 from network.elements.random_boundaries import sketch
@@ -398,7 +399,7 @@ def test_every_in_the_project_file(every: Any) -> None:
     jsonschema.Draft202012Validator(project_schema()).validate(values)
     project = parse_project(values)
     pair = (every, every) if isinstance(every, int) else tuple(every)
-    assert project.network.pattern == Pattern("lamellas", pair)
+    assert pattern_of(project.network) == Pattern("lamellas", pair)
     import tomllib
 
     assert parse_project(tomllib.loads(project.to_toml())).network == project.network

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from lamella import InputError, compute, parse_project
+from lamella.base.material import MATERIALS
 from lamella.stages.check import check_project
-from lamella.strip.material import MATERIALS
 
 Tables = dict[str, Any]
 UNDULOID = {"kind": "unduloid", "neck_radius": 1.6, "bulge_radius": 2.8, "height": [-1.0, 1.0]}

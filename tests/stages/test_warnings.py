@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from lamella import InputError, compute, make_surface, parse_project
+from lamella.base.material import MATERIALS
 from lamella.network.cell_sizes import small_cells
 from lamella.stages.warnings import lamella_cautions, network_cautions, surface_file_cautions
-from lamella.strip.material import MATERIALS
 from surface.element.exact_elements import sphere_cap
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lamella.strip.material import Material
+from lamella.base.material import Material
 from lamella.strip.plate import across, mean_tension, poisson_ratio
 from lamella.strip.stress import stresses
 from strip.plate_strip import plate_strip

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lamella import find_material
-from lamella.strip.material import MATERIALS, Material
+from lamella.base.material import MATERIALS, Material
 from lamella.strip.plate import across, mean_tension
 from lamella.strip.stress import Stresses, bending, net_section, shortening, stresses, torsion
 

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 import lamella
+from lamella.base.material import find_material
 from lamella.strip.lamellas import Section, make_lamellas
-from lamella.strip.material import find_material
 from lamella.surface.closed_forms.catenoid import Catenoid
 from lamella.surface.closed_forms.cylinder import Cylinder
 from lamella.surface.mesh import SurfaceMesh

@@ -19,7 +19,8 @@ class InputError(ValueError):
     remedy : str, optional
         What to change.
     where : str, optional
-        File and key the message is about, put in front.
+        What the message is about, put in front: the parameter of the function that raises it, or a part of it
+        (`loops[1]`); where a project was read, its file and key.
 
     Examples
     --------
@@ -28,7 +29,7 @@ class InputError(ValueError):
     ...     lamella.circle((0, 0, 0), -1.0)
     ... except lamella.InputError as error:
     ...     print(error)
-    radius = -1.0 is out of range
+    radius: radius = -1.0 is out of range
       remedy: radius has to be a finite number above 0
     """
 
@@ -45,4 +46,4 @@ def require_positive(**values: float) -> None:
     """Raise an `InputError` naming the first value that is not a finite number above 0."""
     for name, value in values.items():
         if not (isinstance(value, int | float) and math.isfinite(value) and value > 0):
-            raise InputError(f"{name} = {value!r} is out of range", f"{name} has to be a finite number above 0")
+            raise InputError(f"{name} = {value!r} is out of range", f"{name} has to be a finite number above 0", name)

@@ -12,3 +12,5 @@ MOST_POINTS = 10_000
 MOST_WAVES = 4
 # how far a boundary curve may be changed: shifts in m, a change of size as a share, a tilt in degrees
 MOST_MOVE, MOST_SCALE, MOST_TILT = 1000, 0.5, 45
+# of a net: a number of cells where neither that nor a spacing is given, and the least one
+DEFAULT_CELLS, CELLS_MIN = 24, 3

@@ -18,9 +18,9 @@ from lamella.files.ours import is_ours
 
 if TYPE_CHECKING:
     from lamella.base.arrays import Floats
-    from lamella.command.optimise_mesh import Optimised
     from lamella.files.quad_mesh_files import QuadFile
     from lamella.projection.mesh_figures import MeshFigures
+    from lamella.projection.optimised import Optimised
     from lamella.projection.quad_mesh import QuadMesh
     from lamella.projection.report import Solution
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from typing import Any, cast, get_args
 
 import numpy as np
@@ -15,6 +14,7 @@ from lamella.base.wording import counted
 from lamella.command.optimise_options import Options
 from lamella.files.quad_mesh_files import QuadFile
 from lamella.projection.foot_points import foot_surface
+from lamella.projection.optimised import Optimised
 from lamella.projection.polylines import diagonal_ring, polylines
 from lamella.projection.problems.crossing import AngleForm
 from lamella.projection.problems.deform import deform
@@ -22,7 +22,7 @@ from lamella.projection.problems.planar_strips import planar_strips
 from lamella.projection.problems.sphere_stars import sphere_stars
 from lamella.projection.problems.straighten import straighten
 from lamella.projection.quad_mesh import QuadMesh, quad_mesh
-from lamella.projection.report import Iteration, Solution
+from lamella.projection.report import Iteration
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import refuse_umbilic
@@ -35,57 +35,6 @@ FAR = 0.25
 FOUND = 1e-6
 # points a strip needs at least
 STRIP_POINTS = 4
-
-
-@dataclass(frozen=True)
-class Optimised:
-    """A result.
-
-    Attributes
-    ----------
-    mesh : QuadMesh
-        Vertices and faces in the order they were given; of "planar": the strips.
-    same : bool
-        Whether it has the vertices that were given.
-    lamellas : QuadMesh or None
-        Of "straighten": M2.
-    solutions : tuple of Solution
-        In the order they were reached; the last one is that of `mesh`.
-    reported : dict
-        What the problem says besides, for JSON.
-    remarks : tuple of str
-        What the user should know.
-    faces : name to (f,)
-        More figures of faces.
-    """
-
-    mesh: QuadMesh
-    solutions: tuple[Solution, ...]
-    same: bool = True
-    lamellas: QuadMesh | None = None
-    reported: dict[str, Any] = field(default_factory=dict)
-    remarks: tuple[str, ...] = ()
-    faces: dict[str, Floats] = field(default_factory=dict)
-
-    @property
-    def solved(self) -> bool:
-        """Whether all conditions hold in the end, whatever was met on the way."""
-        return self.solutions[-1].solved
-
-
-def about_mesh(mesh: QuadMesh) -> dict[str, Any]:
-    """What was given: sizes, and its singular vertices of valence 3, 5, 6 and more by their number."""
-    rim = mesh.on_boundary
-    # a vertex of the boundary ends polylines unless it has three neighbours, or two in a corner
-    return {
-        "vertices": len(mesh.vertices),
-        "faces": len(mesh.faces),
-        "mean_edge": mesh.mean_edge,
-        "inner_regular_vertices": len(mesh.inner),
-        "boundary_vertices": int(rim.sum()),
-        "corners": np.flatnonzero(rim & (mesh.face_count == 1)).tolist(),
-        "singular_vertices": [{"vertex": int(k), "valence": int(mesh.valence[k])} for k in mesh.singular],
-    }
 
 
 def reported_mesh(mesh: QuadMesh) -> str:

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.errors import InputError
+from lamella.base.limits import CELLS_MIN, DEFAULT_CELLS
 from lamella.base.wording import rounded
 
-# where neither a number of cells nor a spacing is given
-DEFAULT_CELLS = 24
-CELLS_MIN = 3
 # a net of this many nodes takes a few minutes to compute and write
 NODES_MAX = 500_000
 # measured at 100,000 nodes for computing and writing, plus a fixed share for the program itself

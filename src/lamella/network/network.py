@@ -19,8 +19,8 @@ from lamella.surface.darboux import Darboux
 A, B = range(2)
 FAMILIES = ("A", "B")
 if TYPE_CHECKING:
+    from lamella.base.material import Material
     from lamella.strip.lamellas import Lamellas, Section
-    from lamella.strip.material import Material
     from lamella.surface.surface import Surface
 
 NODE_KINDS = ("regular", "boundary", "singular", "seam")

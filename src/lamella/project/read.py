@@ -154,7 +154,6 @@ def parse_project(values: dict[str, Any], *, source: str = "", text: str = "") -
     try:
         _check_material(project)
         _check_slots(project)
-        _check_lines(project)
     except InputError as error:
         raise InputError(error.message, error.remedy, _where(source, text, error.where)) from None
     return project
@@ -197,7 +196,7 @@ def _check_material(project: Project) -> None:
     try:
         project.material()
     except InputError as error:
-        raise InputError(error.message, error.remedy, "lamella.material") from None
+        raise InputError(error.message, error.remedy, f"lamella.{error.where}") from None
 
 
 def _check_slots(project: Project) -> None:
@@ -208,34 +207,6 @@ def _check_slots(project: Project) -> None:
             "leave slot_width out: it is twice the thickness then",
             "fabrication.slot_width",
         )
-
-
-def _check_lines(project: Project) -> None:
-    """Refuse what lines from seeds cannot have, where it is known before the surface is found that they are such."""
-    net = project.network
-    if (net.every == 1 and net.closing == "open") or not _surely_traced(project):
-        return
-    from lamella.network.streamlines.applicability import refuse_lattice_options
-
-    try:
-        refuse_lattice_options(net.pattern, net.closing)
-    except InputError as error:
-        raise InputError(error.message, error.remedy, f"network.{error.where}") from None
-
-
-def _surely_traced(project: Project) -> bool:
-    """Whether the net follows from no lattice whatever surface is found (`applicability.is_traced`)."""
-    table, wanted = project.surface, project.network.normal_curvature
-    if isinstance(table, MeshTable) and table.mean_curvature == "varying":
-        return True
-    if wanted is None:
-        return False
-    if isinstance(table, MeshTable):
-        # a mesh that is fitted may turn out to be a minimal surface, but no other H is met to the last digit
-        return wanted != (0.0 if table.mean_curvature == "fit" else table.mean_curvature)
-    if isinstance(table, FormFoundTable):
-        return table.volume is not None or wanted != (table.mean_curvature or 0.0)
-    return False
 
 
 def located(error: InputError, path: Path) -> InputError:

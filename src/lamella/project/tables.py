@@ -7,10 +7,10 @@ from typing import Annotated, Any, Literal
 import tomli_w
 from pydantic import Field, field_validator, model_validator
 
+from lamella.base.limits import CELLS_MIN, DEFAULT_CELLS
+from lamella.base.material import MATERIALS, Material, find_material
 from lamella.base.number_lists import Refusal, two_numbers
 from lamella.base.wording import is_byte, shown
-from lamella.network.density_request import CELLS_MIN, DEFAULT_CELLS
-from lamella.network.pattern import Pattern
 from lamella.project.boundary_tables import (
     AdjustTable,
     ArcTable,
@@ -29,7 +29,6 @@ from lamella.project.values import (
     length,
     number,
 )
-from lamella.strip.material import MATERIALS, Material, find_material
 
 __all__ = [
     "FURTHER_TABLES",
@@ -123,12 +122,6 @@ class NetworkTable(Table):
         if not all(1 <= n <= MOST_LEFT_OUT for n in counts):
             raise Refusal(f"{shown(value)} is out of range: has to be from 1 to {MOST_LEFT_OUT}", remedy)
         return counts[0] if len(set(counts)) == 1 else tuple(counts)
-
-    @property
-    def pattern(self) -> Pattern:
-        """Which curves of the isothermic lattice the net has."""
-        p, q = (self.every, self.every) if isinstance(self.every, int) else self.every
-        return Pattern(self.kind, (p, q), self.normal_curvature)
 
     @model_validator(mode="before")
     @classmethod

@@ -20,6 +20,7 @@ from lamella.base.wording import counted
 from lamella.network.streamlines.applicability import is_traced
 from lamella.project.tables import FormFoundTable, MeshTable, Project
 from lamella.stages.clock import Clock
+from lamella.stages.pattern_of_table import pattern_of
 from lamella.stages.pipeline import Planned, Results, complete, plan
 from lamella.stages.unit_first import unit_first
 from lamella.stages.warnings import order_caution
@@ -126,7 +127,7 @@ def _laid(project: Project, surface: Surface[Any], progress: Progress) -> tuple[
     from lamella.stages.weaving import lay, lay_traced
 
     with unit_first(surface), reported_from(drawing_origin(surface)):
-        if is_traced(surface, project.network.pattern):
+        if is_traced(surface, pattern_of(project.network)):
             lines = lay_traced(surface, project)
             return lines.cells, lines.estimated_nodes
         lattice = lay(surface, project, None, progress).lattice

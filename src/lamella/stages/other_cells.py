@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lamella.base.errors import InputError
+from lamella.base.limits import CELLS_MIN
 from lamella.base.progress import silent
-from lamella.network.density_request import CELLS_MIN
 from lamella.network.lattice.density import choose_density
 from lamella.network.lattice.trace import trace_closed_form
 from lamella.network.network import Network
 from lamella.network.streamlines.applicability import is_traced
 from lamella.project.tables import Project
+from lamella.stages.pattern_of_table import pattern_of
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
@@ -68,7 +69,7 @@ class OtherCells:
     def _cheap(self) -> bool:
         """Whether a few more nets can be made at once; nets that change their boundary, or are traced, cannot."""
         table, surface = self.project.network, self.surface
-        if len(self.network.node_points) > MOST_NODES or is_traced(surface, table.pattern):
+        if len(self.network.node_points) > MOST_NODES or is_traced(surface, pattern_of(table)):
             return False
         if isinstance(surface, ClosedForm):
             return True
@@ -87,7 +88,7 @@ class OtherCells:
     def _make(self, cells: int) -> Network | None:
         table = self.project.network.model_copy(update={"cells": cells, "spacing": None})
         if isinstance(self.surface, ClosedForm):
-            density = choose_density(self.surface, cells=cells, pattern=table.pattern)
+            density = choose_density(self.surface, cells=cells, pattern=pattern_of(table))
             return trace_closed_form(self.surface, density, minimum_length=table.minimum_length)
         # heavy, and closed forms do without
         from lamella.stages.weaving import lay, weave

@@ -33,6 +33,7 @@ from lamella.stages import warnings as cautions
 from lamella.stages.clock import Clock
 from lamella.stages.keys import keys, with_keys
 from lamella.stages.other_cells import OtherCells
+from lamella.stages.pattern_of_table import pattern_of, refuse_lines
 from lamella.stages.surface_of_table import make_surface
 from lamella.stages.unit_first import unit_first
 from lamella.strip.lamellas import Lamellas, Section, make_lamellas
@@ -144,6 +145,7 @@ def plan(
     """
     depth = _last_of(project, until)
     if depth:
+        refuse_lines(project)
         _refuse_adjusting(project)
     surface = make_surface(project, folder, progress)
     _check_layers(project, surface, depth)
@@ -151,12 +153,12 @@ def plan(
         _check_fabrication(fill_in(project, surface), _normal_curvature(project, surface))
     table = project.network
     with keys("network", surface="surface"):
-        if depth and is_traced(surface, table.pattern):
-            check_traced(surface, table.pattern, table.closing)
+        if depth and is_traced(surface, pattern_of(table)):
+            check_traced(surface, pattern_of(table), table.closing)
             return surface, None
         if not isinstance(surface, ClosedForm):
             return surface, None
-        return surface, choose_density(surface, cells=table.cells, spacing=table.spacing, pattern=table.pattern)
+        return surface, choose_density(surface, cells=table.cells, spacing=table.spacing, pattern=pattern_of(table))
 
 
 def _refuse_adjusting(project: Project) -> None:
@@ -183,13 +185,14 @@ def _planned(project: Project, until: str | None, folder: Path, progress: Progre
         return *plan(project, until=until, folder=folder, progress=progress), None
     from lamella.stages.adjusted_table import adjust_table
 
+    refuse_lines(project)
     _refuse_adjusting(project)
     adjusted = adjust_table(
         table,
         folder,
         cells=project.network.cells,
         spacing=project.network.spacing,
-        pattern=project.network.pattern,
+        pattern=pattern_of(project.network),
         progress=progress,
     )
     surface = adjusted.surface
@@ -224,7 +227,7 @@ def _check_layers(project: Project, surface: Surface[Any], depth: int) -> None:
     """Refuse layers that the net's lamellas cannot have."""
     strip = project.lamella
     if depth >= STAGES.index("lamellas") and strip.layers > 1 and strip.layer_curves == "lamella":
-        check_layer_curves(surface, project.network.pattern)
+        check_layer_curves(surface, pattern_of(project.network))
 
 
 def _normal_curvature(project: Project, surface: Surface[Any]) -> float:
@@ -304,7 +307,7 @@ def _complete(
     warnings: list[Message] = []
     if depth < STAGES.index("lamellas") and until is None:
         warnings.append(
-            Message("ends_with_network", f"the run ends with the network: {project.network.pattern.no_strips}")
+            Message("ends_with_network", f"the run ends with the network: {pattern_of(project.network).no_strips}")
         )
     surface, density, adjusted = planned
     project = fill_in(project, surface)
@@ -343,7 +346,7 @@ def _complete(
             # heavy, and closed forms do without
             from lamella.stages.weaving import MANNERS, lay, trace, weave
 
-            traced = is_traced(surface, table.pattern)
+            traced = is_traced(surface, pattern_of(table))
             clock.start("network", MANNERS[traced])
             with unit_first(surface):
                 if traced:
@@ -366,7 +369,7 @@ def _complete(
             network,
             project.lamella.height,
             table.closing if density else "open",
-            traced=is_traced(surface, table.pattern),
+            traced=is_traced(surface, pattern_of(table)),
             without=others.without,
         )
     if network and depth >= STAGES.index("lamellas"):
@@ -423,11 +426,11 @@ def _complete(
 def _last_of(project: Project, until: str | None) -> int:
     """Number of the last stage; of principal lines that is the network."""
     depth, last = _depth(LAST_STAGE if until is None else until), STAGES.index("network")
-    if not project.network.pattern.no_strips or depth <= last:
+    if not pattern_of(project.network).no_strips or depth <= last:
         return depth
     if until is not None:
         raise InputError(
-            f"stage {until!r} needs a net of lamellas: {project.network.pattern.no_strips}",
+            f"stage {until!r} needs a net of lamellas: {pattern_of(project.network).no_strips}",
             'write --until network, or kind = "lamellas"',
             "network.kind",
         )

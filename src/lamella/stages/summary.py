@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lamella.base.material import Material
 from lamella.base.wording import loop_names, one_line
 from lamella.fabrication.part import Parts
 from lamella.fabrication.sheet import Nesting
 from lamella.network.network import BOUNDARY, SINGULAR, Network
 from lamella.network.written_lines import angle_figures
 from lamella.strip.lamellas import Lamellas
-from lamella.strip.material import Material
 from lamella.strip.planarity import planarity_score
 from lamella.strip.unroll import development_deviation
 from lamella.surface.element.rim import element_rims

@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import numpy as np
-
 from lamella.base.errors import InputError
 from lamella.base.plausible_size import is_doubtful, likely_unit
+from lamella.base.vectors import diagonal
 from lamella.surface.surface import Surface
 
 
@@ -19,7 +18,7 @@ def unit_first(surface: Surface[Any]) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        size = float(np.linalg.norm(np.ptp(surface.check_points().position, axis=0)))
+        size = diagonal(surface.check_points().position)
         if not is_doubtful(size):
             raise
         better, there = likely_unit(size, 1.0)

@@ -9,14 +9,16 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.drawing_origin import coordinates
+from lamella.base.limits import CELLS_MIN
+from lamella.base.material import Material
 from lamella.base.message import Message
+from lamella.base.vectors import diagonal
 from lamella.base.wording import counted, rounded
 from lamella.network.cell_sizes import MOST_RATIO, large_cells, small_cells
-from lamella.network.density_request import CELLS_MIN, NODES_MAX
+from lamella.network.density_request import NODES_MAX
 from lamella.network.network import SINGULAR, Network
 from lamella.stages.keys import with_keys
 from lamella.strip.lamellas import Lamellas, Section, layer_drift
-from lamella.strip.material import Material
 from lamella.strip.overstress import Used, ways_to_stand
 from lamella.surface.element.surface import SMOOTHED_ORDER, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
@@ -42,7 +44,7 @@ UNEVEN = 1.5
 
 def size_cautions(mesh: SurfaceMesh, height: float) -> Iterator[Message]:
     """Sizes that look like millimetres taken for metres."""
-    size = float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
+    size = diagonal(mesh.points)
     if size > LARGE or size > SLENDER * height:
         yield Message(
             "unit_large",

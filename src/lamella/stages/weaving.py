@@ -12,6 +12,7 @@ from lamella.network.streamlines.streamline_network import TracedNetwork, traced
 from lamella.network.streamlines.streamline_plan import StreamlinePlan, plan_streamlines
 from lamella.project.tables import Project
 from lamella.stages.keys import keys
+from lamella.stages.pattern_of_table import pattern_of
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import refuse_umbilic
@@ -30,7 +31,7 @@ def lay(surface: Surface[Any], project: Project, step: float | None, progress: P
         cells=table.cells,
         spacing=table.spacing,
         step=step,
-        pattern=table.pattern,
+        pattern=pattern_of(table),
         loop_names=tuple(loop.name for loop in getattr(project.surface, "boundary", ())),
         seams=table.closing == "open",
         minimum_length=table.minimum_length,
@@ -52,7 +53,7 @@ def lay_traced(surface: Surface[Any], project: Project) -> StreamlinePlan:
     """How lines that follow from no lattice are laid."""
     refuse_umbilic(surface)
     table = project.network
-    return plan_streamlines(charts_of(surface), table.pattern, cells=table.cells, spacing=table.spacing)
+    return plan_streamlines(charts_of(surface), pattern_of(table), cells=table.cells, spacing=table.spacing)
 
 
 @keys("network", surface="surface")
@@ -62,8 +63,8 @@ def trace(surface: Surface[Any], project: Project, progress: Progress) -> Traced
     table = project.network
     return traced_network(
         charts_of(surface),
-        table.pattern,
-        mean_curvature=reported_mean_curvature(surface, table.pattern),
+        pattern_of(table),
+        mean_curvature=reported_mean_curvature(surface, pattern_of(table)),
         cells=table.cells,
         spacing=table.spacing,
         minimum_length=table.minimum_length,

@@ -9,13 +9,13 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
 from lamella.base.errors import InputError, require_positive
+from lamella.base.material import Material, find_material
 from lamella.base.onward import onward
 from lamella.base.result import Shown
 from lamella.base.wording import counted, rounded
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.layer_curves import lamella_layers
 from lamella.strip.layers import LayerCurves, Layers, at_stops, parallel_layers, running
-from lamella.strip.material import Material, find_material
 from lamella.strip.planarity import planarity_score
 from lamella.strip.stress import shortening, stresses
 from lamella.surface.surface import Surface

@@ -8,10 +8,10 @@ from typing import Literal
 
 import numpy as np
 
+from lamella.base.material import Material
 from lamella.base.wording import rounded
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas, Section
-from lamella.strip.material import Material
 from lamella.strip.sections import bearable, bearable_scale
 
 MEASURES: tuple[Literal["thickness", "height"], ...] = ("thickness", "height")

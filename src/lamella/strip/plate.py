@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lamella.base.arrays import Floats
-from lamella.strip.material import Material
+from lamella.base.material import Material
 
 # of x = beta h / 2: below it the strip stays flat across within rounding
 FLAT = 1e-3

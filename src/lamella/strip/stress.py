@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Floats
-from lamella.strip.material import Material
+from lamella.base.material import Material
 from lamella.strip.plate import across, mean_tension, poisson_ratio
 
 # above the centre line, over h / 2: where stresses are compared; the worst is at the edge or on the centre line

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Floats
+from lamella.base.vectors import diagonal
 from lamella.surface.mesh import SurfaceMesh
 
 # dark where the surface is curved most
@@ -83,7 +84,7 @@ def surface_quantities(mesh: SurfaceMesh, mean_curvature: float) -> dict[str, Qu
     """
     larger = np.maximum(np.abs(mesh.k1), np.abs(mesh.k2))
     area = _vertex_areas(mesh)
-    flattest = FLATTEST / float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
+    flattest = FLATTEST / diagonal(mesh.points)
     scale = max(flattest, _usual(larger, area))
     found = (
         _deviation(mesh.mean_curvature - mean_curvature, area, mean_curvature, scale),

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from lamella.base.material import find_material
 from lamella.network.network import BOUNDARY, REGULAR, Network
 from lamella.strip.lamellas import Lamellas, Section
 from lamella.strip.layers import parallel_layers
-from lamella.strip.material import find_material
 from lamella.surface.darboux import Darboux
 from lamella.surface.mesh import SurfaceMesh
 

@@ -10,6 +10,7 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.message import Message
+from lamella.base.vectors import diagonal
 from lamella.base.wording import counted, cut
 from lamella.files.read.file_curves import CurveFile, FileCurve
 from lamella.files.read.tidy_curves import without_doubles, without_short
@@ -130,7 +131,7 @@ class _Choice:
 
     def _limit(self, curves: Sequence[FileCurve]) -> float:
         """Within which ends meet, in the file's unit."""
-        size = float(np.linalg.norm(np.ptp(np.concatenate([curve.pieces.hull for curve in curves]), axis=0)))
+        size = diagonal(np.concatenate([curve.pieces.hull for curve in curves]))
         own = self.file.tolerance or 0.0
         return max(GAP_LIMIT * size, min(DRAWN / self.unit, DRAWN_SHARE * size), min(own, OWN_SHARE * size))
 

@@ -11,6 +11,7 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.units import RHINO_METRES
+from lamella.base.vectors import diagonal
 from lamella.files.read.file_curves import MOST_NESTED, CurveFile, FileCurve, Gathering
 from lamella.files.read.rhino_model import RhinoCurve, RhinoModel, RhinoObject, read_rhino
 from lamella.surface.boundary.arc_length import Course
@@ -110,7 +111,7 @@ class _Reading(Gathering):
         edges = [edge for edge in edges if edge.sound]
         if not edges:
             return
-        size = float(np.linalg.norm(np.ptp(np.concatenate([edge.hull for edge in edges]), axis=0)))
+        size = diagonal(np.concatenate([edge.hull for edge in edges]))
         limit = max(1e-6 * size, min(self._tolerance, 1e-3 * size))
         closed = [edge for edge in edges if _gap(edge) <= limit]
         chains = find_chains([edge for edge in edges if _gap(edge) > limit], limit)

@@ -14,6 +14,7 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.units import DXF_METRES
+from lamella.base.vectors import diagonal
 from lamella.base.wording import cut
 from lamella.files.read.dxf_document import dxf_damage, open_dxf
 from lamella.files.read.file_curves import MOST_NESTED, CurveFile, FileCurve, Gathering
@@ -226,7 +227,7 @@ def _polyline(entity: Any, points: Floats, bulges: list[float], *, closed: bool)
     frame = _frame(entity)
     world = points @ frame
     n = len(points)
-    size = float(np.linalg.norm(np.ptp(world, axis=0))) if n else 0.0
+    size = diagonal(world) if n else 0.0
     parts = []
     for k in range(n if closed else n - 1):
         start, end = world[k], world[(k + 1) % n]

@@ -10,10 +10,10 @@ import orjson
 
 from lamella import __version__
 from lamella.projection.mesh_figures import MeshFigures, mesh_figures
+from lamella.projection.optimised import Optimised, about_mesh
 from lamella.projection.report import Solution
 
 if TYPE_CHECKING:
-    from lamella.command.optimise_mesh import Optimised
     from lamella.files.quad_mesh_files import QuadFile
 
 SCHEMA = "lamella/optimise/1"
@@ -31,8 +31,6 @@ def optimise_bytes(result: Optimised, figures: MeshFigures, given: QuadFile, *, 
     problem, file : str
         Name of the problem, and of the file that was given.
     """
-    from lamella.command.optimise_mesh import about_mesh
-
     content: dict[str, Any] = {
         "schema": SCHEMA,
         "version": __version__,

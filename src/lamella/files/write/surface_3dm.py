@@ -16,6 +16,7 @@ import numpy as np
 import rhino3dm
 
 from lamella.base.arrays import Floats, Integers
+from lamella.base.vectors import diagonal
 from lamella.files.whole import write_whole
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile
 from lamella.files.write.text import require_finite
@@ -207,7 +208,7 @@ class _Model:
 
     def __init__(self, name: str, version: str, surface: ElementSurface, frame: Frame) -> None:
         self.version, self.surface = version, surface
-        self.diagonal = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))
+        self.diagonal = diagonal(surface.nodes)
         self.rhino = RhinoFile("surface.3dm", name, version, frame)
         self.file, self.origin = self.rhino.file, np.array(frame.origin)
         self.rhino.say(mean_curvature=repr(float(surface.mean_curvature)))

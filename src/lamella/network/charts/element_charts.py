@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats, Integers
+from lamella.base.triangle import CORNERS
 from lamella.network.charts.charts import ChartSample, RimPlaces
 from lamella.surface.element.places import Places
 from lamella.surface.element.quadrature import triangle_rule
@@ -117,8 +118,8 @@ class ElementCharts:
         barycentric = _barycentric(where.local)
         beyond = self._connectivity.neighbours[where.element[:, None], (np.arange(3) + 1) % 3]
         edge = (np.where(beyond < 0, barycentric, np.inf).argmin(1) + 1) % 3
-        along = _CORNERS[(edge + 1) % 3] - _CORNERS[edge]
-        share = ((where.local - _CORNERS[edge]) * along).sum(1) / (along**2).sum(1)
+        along = CORNERS[(edge + 1) % 3] - CORNERS[edge]
+        share = ((where.local - CORNERS[edge]) * along).sum(1) / (along**2).sum(1)
         vertex = self._connectivity.faces[where.element, edge]
         loop, start, span, _ = self._rims
         _, first, second = self.surface.polynomials.jet(where).transpose(0, 2, 1)
@@ -138,7 +139,7 @@ class ElementCharts:
         corner = _barycentric(local[inside]).argmax(1)
         at = row[connectivity.faces[element[inside], corner]]
         element[inside] = np.where(at >= 0, connectivity.rim_elements[at], element[inside])
-        local[inside] = np.where((at >= 0)[:, None], _CORNERS[connectivity.rim_edges[at]], local[inside])
+        local[inside] = np.where((at >= 0)[:, None], CORNERS[connectivity.rim_edges[at]], local[inside])
         return Places(element, local)
 
     def _around(self, loop: int, count: int) -> Places:
@@ -152,9 +153,6 @@ class ElementCharts:
     def hole(self, count: int) -> tuple[Places, float] | None:
         lengths = self._rims[3]
         return (self._around(1, count), lengths[1]) if len(lengths) > 1 else None
-
-
-_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
 
 def _barycentric(local: Floats) -> Floats:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lamella.network.density_request import CELLS_MIN
+from lamella.base.limits import CELLS_MIN
 from lamella.network.elements.cell_count import CellCount
 from lamella.network.elements.closing_steps import CLOSES, ClosingLengths
 from lamella.network.pattern import LEAST_KEPT, Pattern

@@ -14,6 +14,7 @@ from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
+from lamella.base.vectors import diagonal
 from lamella.base.wording import counted
 from lamella.network.density_request import DensityRequest
 from lamella.network.elements.closing_steps import CLOSES
@@ -91,7 +92,7 @@ class ElementNetwork:
     def describe(self) -> dict[str, Any]:
         """Further figures of the network for summary.json."""
         nodes = self.network.node_points[self.network.node_kinds == SINGULAR]
-        reach = 1e-6 * float(np.linalg.norm(np.ptp(self.network.node_points, axis=0)))
+        reach = 1e-6 * diagonal(self.network.node_points)
         # whether one on the rim lies within is decided by the surface's errors
         inner = ~self.on_rim
         umbilics = [

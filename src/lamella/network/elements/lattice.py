@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lamella.base.arrays import Integers
-from lamella.network.density_request import CELLS_MIN, NODES_MAX, DensityRequest
+from lamella.base.limits import CELLS_MIN
+from lamella.network.density_request import NODES_MAX, DensityRequest
 from lamella.network.elements.cell_count import CellCount
 from lamella.network.elements.choose_step import Better, better_density, near_step
 from lamella.network.elements.closing_steps import CLOSES, ClosingLengths

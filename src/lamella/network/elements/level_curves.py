@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.triangle import CORNERS
 from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.elements.level_chains import CLOSED, SINGULAR_END, Chains
 from lamella.network.elements.small_triangles import SmallTriangles
@@ -165,7 +166,7 @@ def passages(cells: IntegerGridMap, level_curves: LevelCurves) -> tuple[Integers
 
 def _on_edges(cells: IntegerGridMap, level_curves: LevelCurves, link: Integers, local: Floats) -> tuple[Floats, Floats]:
     """Exact tau (n,) and place (n, 2) of places (n, 2) of links on edges: where the edge has the chain's level."""
-    basis = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    basis = CORNERS
     barycentric = np.column_stack([1 - local.sum(1), local])
     edge = (barycentric.argmin(1) + 1) % 3
     begin, along = basis[edge], basis[(edge + 1) % 3] - basis[edge]

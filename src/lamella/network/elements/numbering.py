@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.triangle import CORNERS
 from lamella.network.elements.crossings import Crossings
 from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.elements.level_chains import CLOSED, RIM, SINGULAR_END
@@ -34,16 +35,13 @@ def rim_places(cells: IntegerGridMap, rims: tuple[ElementRim, ...], places: Plac
     barycentric = np.column_stack([1 - places.local.sum(1), places.local])
     barycentric[connectivity.neighbours[places.element[:, None], (np.arange(3) + 1) % 3] >= 0] = np.inf
     edge = (barycentric.argmin(1) + 1) % 3
-    along = _CORNERS[(edge + 1) % 3] - _CORNERS[edge]
-    share = ((places.local - _CORNERS[edge]) * along).sum(1) / (along**2).sum(1)
+    along = CORNERS[(edge + 1) % 3] - CORNERS[edge]
+    share = ((places.local - CORNERS[edge]) * along).sum(1) / (along**2).sum(1)
     vertex = connectivity.faces[places.element, edge]
     _, first, second = cells.tangents(places)
     direction = along[:, :1] * first + along[:, 1:] * second
     direction /= np.linalg.norm(direction, axis=1)[:, None]
     return loop[vertex], (start[vertex] + share * span[vertex]) % 1, direction
-
-
-_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
 
 def numbered(

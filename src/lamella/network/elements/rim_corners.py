@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.triangle import CORNERS
 from lamella.base.vectors import crosses, diagonal, dots, lengths
 from lamella.base.wording import rounded
 from lamella.network.network import REGULAR, Network
@@ -162,7 +163,7 @@ def _largest_fillet(turns: Floats, gaps: Floats) -> float:
 def _angles(connectivity: Connectivity, nodes: Floats, vertices: Sequence[int] | Integers) -> Floats:
     """Angle of the surface around vertices of its rim, radians, (c,)."""
     basis = connectivity.basis
-    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    corners = CORNERS
     element, corner = np.nonzero(np.isin(connectivity.faces, vertices))
     x, y = tangents(basis.basis(corners, 1, 0), basis.basis(corners, 0, 1), nodes[connectivity.elements[element]])
     rows = np.arange(len(element))

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Booleans, Complexes, Floats, Integers
+from lamella.base.triangle import CORNERS
 from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.isothermic.isothermic import sectors
 from lamella.network.network import A, B
@@ -126,7 +127,7 @@ def _straighten(values: Complexes, cells: IntegerGridMap, local: Floats, vertex:
     umbilic is more than its value. Which lines pass through a homogeneous function's zero is decided at its rim.
     """
     basis = cells.mesh.connectivity.basis
-    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    corners = CORNERS
     far = 1 - np.column_stack([1 - local.sum(1), local])
     for element, which in np.argwhere(cells.mesh.connectivity.faces == vertex).tolist():
         share = far[:, which]

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Floats
+from lamella.base.triangle import CORNERS
 from lamella.base.vectors import lengths
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
@@ -25,7 +26,7 @@ SHARES = np.array([0.1, 0.5, 0.9])
 def zeros_beyond_rim(surface: ElementSurface, apart: float) -> Floats:
     """Estimated positions (n, 3) of zeros just beyond the rim, m, no two nearer to each other than `apart` (m)."""
     connectivity = surface.connectivity
-    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    corners = CORNERS
     element, edge = np.nonzero(connectivity.neighbours < 0)
     first, second = corners[edge], corners[(edge + 1) % 3]
     local = first[:, None] + SHARES[:, None] * (second - first)[:, None]

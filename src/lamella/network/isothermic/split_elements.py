@@ -12,6 +12,7 @@ import pythoncdt
 from numpy.typing import NDArray
 
 from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.triangle import CORNERS
 from lamella.network.isothermic.integration_mesh import IntegrationMesh
 from lamella.network.isothermic.straight_cuts import CrossedError
 from lamella.network.isothermic.straight_walk import FlatTriangles, share_of_edge
@@ -20,7 +21,6 @@ from lamella.surface.element.connectivity import connect
 from lamella.surface.element.lagrange import EDGES
 from lamella.surface.element.surface import ElementSurface
 
-_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 # a place of a line inside an element is one of its vertices where it is as far as this from the edges
 INSIDE = 0.08
 
@@ -49,7 +49,7 @@ class Split:
         """Values (..., m, k) at the nodes of the parts, of polynomials with values (..., m', k) on whole elements."""
         basis = self.mesh.connectivity.basis
         result = values[..., self.parent, :].copy()
-        part = np.flatnonzero((self.corners != _CORNERS).any((1, 2)))
+        part = np.flatnonzero((self.corners != CORNERS).any((1, 2)))
         local = _inside(self.corners[part], basis.nodes)
         shapes = basis.basis(local.reshape(-1, 2)).reshape(len(part), len(basis.nodes), -1)
         result[..., part, :] = np.einsum("pnk,...pk->...pn", shapes, values[..., self.parent[part], :])
@@ -99,7 +99,7 @@ def split_elements(flat: FlatTriangles, courses: list[Course], surface: ElementS
     touched = sorted(pieces)
     kept = np.ones(len(faces), bool)
     kept[touched] = False
-    parents, corners, new_faces = [np.flatnonzero(kept)], [np.tile(_CORNERS, (kept.sum(), 1, 1))], [faces[kept]]
+    parents, corners, new_faces = [np.flatnonzero(kept)], [np.tile(CORNERS, (kept.sum(), 1, 1))], [faces[kept]]
     for element in touched:
         edges = [sorted(on_edge.get((element, edge), [])) for edge in range(3)]
         names, local = _outline(faces[element], edges)
@@ -174,7 +174,7 @@ def _outline(corners: Integers, edges: list[list[tuple[float, int]]]) -> tuple[l
     local: list[tuple[float, float]] = []
     for edge, passed in enumerate(edges):
         names.append(int(corners[edge]))
-        local.append((float(_CORNERS[edge, 0]), float(_CORNERS[edge, 1])))
+        local.append((float(CORNERS[edge, 0]), float(CORNERS[edge, 1])))
         for share, vertex in passed:
             names.append(vertex)
             # exactly on the edge: one coordinate is 0, or both sum to 1
@@ -216,7 +216,7 @@ def _fields(split: Split, faces: Integers, loop: Integers, surface: ElementSurfa
     # the numbers of places are handed on where elements are whole, and looked for elsewhere
     nodal = np.empty((new.node_count, values.shape[1]))
     nodal[new.elements] = np.moveaxis(split.restricted(values[old.connectivity.elements].transpose(2, 0, 1)), 0, 2)
-    whole = (split.corners == _CORNERS).all((1, 2))
+    whole = (split.corners == CORNERS).all((1, 2))
     element, local = np.zeros(new.node_count, np.int64), np.full((new.node_count, 2), np.nan)
     there = new.elements[whole].ravel()
     source = old.connectivity.elements[split.parent[whole]].ravel()

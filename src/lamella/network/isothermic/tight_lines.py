@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats, Integers
+from lamella.base.triangle import CORNERS
 from lamella.network.isothermic.straight_walk import PARTS, FlatTriangles, cross, edges_of_element, share_of_edge
 from lamella.surface.element.lagrange import EDGES, lagrange, local_faces
 
-_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-_AXES = np.array([_CORNERS[b] - _CORNERS[a] for a, b in EDGES])
+_AXES = np.array([CORNERS[b] - CORNERS[a] for a, b in EDGES])
 # of a small edge: a line passes as far as this from its ends; of an element's edge on the rim
 CLEAR, CLEAR_RIM = 0.01, 0.01
 # steps of Newton's method, and how far one goes at most
@@ -132,7 +132,7 @@ def tightened(flat: FlatTriangles, begin: int, end: int, passed: Passed, free: b
     share[inner] = _on_line(flat, passed, element, one, other, ends)[inner]
     local = one + share[:, None] * (other - one)
     for index, at in ((0, first), (-1, last)) if begin < 0 else ((-1, last),):
-        local[index] = _CORNERS[edge[index]] + np.clip(at, CLEAR_RIM, 1 - CLEAR_RIM) * _AXES[edge[index]]
+        local[index] = CORNERS[edge[index]] + np.clip(at, CLEAR_RIM, 1 - CLEAR_RIM) * _AXES[edge[index]]
     # a place inside that had to keep clear of the end of its small edge is not on the line
     kept = (edge >= 0) | ((share > CLEAR) & (share < 1 - CLEAR))
     return Tight(Course(begin, end, element[kept], edge[kept], local[kept], passed.triangle), first, last, goal)

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.limits import CELLS_MIN
 from lamella.network.arc_length import ArcLengths, Stretched
-from lamella.network.density_request import CELLS_MIN, NODES_MAX, DensityRequest
+from lamella.network.density_request import NODES_MAX, DensityRequest
 from lamella.network.lattice.domain import Lines
 from lamella.network.lattice.domain_of import domain_of
 from lamella.network.lattice.lattice import build_lattice

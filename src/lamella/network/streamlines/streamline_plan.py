@@ -9,10 +9,11 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
 from lamella.base.errors import InputError
-from lamella.base.vectors import dots, lengths
+from lamella.base.limits import CELLS_MIN
+from lamella.base.vectors import diagonal, dots, lengths
 from lamella.base.wording import rounded
 from lamella.network.charts.charts import Charts
-from lamella.network.density_request import CELLS_MIN, NODES_MAX, DensityRequest
+from lamella.network.density_request import NODES_MAX, DensityRequest
 from lamella.network.pattern import Pattern
 from lamella.network.streamlines.direction_field import LEAST_ANGLE, LineField
 from lamella.network.streamlines.probing import probes
@@ -90,7 +91,7 @@ def plan_streamlines(
     request = DensityRequest.of(cells, spacing)
     where, area = charts.samples()
     sample = charts.evaluate(where)
-    size = float(np.linalg.norm(np.ptp(sample.position, axis=0)))
+    size = diagonal(sample.position)
     scale = float(np.sqrt(np.average(sample.mean**2 + np.abs(sample.deviator) ** 2, weights=area)))
     field = LineField(pattern.normal_curvature, max(scale, 1e-9 / size))
     real, usable = field.is_real(sample.mean, sample.deviator), field.margin(sample.mean, sample.deviator) > 0

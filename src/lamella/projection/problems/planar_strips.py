@@ -13,6 +13,7 @@ from lamella.base.arrays import Floats
 from lamella.base.errors import InputError, require_positive
 from lamella.base.result import Result
 from lamella.base.sparse import Backend
+from lamella.base.vectors import diagonal
 from lamella.base.wording import counted
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.closeness import Closeness
@@ -232,7 +233,7 @@ def _curve(curve: ArrayLike, number: int) -> Floats:
 
 def _check_height(lower: list[Floats], upper: list[Floats], height: float) -> None:
     """Refuse heights at which strips along the normals fold, or that are no strips."""
-    size = max(float(np.linalg.norm(np.ptp(curve, axis=0))) for curve in lower)
+    size = max(diagonal(curve) for curve in lower)
     if abs(height) > size:
         raise InputError(
             f"height = {height:g} m is more than the largest curve measures, {size:.4g} m", "give the height in m"

@@ -9,6 +9,7 @@ import numpy as np
 
 from lamella.base.arrays import Floats, Integers
 from lamella.base.sparse import Backend
+from lamella.base.vectors import diagonal
 from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.fixed import Fixed
 from lamella.projection.constraints.shared_length import SharedLength
@@ -64,7 +65,7 @@ def find_radius(
     edge, inner, neighbours = mesh.mean_edge, mesh.inner, mesh.stars(mesh.inner)
     normals = smoothed_normals(start)[inner]
     bend = star_curvature(start.vertices, inner, neighbours, normals)
-    size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    size = diagonal(mesh.vertices)
     if abs(bend) * FLATTEST * size < 1:
         return StarRadius(FLATTEST * size, np.inf)
     radius = 1 / abs(bend)

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.limits import MOST_WAVES
+from lamella.base.vectors import diagonal
 from lamella.base.wording import rounded
 from lamella.surface.boundary.adjustable_film import AdjustableFilm
 from lamella.surface.boundary.boundary_curve import Adjust, BoundaryCurve, Place, Triple
@@ -160,7 +161,7 @@ def _of_curve(index: int, curve: BoundaryCurve, usual: bool) -> list[_Part]:
         return []
     size = 0.0
     if curve.points is not None:
-        size = float(np.linalg.norm(np.ptp(np.array(curve.points), axis=0)))
+        size = diagonal(np.array(curve.points))
     elif curve.circle is not None:
         size = 2 * curve.circle.radius
     move = scale = tilt = points = 0.0

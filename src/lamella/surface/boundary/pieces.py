@@ -14,6 +14,7 @@ from math import comb
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
+from lamella.base.vectors import diagonal
 
 _ROUNDING = 1e-9
 """Of a curve's size: ends further apart have a gap."""
@@ -67,7 +68,7 @@ class Pieces:
     @property
     def extent(self) -> float:
         """Diagonal of the control points' bounding box, m."""
-        return float(np.linalg.norm(np.ptp(self.hull, axis=0)))
+        return diagonal(self.hull)
 
     @property
     def sound(self) -> bool:

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
+from lamella.base.vectors import diagonal
 from lamella.surface.boundary.curve import place
 
 _SAME = 1e-6
@@ -40,7 +41,7 @@ def clean_points(points: ArrayLike, *, closed: bool, where: str = "") -> Floats:
     bad = np.flatnonzero(~np.isfinite(given).all(axis=1))
     if len(bad):
         raise InputError(f"point {bad[0]} is not finite: {given[bad[0]]}", "give finite numbers in m", where)
-    size = float(np.linalg.norm(np.ptp(given, axis=0))) if len(given) else 0.0
+    size = diagonal(given) if len(given) else 0.0
     if closed and len(given) > 1 and np.linalg.norm(given[-1] - given[0]) <= _SAME * size:
         given = given[:-1]
     following = np.roll(given, -1, axis=0) if closed else given[1:]

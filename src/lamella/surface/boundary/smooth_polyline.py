@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 from lamella.base.arrays import Booleans, Floats
 from lamella.base.errors import InputError
 from lamella.base.message import Message
+from lamella.base.vectors import diagonal
 from lamella.base.wording import counted
 from lamella.surface.boundary.corners import CORNER_ANGLE, edge_lengths, find_corners, thinned, turning_angles
 from lamella.surface.boundary.pieces import Pieces, lines, stack
@@ -76,7 +77,7 @@ def smooth_curve(
 
 def _curve(points: Floats, corner: Booleans, where: str) -> tuple[Pieces, float]:
     """A smooth curve through vertices, with corners, and how far it passes them, m."""
-    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    size = diagonal(points)
     most = MOST_POINTS
     while True:
         rows: Floats = np.column_stack((points, corner)).astype(np.float64)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats, Integers
+from lamella.base.vectors import diagonal
 from lamella.surface.closed_forms.outline import Disc, Outline, Rectangle, Ring
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.points import SurfacePoints
@@ -55,7 +56,7 @@ def surface_mesh(
     where, _ = places(33, 33)
     rough = at(where)
     points = rough.position
-    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    size = diagonal(points)
     k1, k2 = rough.principal_curvatures
     curvature = float(max(np.abs(k1).max(), np.abs(k2).max()))
     edge = np.sqrt(8 * tolerance * size / curvature)

@@ -14,13 +14,13 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ties import shortened
+from lamella.base.triangle import CORNERS
 from lamella.base.vectors import lengths
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.places import Places
 
 # rounds of cuts; each halves the longest edges of what is too large
 MOST_ROUNDS = 60
-CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
 
 @dataclass(frozen=True)

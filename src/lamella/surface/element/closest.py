@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Floats, Integers
+from lamella.base.triangle import CORNERS
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
@@ -78,7 +79,7 @@ class ClosestPoint:
             query = np.repeat(np.arange(len(at_vertex)), count)
             fan = fans[np.repeat(first - np.cumsum(count) + count, count) + np.arange(count.sum())]
             tried = points[at_vertex][query]
-            beside = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])[fan % 3] * 0.98 + 0.02 / 3
+            beside = CORNERS[fan % 3] * 0.98 + 0.02 / 3
             found, place = self._search(tried, fan // 3, beside)
             distance = np.linalg.norm(self._position(found, place) - tried, axis=1)
             by_query = np.lexsort((distance, query))
@@ -152,7 +153,7 @@ def _clamp(target: Floats, haa: Floats, hab: Floats, hbb: Floats) -> tuple[Float
     best = target.copy()
     edge = np.full(len(target), -1)
     least = np.where(inside, 0.0, np.inf)
-    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    corners = CORNERS
     for index in range(3):
         start, along = corners[index], corners[(index + 1) % 3] - corners[index]
         off = target - start

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
+from lamella.base.triangle import CORNERS
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.lagrange import local_faces
 from lamella.surface.element.places import Places
 
 # most parts that a piece of the rim, between two of the element's own, is cut into
 MOST_PIECES = 256
-_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 # where on a piece its bend is taken
 _WITHIN = np.linspace(0, 1, 5)
 
@@ -56,8 +56,8 @@ def sampled_places(
     edge = np.repeat(np.arange(len(count)), count - 1)
     step = np.arange(len(edge)) - np.repeat(np.cumsum(count - 1) - (count - 1), count - 1) + 1
     which, piece = np.divmod(np.flatnonzero(split)[edge], parts)
-    begin = _CORNERS[connectivity.rim_edges[which]]
-    along = _CORNERS[(connectivity.rim_edges[which] + 1) % 3] - begin
+    begin = CORNERS[connectivity.rim_edges[which]]
+    along = CORNERS[(connectivity.rim_edges[which] + 1) % 3] - begin
     new_at = begin + ((piece + step / count[edge]) / parts)[:, None] * along
     element = np.concatenate([element, connectivity.rim_elements[which]])
     at = np.concatenate([at, new_at])
@@ -91,8 +91,8 @@ def _pieces(connectivity: Connectivity, nodes: Floats, parts: int, rim_sag: floa
     second derivative across it.
     """
     t = ((np.arange(parts)[:, None] + _WITHIN) / parts).ravel()
-    begin = _CORNERS[connectivity.rim_edges]
-    along = (_CORNERS[(connectivity.rim_edges + 1) % 3] - begin)[:, None, :, None]
+    begin = CORNERS[connectivity.rim_edges]
+    along = (CORNERS[(connectivity.rim_edges + 1) % 3] - begin)[:, None, :, None]
     local = (begin[:, None] + t[:, None] * along[:, :, :, 0]).reshape(-1, 2)
     corners = nodes[connectivity.elements[connectivity.rim_elements]]
     shape = (len(begin), len(t), -1)

@@ -13,7 +13,7 @@ from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.base.drawing_origin import NOWHERE, Origin
 from lamella.base.message import Message
 from lamella.base.result import Shown
-from lamella.base.vectors import dots, images, lengths, symmetric
+from lamella.base.vectors import diagonal, dots, images, lengths, symmetric
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.curvature import ElementFrames, ElementPoints, element_points, frames
@@ -316,7 +316,7 @@ class ElementSurface(Shown):
             Largest distance of the faces from the surface over the diagonal of the bounding box, as far as
             `MOST_TRIANGLES` allow; along the rim, which is what is seen, a quarter of it.
         """
-        size = float(np.linalg.norm(np.ptp(self.nodes, axis=0)))
+        size = diagonal(self.nodes)
         middle = self.measured(Places(np.arange(len(self._corners)), np.full((len(self._corners), 2), 1 / 3)))
         bend = np.abs(middle.mean_curvature) + np.abs(middle.deviator)
         edges = np.linalg.norm(self._corners[:, :3] - np.roll(self._corners[:, :3], -1, 1), axis=2).max(1)

@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Booleans, Floats
 from lamella.base.progress import Progress, Report
+from lamella.base.vectors import diagonal
 from lamella.surface.form_finding.chart import Chart, vector_area
 from lamella.surface.form_finding.continuation import Reached
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
@@ -130,7 +131,7 @@ def _turn(first: Floats, second: Floats) -> Floats:
 
 
 def _size(loops: Loops) -> float:
-    return max(float(np.linalg.norm(np.ptp(_points(loop), axis=0))) for loop in loops)
+    return max(diagonal(_points(loop)) for loop in loops)
 
 
 def is_moved(begin: Loops, end: Loops) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.sparse import SingularError, SymmetricPattern, packed
+from lamella.base.vectors import diagonal
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.geometry import dirichlet_blocks, smooth_normals, tangents
 from lamella.surface.element.placing import place_nodes, rim_parameters
@@ -103,7 +104,7 @@ class Film:
     @cached_property
     def size(self) -> float:
         """Diagonal of the bounding box, m."""
-        return float(np.linalg.norm(np.ptp(self.nodes, axis=0)))
+        return diagonal(self.nodes)
 
     def loop_starts(self) -> Floats:
         """Where the loops begin, (loops, 3), m; of a loop that slides, before it did."""

@@ -10,6 +10,7 @@ from scipy.optimize import minimize_scalar
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.ties import least_axis
+from lamella.base.vectors import diagonal
 from lamella.surface.form_finding.chart import Curve, samples_of, vector_area
 from lamella.surface.form_finding.film import Loop
 
@@ -138,7 +139,7 @@ def refuse_apart(loops: Sequence[Curve]) -> None:
     middles = [points.mean(0) for points in (first, second)]
     apart = middles[1] - middles[0]
     distance = float(np.linalg.norm(apart))
-    size = max(np.linalg.norm(np.ptp(points, axis=0)) for points in (first, second))
+    size = max(diagonal(points) for points in (first, second))
     if distance < 0.05 * size:
         return
     axis = apart / distance

@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Floats, Integers
 from lamella.base.message import Message
+from lamella.base.vectors import diagonal
 from lamella.base.wording import counted
 from lamella.surface.from_mesh.cracks import NEAR_EDGE, close_t_junctions, near_border
 from lamella.surface.from_mesh.edges import Edges, face_normals, find_edges
@@ -248,7 +249,7 @@ def _require_no_crack(points: Floats, faces: Integers, edges: Edges, borders: tu
             )
         inner = np.isin(edges.ends, loop).any(axis=1) & ~edges.border
         around = float(np.median(edges.lengths(points)[inner])) if inner.any() else np.inf
-        across = float(np.linalg.norm(np.ptp(at, axis=0)))
+        across = diagonal(at)
         if across < NEAR_EDGE * around:
             raise mesh_error(
                 f"the mesh has a hole only {1000 * across:.3g} mm wide at {place(at[0])} m, between edges of "

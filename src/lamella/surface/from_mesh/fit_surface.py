@@ -26,6 +26,7 @@ from lamella.base.drawing_origin import origin_figure
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
+from lamella.base.triangle import CORNERS
 from lamella.surface.boundary import Loop
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.curvature import element_points, frames
@@ -126,7 +127,7 @@ def _jumps(film: Film, directions: Floats) -> tuple[csr_array, Floats, Floats]:
     sides = ((element[once], edge[once]), (other[once], other_edge[once]))
     points, weight = edge_rule(basis.order)
     count, q, k = int(once.sum()), len(points), len(basis.nodes)
-    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    corners = CORNERS
     slope, bend, columns = [], [], []
     normals, speeds = [], []
     for side, (own, at) in enumerate(sides):
@@ -312,7 +313,7 @@ def _seen_at_vertices(film: Film, points: Floats, faces: Integers) -> tuple[Inte
     """Vertices, elements at each of them (n,) and the places in these (n, 2)."""
     if np.array_equal(film.connectivity.faces, faces):
         # all elements that meet at a vertex: their curvatures differ, and none of them is the nearest one
-        corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        corners = CORNERS
         return faces.ravel(), np.repeat(np.arange(len(faces)), 3), np.tile(corners, (len(faces), 1))
     places, _ = ClosestPoint(film.connectivity, film.nodes)(points)
     return np.arange(len(points)), places.element, places.local

@@ -9,6 +9,7 @@ from scipy.sparse import csr_array, eye_array
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ties import least_axis
+from lamella.base.vectors import diagonal
 from lamella.surface.from_mesh.edges import find_edges, vertex_areas, vertex_normals
 from lamella.surface.from_mesh.raw_mesh import mesh_error
 
@@ -89,7 +90,7 @@ def fit_mean_curvature(points: Floats, faces: Integers) -> Fit:
     weights = np.where(inner, areas, 0.0) if areas[inner].sum() > 0.5 * areas.sum() else areas
     fitted = _trimmed_mean(mean, weights)
     squares = np.maximum(2 * mean**2 - gaussian, 0)
-    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    size = diagonal(points)
     # A plane has no scale: rounding must not look like deviation.
     scale = max(float(np.sqrt(_trimmed(squares, weights))), 1e-6 / size)
     away = np.abs(mean - fitted) / scale

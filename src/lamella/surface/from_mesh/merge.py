@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Floats, Integers
+from lamella.base.vectors import diagonal
 from lamella.surface.from_mesh.edges import find_edges
 
 OF_SIZE = 1e-4
@@ -57,7 +58,7 @@ def merge_vertices(points: Floats, faces: Integers) -> Merged:
     edges = np.linalg.norm(points[faces] - points[np.roll(faces, -1, axis=1)], axis=2)
     long_enough = edges[edges > 0]
     median = float(np.median(long_enough)) if len(long_enough) else 0.0
-    most = OF_SIZE * float(np.linalg.norm(np.ptp(points, axis=0)))
+    most = OF_SIZE * diagonal(points)
     # Vertices equal to the last bit first: an .stl has six of each, and pairs of them all would be many.
     target = _equal_rows(points)
     points, faces = drop_unused(points, target[faces])

@@ -1,4 +1,4 @@
-"""Materials of lamellas, with the sources of their figures."""
+"""Materials of lamellas, with the sources of their figures: data that strips and the project's schema share."""
 
 from __future__ import annotations
 
@@ -82,5 +82,5 @@ def find_material(name: str, own: dict[str, Material] | None = None) -> Material
         f"unknown material {name!r}" + (f", did you mean {near[0]!r}?" if near else ""),
         f"use one of {', '.join(known)}, or add a table [materials.{name!r}] with density, youngs_modulus, "
         "shear_modulus and strength",
-        "name",
+        "material",
     )
