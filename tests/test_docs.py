@@ -51,6 +51,7 @@ def test_library_example_of_the_readme_runs(capsys: pytest.CaptureFixture[str]) 
     # with the strong-axis stress of two layers, 12.5 mm beside the centre line
     assert float(utilisation) == pytest.approx(0.52, abs=0.01)
     assert said.splitlines()[1].startswith(f"Nesting({pieces} pieces on ")
+    assert said.splitlines()[2] == "True"
 
 
 def test_examples_of_the_library_page_run(

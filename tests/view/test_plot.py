@@ -57,6 +57,9 @@ def test_axes_of_its_own_and_colours(strips: lamella.Lamellas) -> None:
     assert plain.figure is not torsion.figure
     # strips and surface; a strip's quads have the colours of both families, or of a scale
     assert len({tuple(c) for c in torsion.collections[0].get_facecolors().round(2)}) > 20
+    # and the scale is explained
+    assert [axes.get_ylabel() for axes in torsion.figure.axes] == ["", "|geodesic torsion| (1/m)"]
+    assert len(plain.figure.axes) == 1
     # the singular node is marked
     assert len(plain.lines) == 1
     pyplot.close("all")

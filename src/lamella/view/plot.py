@@ -22,7 +22,7 @@ from lamella.view.figure import INK, frame, require_matplotlib
 from lamella.view.flat_parts import part_curves, rows, sheet_curves
 from lamella.view.net_colours import NetColour
 from lamella.view.net_picture import NetPanel, put_net
-from lamella.view.picture import Colour, Scene, put_scene
+from lamella.view.picture import LABELS, Colour, Scene, put_scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,14 +64,21 @@ def _(network: Network, axes: Axes, *, view: tuple[float, float] = VIEW, colour:
     # a ribbon of this share of a cell, as a net has no strips yet
     height = 0.1 * float(np.median(network.cell_edges))
     mesh = None if network.surface is None else network.surface.mesh()
-    put_scene(axes, Scene(mesh, network, None, height), view=view, colour=colour)
+    _explained(axes, put_scene(axes, Scene(mesh, network, None, height), view=view, colour=colour), colour)
 
 
 @_draw.register(Lamellas)
 def _(lamellas: Lamellas, axes: Axes, *, view: tuple[float, float] = VIEW, colour: Colour = "utilisation") -> None:
     network = lamellas.network
     mesh = None if network.surface is None else network.surface.mesh()
-    put_scene(axes, Scene(mesh, network, lamellas, lamellas.section.height), view=view, colour=colour)
+    scene = Scene(mesh, network, lamellas, lamellas.section.height)
+    _explained(axes, put_scene(axes, scene, view=view, colour=colour), colour)
+
+
+def _explained(axes: Axes, scale: Any, colour: str) -> None:
+    """A colour bar beside the axes, where colours stand for numbers."""
+    if scale is not None:
+        axes.figure.colorbar(scale, ax=axes, shrink=0.7, label=LABELS[colour])
 
 
 @_draw.register(Loop)
