@@ -14,7 +14,7 @@ import pytest
 from lamella.base.errors import InputError
 from lamella.files.quad_mesh_files import read_quad_mesh
 from lamella.files.read import file_mesh
-from lamella.files.read.file_mesh import BLOCK, blocks
+from lamella.files.read.file_mesh import TEXT_BLOCK, blocks
 from lamella.files.read.mesh import read_mesh
 from lamella.files.read.mesh_obj import read_obj
 from lamella.files.read.mesh_ply import read_ply
@@ -66,9 +66,9 @@ def test_dots_in_texts_are_no_keys(tmp_path: Path, text: str) -> None:
 
 
 def test_lines_without_end() -> None:
-    for data in (b"f " + b"1 " * 2_000_000, b"v 0 0 0\n# " + b"a" * (2 * BLOCK)):
+    for data in (b"f " + b"1 " * 2_000_000, b"v 0 0 0\n# " + b"a" * (2 * TEXT_BLOCK)):
         assert "line of more than" in refusal(lambda data=data: read_obj(data)).message  # type: ignore[misc]
-    text = b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n" + b"1" * (2 * BLOCK)
+    text = b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n" + b"1" * (2 * TEXT_BLOCK)
     assert "line of more than" in refusal(lambda: read_ply(text)).message
 
 
@@ -78,7 +78,7 @@ def test_blocks_cover_a_text_and_end_where_lines_do() -> None:
     found = list(blocks(text, b"\n"))
     assert len(found) > 2
     assert b"".join(found) == text
-    assert all(block.endswith(b"\n") and len(block) <= BLOCK for block in found)
+    assert all(block.endswith(b"\n") and len(block) <= TEXT_BLOCK for block in found)
     assert list(blocks(b"", b"\n")) == []
 
 
@@ -89,7 +89,7 @@ def test_a_mesh_of_several_blocks_is_read_as_one() -> None:
     for k in range(count):
         rows.append(f"v {k}.123456 0.5 0\nv {k} 1 0.25\n" + (f"f -1 -2 -4 {max(2 * k - 1, 1)}\n" if k else ""))
     text = "".join(rows).encode()
-    assert len(text) > 2 * BLOCK
+    assert len(text) > 2 * TEXT_BLOCK
     found = read_obj(text)
     assert found.points.shape == (2 * count, 3)
     assert (found.points[::2, 0] == np.arange(count) + 0.123456).all()
@@ -101,7 +101,7 @@ def test_a_mesh_of_several_blocks_is_read_as_one() -> None:
 
 def test_a_text_takes_little_more_than_its_own_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     count, block = 60_000, 20_000
-    monkeypatch.setattr(file_mesh, "BLOCK", block)
+    monkeypatch.setattr(file_mesh, "TEXT_BLOCK", block)
     text = b"".join(b"v %d 0 0\n" % k for k in range(count)) + b"f 1 2 3\n"
     tracemalloc.start()
     read_obj(text)

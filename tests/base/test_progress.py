@@ -9,7 +9,7 @@ import pytest
 
 from lamella import compute, parse_project
 from lamella.base.progress import Cancelled, Level, Report, as_details, cancelled_by, in_stage
-from lamella.command.screen import WIDTH, Screen
+from lamella.command.screen import BAR_WIDTH, Screen
 
 PROJECT = {
     "surface": {"kind": "unduloid", "neck_radius": 1.0, "bulge_radius": 3.0, "height": [0.0, 1.0]},
@@ -58,7 +58,7 @@ def test_the_bar_is_drawn_on_terminals_alone(monkeypatch: pytest.MonkeyPatch) ->
         text = stream.getvalue()
         assert "hidden" not in text
         assert "  shown\n" in text
-        assert (WIDTH // 2 * "#" + WIDTH // 2 * "." in text) == drawn
+        assert (BAR_WIDTH // 2 * "#" + BAR_WIDTH // 2 * "." in text) == drawn
         assert ("100%" in text) == drawn
         # nothing of the bar is left over
         assert text.endswith("\r" if drawn else "shown\n")

@@ -18,7 +18,7 @@ from matplotlib.path import Path as Polygon
 from fabrication.test_strips import Strip, build, random_strips, sampled
 from lamella.fabrication import make_parts, nest, read_slots, write_drawings
 from lamella.fabrication.engraving import engrave
-from lamella.fabrication.stroke_font import GLYPHS, HEIGHT, WIDTH, text_strokes, text_width
+from lamella.fabrication.stroke_font import GLYPH_HEIGHT, GLYPH_WIDTH, GLYPHS, text_strokes, text_width
 
 TESTS = Path(__file__).parents[1]
 SHEET = (2.0, 1.0)
@@ -204,7 +204,7 @@ def test_glyphs_draw_nothing_twice_and_stay_on_their_grid():
         units = Counter()
         for stroke in strokes:
             assert stroke.min() >= 0
-            assert np.all(stroke.max(axis=0) <= (WIDTH, HEIGHT))
+            assert np.all(stroke.max(axis=0) <= (GLYPH_WIDTH, GLYPH_HEIGHT))
             for a, b in pairwise(stroke):
                 steps = np.gcd.reduce(np.abs(b - a).astype(int))
                 cells = [tuple(a + (b - a) * i / steps) for i in range(steps + 1)]

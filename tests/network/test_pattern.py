@@ -20,7 +20,7 @@ from conftest import KINDS, draw_surface
 from lamella import Catenoid, Cylinder, Enneper, Helicoid, InputError, Scherk, Unduloid, compute, parse_project
 from lamella.base.material import MATERIALS
 from lamella.files.write.network_json import network_bytes, network_schema
-from lamella.network.cell_sizes import MOST_RATIO, large_cells
+from lamella.network.cell_sizes import EDGE_RATIO_MAX, large_cells
 from lamella.network.elements.element_network import ElementNetwork, element_network
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
 from lamella.network.pattern import Pattern, fitting_cells
@@ -329,7 +329,7 @@ def test_large_cells_of_the_catenoid() -> None:
     network = lamella.net(Catenoid(1.0, (-0.5, 3.2)), cells=24)
     count, places = large_cells(network)
     edges = network.cell_edges
-    assert count == (edges > MOST_RATIO * np.median(edges)).sum() > 0
+    assert count == (edges > EDGE_RATIO_MAX * np.median(edges)).sum() > 0
     assert places[0].edge == pytest.approx(edges.max())
     assert places[0].ratio == pytest.approx(edges.max() / np.median(edges))
     for place in places:

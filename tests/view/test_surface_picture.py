@@ -45,7 +45,7 @@ def test_three_panels_show_the_same_shape(closed_form: lamella.Results, tmp_path
     draw_surface(of(whole_catenoid(3), closed_form), tmp_path / "p.png")
     image = pixels(tmp_path / "p.png")
     assert image.shape[1] == 3 * 520
-    drawn = image[: -surface_picture.FOOT].min(axis=2) < 250
+    drawn = image[: -surface_picture.PICTURE_FOOT].min(axis=2) < 250
     panels = np.split(drawn, 3, axis=1)
     assert 0.2 < panels[0].mean() < 0.9
     for panel in panels[1:]:
@@ -62,7 +62,7 @@ def test_equal_axes(closed_form: lamella.Results, tmp_path: Path) -> None:
         draw_surface(of(flat, closed_form), tmp_path / "p.png", view=(-90.0, 90.0), panels=["shade"], size=size)
         image = pixels(tmp_path / "p.png")
         assert image.shape == (size[1], size[0], 3)
-        drawn = image[: -surface_picture.FOOT].min(axis=2) < 250
+        drawn = image[: -surface_picture.PICTURE_FOOT].min(axis=2) < 250
         rows, columns = (np.flatnonzero(drawn.any(axis=axis)) for axis in (1, 0))
         # from above, a cap is round
         assert np.ptp(rows) == pytest.approx(np.ptp(columns), abs=3)
@@ -129,7 +129,7 @@ def test_closed_form_says_that_it_has_no_deviation(closed_form: lamella.Results,
     draw_surface(closed_form, tmp_path / "p.png", panels=("deviation", "ratio"), size=(700, 400))
     image = pixels(tmp_path / "p.png")
     # no scale below the first panel, one below the second
-    first, second = np.split(image[-surface_picture.FOOT :], 2, axis=1)
+    first, second = np.split(image[-surface_picture.PICTURE_FOOT :], 2, axis=1)
     assert near(first, to_rgb(DIVERGING[-1]), 12) == 0
     assert near(second, to_rgb(DIVERGING[-1]), 12) > 20
 

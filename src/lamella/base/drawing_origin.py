@@ -20,10 +20,10 @@ from lamella.base.arrays import Floats
 
 Origin = tuple[float, float, float]
 
-FAR = 1000.0
+FAR_SIZES = 1000.0
 """Sizes. Nearer drawings lose three of sixteen digits, and are measured from their own origin."""
 
-LARGE = 1e4
+LARGE_COORDINATE = 1e4
 """m. Larger coordinates are told to the millimetre, not to some digits."""
 
 NOWHERE: Origin = (0.0, 0.0, 0.0)
@@ -40,7 +40,7 @@ def origin_of(points: Floats) -> Origin:
     low, high = points.min(0), points.max(0)
     size = float(np.linalg.norm(high - low))
     middle = (low + high) / 2
-    if not size > 0 or not np.abs(middle).max() > FAR * size:
+    if not size > 0 or not np.abs(middle).max() > FAR_SIZES * size:
         return NOWHERE
     step = 10.0 ** max(math.ceil(math.log10(size)), 0)
     x, y, z = (np.rint(middle / step) * step + 0.0).tolist()
@@ -60,7 +60,7 @@ def reported_from(origin: Origin) -> Iterator[None]:
 def coordinates(point: ArrayLike, digits: int = 4) -> str:
     """A point (3,) of the drawing in a message, m: "x, y, z"."""
     there = np.asarray(point, float) + _reported_from.get()
-    if np.abs(there).max() < LARGE:
+    if np.abs(there).max() < LARGE_COORDINATE:
         return ", ".join(f"{x:.{digits}g}" for x in there.tolist())
     return ", ".join(f"{x:.3f}" for x in there.tolist())
 

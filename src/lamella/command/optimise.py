@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 DRIVEN = "#d60000"
 # iterations to judge progress by, and what of the remainder a hopeful run leaves in them
-LATELY, SLOW = 10, 0.5
+LATELY, SLOW_SECONDS = 10, 0.5
 NOT_SOLVED = 1
 """Exit code of a result that is written although not all conditions hold."""
 
@@ -184,7 +184,11 @@ def _not_solved(solution: Solution) -> str:
     if solution.verdict == "left the surface":
         what = "vertices have gone over the border of the surface, where only its tangent planes go on"
     share = fallen(solution)
-    used_up = "allow more with --iterations" if share < SLOW else "ask for less, or start from a fairer mesh nearer by"
+    used_up = (
+        "allow more with --iterations"
+        if share < SLOW_SECONDS
+        else "ask for less, or start from a fairer mesh nearer by"
+    )
     remedy = {
         "iterations used up": f"{used_up}: the last {min(LATELY, state.number)} brought the remainder down to "
         f"{share:.2g} of what it was",

@@ -7,7 +7,7 @@ import sys
 from lamella.base.progress import Level, Report
 from lamella.base.wording import readable
 
-WIDTH = 24
+BAR_WIDTH = 24
 """Characters of a bar."""
 
 
@@ -43,7 +43,7 @@ class Screen:
             self._drawn = 0
 
     def _bar(self, fraction: float) -> None:
-        done = min(max(round(WIDTH * fraction), 0), WIDTH)
-        line = f"  [{done * '#'}{(WIDTH - done) * '.'}] {min(max(fraction, 0.0), 1.0):4.0%}"
+        done = min(max(round(BAR_WIDTH * fraction), 0), BAR_WIDTH)
+        line = f"  [{done * '#'}{(BAR_WIDTH - done) * '.'}] {min(max(fraction, 0.0), 1.0):4.0%}"
         print(f"\r{line}", end="", file=sys.stderr, flush=True)
         self._drawn = len(line)

@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike
 from lamella.base.arrays import Complexes, Floats, Integers
 
 # Newton's steps for the station of a point of an edge
-STEPS = 4
+STATION_STEPS = 4
 # 1/m: an arc that is a straight line
-FLAT = 1e-12
+STRAIGHT_CURVATURE = 1e-12
 # rad: how far before an arc's beginning points still count as before it, and not as beyond its end
 BEFORE = 0.2
 # of the distance from an arc against that beyond its ends, when a point's arc is chosen
@@ -107,7 +107,7 @@ class Axis:
         away = points[:, None, 0] + 1j * points[:, None, 1] - self.places
         away = away * np.exp(-1j * self.headings)
         k, ahead = self.curvatures, self.knots[:-1] - self.references
-        flat = np.abs(k) < FLAT
+        flat = np.abs(k) < STRAIGHT_CURVATURE
         bend = np.where(flat, 1.0, k)
         angle = np.sign(bend) * np.arctan2(bend * away.real, 1 - bend * away.imag)
         # from a little before the arc on all the way around
@@ -127,7 +127,7 @@ class Axis:
         """Stations of the points at `height` that are `across` ahead of the perpendiculars at stations (k,), m."""
         foot, heading = self._points(stations, np.zeros_like(stations)), self.heading(stations)
         ahead = stations + across / (1 - self.curvatures[self.piece(stations)] * height)
-        for _ in range(STEPS):
+        for _ in range(STATION_STEPS):
             off = (self._points(ahead, np.full_like(ahead, height)) - foot) * np.exp(-1j * heading)
             turn = np.cos(self.heading(ahead) - heading)
             scale = 1 - self.curvatures[self.piece(ahead)] * height

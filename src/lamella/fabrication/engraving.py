@@ -11,7 +11,7 @@ from lamella.fabrication.part import Part
 from lamella.fabrication.stroke_font import text_strokes, text_width
 
 # a line this near to an end (m) would burn along the cut
-NEAR_END = 1e-6
+ENGRAVING_NEAR_END = 1e-6
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Engraving:
 
 def engrave(part: Part) -> Engraving:
     """Lay out the engraving of a part so that none of it lies where material is removed."""
-    stations = part.nodes[(part.nodes > part.start + NEAR_END) & (part.nodes < part.end - NEAR_END)]
+    stations = part.nodes[(part.nodes > part.start + ENGRAVING_NEAR_END) & (part.nodes < part.end - ENGRAVING_NEAR_END)]
     side = 0.5 * part.height if part.from_above else -0.5 * part.height
     reach = 0.5 * part.slot_width
     if len(part.slots):
@@ -64,7 +64,7 @@ def _node_lines(part: Part, stations: Floats, side: float, reach: float) -> Floa
         # the foot is straight: off the slot's axis it leaves the circle of the centre line
         sagitta = nearest * np.sinc(0.5 * k * nearest / np.pi) * np.sin(0.5 * k * nearest)
         foot = -sagitta / np.cos(k * nearest)
-        from_edge = np.where(np.abs(nearest) <= reach + NEAR_END, foot, from_edge)
+        from_edge = np.where(np.abs(nearest) <= reach + ENGRAVING_NEAR_END, foot, from_edge)
     ends = np.stack((from_edge, np.full(len(stations), -side)), axis=1)
     return part.place(stations[:, None], ends)
 

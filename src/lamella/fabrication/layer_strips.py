@@ -19,7 +19,7 @@ from lamella.strip.lamellas import Lamellas, crossings
 from lamella.strip.layers import SIDES
 
 # samples a piece of centre line that is cut as one arc: its direction is off by d tg'' s^2 / 8, next to nothing
-STRIDE = 4
+STATION_STRIDE = 4
 # m
 LEAST_ARC = 1e-6
 
@@ -204,7 +204,7 @@ class LayerStrips:
 def _arcs(stations: Floats, bow: Floats) -> tuple[Floats, Floats]:
     """Knots (k,) every few samples, and the mean curvature in between (k - 1,)."""
     turn = _sum((bow[1:] + bow[:-1]) / 2 * np.diff(stations))
-    kept = np.unique(np.append(np.arange(0, len(stations), STRIDE), len(stations) - 1))
+    kept = np.unique(np.append(np.arange(0, len(stations), STATION_STRIDE), len(stations) - 1))
     # in a stub between two stops next to each other samples all but coincide
     kept = kept[np.append(True, np.diff(stations[kept]) > LEAST_ARC)]
     knots = stations[kept]

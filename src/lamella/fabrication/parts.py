@@ -14,7 +14,7 @@ from lamella.fabrication.defaults import default_end_distance, default_hub_radiu
 from lamella.fabrication.flat import outline_area
 from lamella.fabrication.layer_strips import LayerStrip, LayerStrips
 from lamella.fabrication.part import Part, Parts
-from lamella.fabrication.rules import ROUNDING, Rules
+from lamella.fabrication.rules import LENGTH_ROUNDING, Rules
 from lamella.fabrication.splitting import cut_stations
 from lamella.fabrication.warnings import FabricationWarnings
 from lamella.network.network import SINGULAR, Network
@@ -128,7 +128,7 @@ def _hub_radius(
     radius = min(wanted, max(strips.first_slot(crossings(network)) - 1.5 * slot_width, 0.0))
     if radius < wanted:
         notes.hub_cut = wanted
-    if radius < clear - ROUNDING:
+    if radius < clear - LENGTH_ROUNDING:
         notes.hub_needed = clear
     return radius
 
@@ -248,7 +248,7 @@ def _part(
         scale = axis.least_scale(0.5 * rules.height if family == "A" else -0.5 * rules.height)
         between = scale * np.diff(slots)
         outside = scale * min(slots[0] - start, end - slots[-1])
-        needed = 2 * slot_width - ROUNDING
+        needed = 2 * slot_width - LENGTH_ROUNDING
         if outside < 0.75 * needed or (len(between) and between.min() < needed):
             left_out, slots = len(slots), slots[:0]
             notes.unslotted.append((name, float(np.diff(nodes).min()) if len(nodes) > 1 else np.inf))

@@ -14,7 +14,7 @@ from lamella.fabrication.axis import Axis
 from lamella.files.write.dxf_text import APPLICATION
 
 # sine of the turn at a corner: edges that go over into each other do not turn at all
-SHARP = 0.5
+SHARP_CORNER = 0.5
 
 
 @dataclass(frozen=True)
@@ -88,12 +88,12 @@ def _measure(outline: Floats, marks: list[tuple[float, float]]) -> SlotReadBack:
     leave = np.arctan2(ahead[:, 1], ahead[:, 0]) - 2 * np.arctan(bulges)
     come = np.arctan2(behind[:, 1], behind[:, 0]) + 2 * np.arctan(np.roll(bulges, 1))
     turn = np.sin(leave - come)
-    reflex = turn < -SHARP
+    reflex = turn < -SHARP_CORNER
     foot = reflex & np.roll(reflex, -1)
     feet = 0.5 * (points + np.roll(points, -1, axis=0))[foot]
     start, height = 0.5 * (points[0] + points[-1]), float(np.hypot(*(points[-1] - points[0])))
     # on the edge without notches the strip's end is the first corner; notches begin with one and a reflex one
-    corners = np.flatnonzero(np.abs(turn) > SHARP)
+    corners = np.flatnonzero(np.abs(turn) > SHARP_CORNER)
     corners = corners[(corners > 0) & (corners < len(points) - 1)]
     lower = not reflex[corners[0] + 1]
     corner = int(corners[0]) if lower else int(corners[-1]) - 1

@@ -12,7 +12,8 @@ from lamella.fabrication.flat import longest_fitting
 
 # a flat ring closer to a full turn than this would leave its ends no room
 LARGEST_TURN = 1.9 * np.pi
-ROUNDING = 1e-9
+# m; what computed lengths of parts, which are metres long and cut to a tenth of a millimetre, differ by in rounding
+LENGTH_ROUNDING = 1e-9
 
 
 def clear_hub(rays: int, layers: int, offset: float, thickness: float) -> float:
@@ -143,7 +144,7 @@ class Rules:
                 "height",
             )
         nearest = self.least_end_distance
-        if not (np.isfinite(self.end_distance) and self.end_distance >= nearest - ROUNDING):
+        if not (np.isfinite(self.end_distance) and self.end_distance >= nearest - LENGTH_ROUNDING):
             raise InputError(
                 f"end_distance is {self.end_distance:g} m, which leaves less than one slot width "
                 f"({self.slot_width:g} m) beyond the last slot",

@@ -13,6 +13,7 @@ from lamella.base.arrays import Floats, Integers
 from lamella.base.result import Shown
 from lamella.base.wording import counted
 from lamella.fabrication.part import Part, Parts
+from lamella.fabrication.rules import LENGTH_ROUNDING
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -171,10 +172,9 @@ class _Plan:
 
     def fits(self, blank: _Blank) -> bool:
         """Whether a piece fits a sheet of the asked size."""
-        slack = 1e-9
         return (
-            2 * blank.half_width + 2 * self.gap <= self.length + slack
-            and blank.top - blank.bottom + 2 * self.gap <= self.width + slack
+            2 * blank.half_width + 2 * self.gap <= self.length + LENGTH_ROUNDING
+            and blank.top - blank.bottom + 2 * self.gap <= self.width + LENGTH_ROUNDING
         )
 
     def sheet(self, length: float = 0.0, width: float = 0.0) -> int:
@@ -197,14 +197,14 @@ class _Plan:
         # straight pieces that are bowed lean out of their rows on either side
         below = max(-blank.bottom for blank in blanks)
         pitch = below + max(blank.top for blank in blanks) + self.gap
-        rows_a_sheet = int((self.width - self.gap + 1e-9) / pitch)
+        rows_a_sheet = int((self.width - self.gap + LENGTH_ROUNDING) / pitch)
         free: list[tuple[float, int]] = []
         rows = 0
         sheet = 0
         places: list[tuple[int, float]] = []
         for blank in blanks:
             need = 2 * blank.half_width + self.gap
-            slot = bisect_left(free, (need - 1e-9, -1))
+            slot = bisect_left(free, (need - LENGTH_ROUNDING, -1))
             if slot < len(free):
                 room, row = free.pop(slot)
             else:
@@ -225,9 +225,9 @@ class _Plan:
         for blank in blanks:
             if below is not None:
                 y += self._rise(below, blank, bow)
-            if below is None or y + blank.top > self.width - self.gap + 1e-9:
+            if below is None or y + blank.top > self.width - self.gap + LENGTH_ROUNDING:
                 left = right + self.gap
-                if sheet < 0 or left + 2 * blank.half_width > self.length - self.gap + 1e-9:
+                if sheet < 0 or left + 2 * blank.half_width > self.length - self.gap + LENGTH_ROUNDING:
                     sheet, left = self.sheet(), self.gap
                 right = left + 2 * blank.half_width
                 y = self.gap - blank.bottom

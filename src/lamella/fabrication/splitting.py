@@ -6,6 +6,7 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 
+# of the strip: of two cuts whose distances from that of equal pieces differ by less the later one is taken
 TIE = 1e-9
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 
-WIDTH, HEIGHT, ADVANCE = 4, 6, 6
+GLYPH_WIDTH, GLYPH_HEIGHT, GLYPH_ADVANCE = 4, 6, 6
 
 _STROKES = {
     "0": "10 30 41 45 36 16 05 01 10",
@@ -67,7 +67,7 @@ GLYPHS: dict[str, tuple[Floats, ...]] = {
 
 def text_width(text: str) -> float:
     """Width of a text of letter height 1."""
-    return (ADVANCE * len(text) - (ADVANCE - WIDTH)) / HEIGHT if text else 0.0
+    return (GLYPH_ADVANCE * len(text) - (GLYPH_ADVANCE - GLYPH_WIDTH)) / GLYPH_HEIGHT if text else 0.0
 
 
 def text_strokes(text: str) -> tuple[Floats, ...]:
@@ -84,7 +84,7 @@ def text_strokes(text: str) -> tuple[Floats, ...]:
         Polylines.
     """
     return tuple(
-        (stroke + np.array([ADVANCE * place, 0.0])) / HEIGHT
+        (stroke + np.array([GLYPH_ADVANCE * place, 0.0])) / GLYPH_HEIGHT
         for place, character in enumerate(text.upper())
         for stroke in GLYPHS.get(character, ())
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from lamella.base.message import Message
 from lamella.base.wording import counted, rounded
-from lamella.fabrication.rules import ROUNDING, Rules
+from lamella.fabrication.rules import LENGTH_ROUNDING, Rules
 
 
 @dataclass
@@ -123,14 +123,14 @@ class FabricationWarnings:
 
     def ends_help(self, rules: Rules) -> bool:
         """Whether shorter ends, with their slots still in them, keep strips apart beyond the rim."""
-        return rules.end_distance - self.too_far - ROUNDING > rules.least_end_distance
+        return rules.end_distance - self.too_far - LENGTH_ROUNDING > rules.least_end_distance
 
     def _shorter(self, rules: Rules) -> str:
         """Ends so short that no strips meet beyond the rim."""
         if not self.ends_help(rules):
             return f"{self.other_cells}; or move the rim" if self.other_cells else "move the rim"
-        end_distance = rules.end_distance - self.too_far - ROUNDING
-        overhang = max(rules.rim_overhang - self.too_far - ROUNDING, 0.0)
+        end_distance = rules.end_distance - self.too_far - LENGTH_ROUNDING
+        overhang = max(rules.rim_overhang - self.too_far - LENGTH_ROUNDING, 0.0)
         lengths = f"end_distance = {rounded(end_distance, up=False):g}"
         if rules.rim_overhang:
             lengths += f" and rim_overhang = {rounded(overhang, up=False):g}"

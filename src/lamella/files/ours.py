@@ -6,7 +6,7 @@ import os
 import zlib
 from pathlib import Path
 
-HEAD = 65_536
+HEAD_BYTES = 65_536
 PNG = b"\x89PNG\r\n\x1a\n"
 _HEADER_CHUNK = 25
 _SIGNED = b"tEXtSoftware\0lamella"
@@ -22,7 +22,7 @@ def is_ours(path: Path) -> bool:
     if path.is_symlink() or not path.is_file():
         return False
     with path.open("rb") as file:
-        head = file.read(HEAD)
+        head = file.read(HEAD_BYTES)
     if not head:
         return True
     match path.suffix.lower():

@@ -30,7 +30,7 @@ LITTER = (".DS_Store", "Thumbs.db")
 JUNCTION = 0xA0000003
 """Tag of a folder that leads to another one: IO_REPARSE_TAG_MOUNT_POINT of winnt.h."""
 
-MOST_BYTES = 64_000_000
+OWN_BYTES_MAX = 64_000_000
 MOST_FOUND = 1000
 
 
@@ -156,7 +156,7 @@ def _summary(folder: Path) -> dict[str, Any] | None:
     path = folder / SUMMARY
     try:
         about = path.lstat()
-        if not stat.S_ISREG(about.st_mode) or about.st_size > MOST_BYTES:
+        if not stat.S_ISREG(about.st_mode) or about.st_size > OWN_BYTES_MAX:
             return None
         content = orjson.loads(path.read_bytes())
     except (OSError, ValueError):

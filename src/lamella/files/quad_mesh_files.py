@@ -290,13 +290,13 @@ def _rhino(
 ) -> bytes:
     import rhino3dm
 
-    from lamella.files.write.rhino_file import TOLERANCE, RhinoFile
+    from lamella.files.write.rhino_file import RHINO_TOLERANCE, RhinoFile
 
     model = RhinoFile("optimised.3dm", name, version)
     unit = next((key for key, value in RHINO_METRES.items() if abs(value / metres - 1) < 1e-9), "Meters")
     settings = model.file.Settings
     settings.ModelUnitSystem = getattr(rhino3dm.UnitSystem, unit)
-    settings.ModelAbsoluteTolerance = TOLERANCE / metres
+    settings.ModelAbsoluteTolerance = RHINO_TOLERANCE / metres
     model.add_layers({"mesh": (60, 90, 130)})
     made = rhino3dm.Mesh()
     made.Vertices.UseDoublePrecisionVertices = True

@@ -10,11 +10,11 @@ from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 
 # Gauss-Legendre points a cell to begin with, and at most
-POINTS, MOST_POINTS = 12, 768
+SERIES_POINTS, SERIES_POINTS_MAX = 12, 768
 # share of the speed's series that its last two terms may have
-TAIL = 1e-12
+SPEED_TAIL = 1e-12
 # of the parameter, when points are divided evenly
-LAST_STEP = 1e-6
+ARC_LAST_STEP = 1e-6
 
 
 class Pieces(Protocol):
@@ -56,7 +56,9 @@ class ArcLengths:
     Stretched
     """
 
-    def __init__(self, segments: Pieces, tail: float = TAIL, settle: int = 10**9, points: int = POINTS) -> None:
+    def __init__(
+        self, segments: Pieces, tail: float = SPEED_TAIL, settle: int = 10**9, points: int = SERIES_POINTS
+    ) -> None:
         count = len(segments.owner)
         self.length = np.empty(count)
         self._series: list[tuple[Floats, Floats]] = []
@@ -64,7 +66,7 @@ class ArcLengths:
         left = np.arange(count)
         reached = 0.0
         while len(left):
-            if points > MOST_POINTS:
+            if points > SERIES_POINTS_MAX:
                 raise Stretched(
                     f"{len(left)} pieces of lamella stretch too much for their length to be measured: to "
                     f"{reached:.2g} of the mean speed along them (limit {tail:g})",
@@ -117,7 +119,7 @@ def _reach(integral: Floats, speed: Floats, member: Integers, fraction: Floats, 
         goal = x - residual / _clenshaw(speed, member, x)
         before, x = x, np.where((goal >= low) & (goal <= high), goal, (low + high) / 2)
         # the next step would be its square
-        if np.abs(x - before).max() <= LAST_STEP:
+        if np.abs(x - before).max() <= ARC_LAST_STEP:
             break
     return np.asarray((x + 1) / 2)
 

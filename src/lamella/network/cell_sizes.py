@@ -12,9 +12,9 @@ from lamella.base.arrays import Floats, Integers
 from lamella.network.network import Network
 
 # a cell edge this many times as long as the median one of its family is told of
-MOST_RATIO = 4.0
+EDGE_RATIO_MAX = 4.0
 # places told at once, and how far apart they are, in lengths of their cell edges
-MOST_PLACES, APART = 3, 2.0
+MOST_PLACES, PLACES_APART = 3, 2.0
 
 
 class LargeCell(NamedTuple):
@@ -42,7 +42,7 @@ class SmallCell(NamedTuple):
     edge: float
 
 
-def large_cells(network: Network, most: float = MOST_RATIO) -> tuple[int, tuple[LargeCell, ...]]:
+def large_cells(network: Network, most: float = EDGE_RATIO_MAX) -> tuple[int, tuple[LargeCell, ...]]:
     """Cell edges more than `most` times as long as the median of their family, and where the longest of them are.
 
     Returns
@@ -65,7 +65,7 @@ def large_cells(network: Network, most: float = MOST_RATIO) -> tuple[int, tuple[
     large = np.flatnonzero(ratio > most)
     order = large[np.argsort(-ratio[large], kind="stable")]
     middle = _middles(network, first)
-    places = _apart(middle, order, APART * edges)
+    places = _apart(middle, order, PLACES_APART * edges)
     return len(large), tuple(LargeCell(middle[k], float(edges[k]), float(ratio[k])) for k in places)
 
 
@@ -84,7 +84,7 @@ def small_cells(network: Network, least: float) -> tuple[int, tuple[SmallCell, .
     small = np.flatnonzero(edges < least)
     order = small[np.argsort(edges[small], kind="stable")]
     middle = _middles(network, first)
-    apart = np.full(len(edges), APART * float(np.median(edges)))
+    apart = np.full(len(edges), PLACES_APART * float(np.median(edges)))
     return len(small), tuple(SmallCell(middle[k], float(edges[k])) for k in _apart(middle, order, apart))
 
 

@@ -11,9 +11,9 @@ from lamella.base.vectors import dots
 from lamella.surface.darboux import Darboux
 
 # samples to either side over which a lamella turns by its geodesic curvature: the kinks at elements average out
-WIDE = 3
+STENCIL_WIDTH = 3
 # of the distance of the outer samples: how far the middle one may be off the middle of them
-EVEN = 0.1
+STENCIL_EVEN = 0.1
 
 
 def turning(tangents: Floats, sideways: Floats, arclengths: Floats, offsets: Integers, closed: Booleans) -> Floats:
@@ -32,8 +32,8 @@ def turning(tangents: Floats, sideways: Floats, arclengths: Floats, offsets: Int
 def derivative(values: Floats, arclengths: Floats, offsets: Integers, closed: Booleans) -> Floats:
     """Derivatives by the arc length of values along curves, (k, c): of second order in the samples' distance.
 
-    That of the parabola through three samples: this one and those about `WIDE` to either side of it; next to an end the
-    end itself and those once and twice as far away.
+    That of the parabola through three samples: this one and those about `STENCIL_WIDTH` to either side of it; next to
+    an end the end itself and those once and twice as far away.
 
     Parameters
     ----------
@@ -50,9 +50,9 @@ def derivative(values: Floats, arclengths: Floats, offsets: Integers, closed: Bo
     count = np.diff(offsets)
     begin, end = np.repeat(offsets[:-1], count), np.repeat(offsets[1:] - 1, count)
     middle = np.arange(len(arclengths))
-    before, after = np.maximum(middle - WIDE, begin), np.minimum(middle + WIDE, end)
+    before, after = np.maximum(middle - STENCIL_WIDTH, begin), np.minimum(middle + STENCIL_WIDTH, end)
     a, c = arclengths[before], arclengths[after]
-    even = (after - before == 2 * WIDE) & (np.abs(a + c - 2 * arclengths) < EVEN * (c - a))
+    even = (after - before == 2 * STENCIL_WIDTH) & (np.abs(a + c - 2 * arclengths) < STENCIL_EVEN * (c - a))
     uneven = np.flatnonzero(~even)
     curve = np.repeat(np.arange(len(count)), count)[uneven]
     three = _three(arclengths, offsets, uneven, curve, closed[curve])
@@ -97,7 +97,7 @@ def _three(arclengths: Floats, offsets: Integers, some: Integers, curve: Integer
     keys = np.repeat(np.arange(len(all_lengths)), np.diff(offsets)) * stride + arclengths
     length, s = all_lengths[curve], arclengths[some]
     begin, end = offsets[curve], offsets[curve + 1] - 1
-    reach = WIDE * _steps(arclengths, some, begin, end)
+    reach = STENCIL_WIDTH * _steps(arclengths, some, begin, end)
     half = np.minimum(reach, length / 2)
     middle = np.where(around, s, s.clip(half, length - half))
     samples, places = np.empty((3, len(some)), np.int64), np.empty((3, len(some)))
@@ -117,7 +117,7 @@ def _steps(arclengths: Floats, some: Integers, begin: Integers, end: Integers) -
     In a stub between two stops next to each other samples are so close that their tangents differ by their errors.
     """
     step = np.zeros(len(some))
-    for k in range(-WIDE - 1, WIDE + 1):
+    for k in range(-STENCIL_WIDTH - 1, STENCIL_WIDTH + 1):
         one = np.clip(some + k, begin, end - 1)
         np.maximum(step, arclengths[one + 1] - arclengths[one], out=step)
     return step

@@ -19,7 +19,7 @@ from lamella.network.network import Network
 from lamella.surface.darboux import Darboux
 
 # samples to either side of one through which a polynomial is laid, and its degree
-BESIDE, DEGREE = 3, 4
+STENCIL_SAMPLES, STENCIL_DEGREE = 3, 4
 # part of a polynomial's term that is new over the terms before it: less is rounding
 NOTHING = 1e-13
 # lines of more samples are not judged by their first and last ones, where the polynomial is one-sided
@@ -108,7 +108,7 @@ def _unit(vectors: Floats) -> Floats:
 def _derivatives(network: Network, values: Floats, steps: Floats) -> tuple[Floats, Floats]:
     """First and second derivatives of values (k, 3) at all samples, by the length of the steps to them, (k,) m."""
     along, count = np.cumsum(steps), np.diff(network.sample_offsets)
-    half = np.minimum(BESIDE, (count - 1) // 2)
+    half = np.minimum(STENCIL_SAMPLES, (count - 1) // 2)
     first, second = np.zeros((2, *values.shape))
     for reach in np.unique(half[half > 0]).tolist():
         samples = np.flatnonzero(np.repeat(half == reach, count))
@@ -126,7 +126,7 @@ def _inner(network: Network) -> Integers:
     place = np.arange(count.sum()) - np.repeat(network.sample_offsets[:-1], count)
     last = np.repeat(count - 1, count)
     whole = np.repeat(network.closed | (count <= SHORT), count)
-    return np.flatnonzero(whole | ((place >= BESIDE) & (place <= last - BESIDE)))
+    return np.flatnonzero(whole | ((place >= STENCIL_SAMPLES) & (place <= last - STENCIL_SAMPLES)))
 
 
 def _windows(network: Network, samples: Integers, reach: int, along: Floats) -> tuple[Integers, Floats]:
@@ -146,7 +146,7 @@ def _windows(network: Network, samples: Integers, reach: int, along: Floats) -> 
 def _fitted(away: Floats, points: Floats) -> tuple[Floats, Floats]:
     """First and second derivatives, (s, 3), at 0 of the polynomials that fit points (s, w, 3) at arguments (s, w)."""
     scale = np.abs(away).max(1)
-    degree = min(DEGREE, away.shape[1] - 1)
+    degree = min(STENCIL_DEGREE, away.shape[1] - 1)
     powers = (away / scale[:, None])[:, :, None] ** np.arange(degree + 1)
     q, r = np.linalg.qr(powers)
     # of samples in one place fewer derivatives follow

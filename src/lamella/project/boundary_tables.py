@@ -26,7 +26,7 @@ from lamella.project.values import (
 )
 
 CURVE_FILES = (".3dm", ".dxf", ".json")
-MOST_PARTS = 200
+CURVE_PARTS_MAX = 200
 
 
 class CircleTable(Table):
@@ -222,7 +222,7 @@ class BoundaryTable(Table):
     part: Annotated[tuple[PartTable, ...], Field(strict=False)] | None = Field(
         default=None,
         description="Tables [[surface.boundary.part]] joined end to end.",
-        json_schema_extra={"minItems": 1, "maxItems": MOST_PARTS},
+        json_schema_extra={"minItems": 1, "maxItems": CURVE_PARTS_MAX},
     )
     place: PlaceTable | None = Field(
         default=None, description="Where a curve given by circle, file or part is put; as it is given when not given."
@@ -237,7 +237,7 @@ class BoundaryTable(Table):
     @field_validator("part", mode="before")
     @classmethod
     def _parts(cls, value: Any) -> Any:
-        return list_of_tables(value, "surface.boundary.part", MOST_PARTS)
+        return list_of_tables(value, "surface.boundary.part", CURVE_PARTS_MAX)
 
     @model_validator(mode="after")
     def _possible(self) -> BoundaryTable:

@@ -17,10 +17,10 @@ from lamella.project.messages import explain, reported_once
 from lamella.project.tables import FormFoundTable, MeshTable, Project
 
 # a project file is written by hand; anything larger is some other file
-MOST_BYTES = 5_000_000
+PROJECT_BYTES_MAX = 5_000_000
 # of a dotted key; the reader's time grows with the square of it
-MOST_PARTS = 32
-_DEEP = re.compile(rf"""(?<![\w.'"-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
+KEY_PARTS_MAX = 32
+_DEEP = re.compile(rf"""(?<![\w.'"-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{KEY_PARTS_MAX}}}""")
 # errors looked at
 MOST_ERRORS = 200
 # errors told at once
@@ -53,7 +53,7 @@ def read_project(path: str | Path) -> Project:
         if path.is_dir():
             raise InputError(f"{path} is a folder, not a project file", "name the .toml file inside it")
         with path.open("rb") as file:
-            raw = file.read(MOST_BYTES + 1)
+            raw = file.read(PROJECT_BYTES_MAX + 1)
     except FileNotFoundError:
         raise InputError(
             f"{path}: no such file", "check the path, or write a starter project with: lamella new unduloid"
@@ -61,9 +61,11 @@ def read_project(path: str | Path) -> Project:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(f"{path} cannot be read: {reason}", "check the path and its permissions") from None
-    if len(raw) > MOST_BYTES:
+    if len(raw) > PROJECT_BYTES_MAX:
         raise InputError(
-            f"more than {MOST_BYTES / 1e6:g} MB long: no project file is", "name the project's .toml file", str(path)
+            f"more than {PROJECT_BYTES_MAX / 1e6:g} MB long: no project file is",
+            "name the project's .toml file",
+            str(path),
         )
     try:
         text = unmarked(raw).decode("utf-8")
@@ -83,7 +85,7 @@ def _toml(text: str, source: str) -> dict[str, Any]:
     if deep:
         line = text.count("\n", 0, deep.start()) + 1
         raise InputError(
-            f"a key of more than {MOST_PARTS} parts: {cut(deep[0], 60)}",
+            f"a key of more than {KEY_PARTS_MAX} parts: {cut(deep[0], 60)}",
             "see `lamella new` for a project that is",
             f"{source}:{line}",
         )

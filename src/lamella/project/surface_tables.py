@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from lamella.base.drawing_origin import FAR
+from lamella.base.drawing_origin import FAR_SIZES
 from lamella.base.limits import LEAST_LENGTH, MOST_LENGTH
 from lamella.base.number_lists import Refusal, two_numbers
 from lamella.base.wording import rounded, shown
@@ -208,8 +208,8 @@ def _most_nodes() -> Any:
 def _origin() -> Any:
     return number(
         "Point of the drawing [x, y, z] that the program measures from. When not given a round point beside the "
-        f"drawing where that is more than {FAR:g} times its size away (survey coordinates), else the drawing's own "
-        "origin. Files, summary and messages are in the drawing's coordinates in any case.",
+        f"drawing where that is more than {FAR_SIZES:g} times its size away (survey coordinates), else the drawing's "
+        "own origin. Files, summary and messages are in the drawing's coordinates in any case.",
         "m",
         default=None,
         examples=[[4500000.0, 5300000.0, 0.0]],

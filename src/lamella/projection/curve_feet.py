@@ -14,7 +14,7 @@ from lamella.projection.unknowns import dot
 from lamella.surface.boundary.curve import Loop
 
 # samples along a curve among which the search starts; Newton's steps, the longest and the last, in loops
-SAMPLES, MOST_STEPS, MOST, FINE = 2000, 30, 0.01, 1e-14
+CURVE_SAMPLES, CURVE_FOOT_STEPS_MAX, CURVE_STEP_MAX, CURVE_FOOT_TOLERANCE = 2000, 30, 0.01, 1e-14
 # half the difference by which the tangent's turning is measured, in loops
 TURN = 1e-5
 
@@ -31,17 +31,17 @@ class LoopFeet:
 
     def __init__(self, loop: Loop) -> None:
         self._loop = loop
-        self._t = np.arange(SAMPLES) / SAMPLES
+        self._t = np.arange(CURVE_SAMPLES) / CURVE_SAMPLES
         self._tree = cKDTree(loop.at(self._t))
 
     def foot(self, points: Floats) -> tuple[Floats, Floats]:
         t = self._t[self._tree.query(points)[1]]
-        for _ in range(MOST_STEPS):
+        for _ in range(CURVE_FOOT_STEPS_MAX):
             off, tangent = points - self._loop.at(t), self._loop.tangent(t)
             bend = (self._loop.tangent(t + TURN) - self._loop.tangent(t - TURN)) / (2 * TURN * self._loop.length)
             step = dot(off, tangent)[:, 0] / np.maximum(1 - dot(off, bend)[:, 0], 0.2) / self._loop.length
-            t = t + np.clip(step, -MOST, MOST)
-            if np.abs(step).max(initial=0.0) < FINE:
+            t = t + np.clip(step, -CURVE_STEP_MAX, CURVE_STEP_MAX)
+            if np.abs(step).max(initial=0.0) < CURVE_FOOT_TOLERANCE:
                 break
         return self._loop.at(t), self._loop.tangent(t)
 
@@ -74,12 +74,12 @@ class SplineFeet:
         length = spline.x[-1]
         sampled = np.linspace(0, length, 4 * len(spline.x))
         t = sampled[cKDTree(spline(sampled)).query(points)[1]]
-        for _ in range(MOST_STEPS):
+        for _ in range(CURVE_FOOT_STEPS_MAX):
             off, first, second = points - spline(t), spline(t, 1), spline(t, 2)
             speed = dot(first, first)[:, 0]
             step = dot(off, first)[:, 0] / np.maximum(speed - dot(off, second)[:, 0], 0.2 * speed)
-            t = t + np.clip(step, -MOST * length, MOST * length)
-            if np.abs(step).max(initial=0.0) < FINE * length:
+            t = t + np.clip(step, -CURVE_STEP_MAX * length, CURVE_STEP_MAX * length)
+            if np.abs(step).max(initial=0.0) < CURVE_FOOT_TOLERANCE * length:
                 break
         tangent = spline(t, 1)
         return spline(t), tangent / np.linalg.norm(tangent, axis=1)[:, None]

@@ -17,7 +17,7 @@ from lamella.surface.element.surface import ElementSurface
 from lamella.surface.points import SurfacePoints
 
 # places along each parameter among which the search on a closed form starts; Newton's steps
-SAMPLES, MOST_STEPS, FINE = 120, 30, 1e-14
+GRID_SAMPLES, FOOT_STEPS_MAX, FOOT_TOLERANCE = 120, 30, 1e-14
 
 
 class Foot(NamedTuple):
@@ -79,13 +79,13 @@ class ClosedFormFeet:
 
     @cached_property
     def _samples(self) -> tuple[Complexes, cKDTree]:
-        where = self._surface.places(SAMPLES, SAMPLES)[0]
+        where = self._surface.places(GRID_SAMPLES, GRID_SAMPLES)[0]
         return where, cKDTree(self._surface.at(where).position)
 
     def _at_feet(self, points: Floats) -> SurfacePoints:
         samples, tree = self._samples
         where = samples[tree.query(points)[1]]
-        for _ in range(MOST_STEPS):
+        for _ in range(FOOT_STEPS_MAX):
             at = self._surface.at(where)
             off = points - at.position
             # (I - s S) dt is the change of the tangential miss, s the signed distance and S the shape operator
@@ -96,7 +96,7 @@ class ClosedFormFeet:
             step = np.where(sound, (a * residual + np.conj(b * residual)) / np.where(sound, determinant, 1), residual)
             change = step / self._surface.metric(where)
             where = where + change / np.maximum(1, np.abs(change) / 0.3)
-            if np.abs(change).max(initial=0) < FINE:
+            if np.abs(change).max(initial=0) < FOOT_TOLERANCE:
                 break
         return self._surface.at(where)
 

@@ -12,7 +12,7 @@ from lamella.projection.star_measures import circle_angles, star_spheres
 from lamella.strip.planarity import planarity_score
 
 # stars whose sphere is larger than this many mean edges are planes as far as double precision can tell
-FLATTEST = 1e7
+PLANE_RADIUS = 1e7
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def mesh_figures(mesh: QuadMesh, before: QuadMesh | None = None) -> MeshFigures:
     if len(inner):
         stars = star_spheres(mesh, inner)
         bend = np.abs(stars.curvature)
-        radius = np.where(bend * mesh.mean_edge * FLATTEST > 1, 1 / np.where(bend > 0, bend, 1), np.nan)
+        radius = np.where(bend * mesh.mean_edge * PLANE_RADIUS > 1, 1 / np.where(bend > 0, bend, 1), np.nan)
         measured = (stars.deviation, stars.planarity, stars.curvature, radius, circle_angles(mesh, inner))
         for name, values in zip(names, measured, strict=True):
             vertices[name][inner] = values

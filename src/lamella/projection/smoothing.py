@@ -8,12 +8,12 @@ from lamella.base.sparse import Backend, SymmetricPattern
 from lamella.projection.constraints.fairness import fairness
 from lamella.projection.quad_mesh import QuadMesh
 
-# third differences against staying: waves of L edges are damped where FAIR (2 pi / L)^3 > 1, about 9 edges; shorter
-# ones are noise, longer ones shape
-FAIR = 3.0
+# third differences against staying: waves of L edges are damped where SMOOTHING_FAIRNESS (2 pi / L)^3 > 1, about 9
+# edges; shorter ones are noise, longer ones shape
+SMOOTHING_FAIRNESS = 3.0
 
 
-def smoothed(mesh: QuadMesh, *, fair: float = FAIR, backend: Backend | None = None) -> QuadMesh:
+def smoothed(mesh: QuadMesh, *, fair: float = SMOOTHING_FAIRNESS, backend: Backend | None = None) -> QuadMesh:
     r"""The net with the least sum of third differences and of moves.
 
     .. math:: \sum_i |v_i - v_i^0|^2 + f^2 \sum_s |-v_{s_0} + 3 v_{s_1} - 3 v_{s_2} + v_{s_3}|^2 \to \min

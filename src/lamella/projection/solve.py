@@ -25,11 +25,11 @@ from lamella.projection.unknowns import Block, Layout
 
 DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-6, 1e-10, 1e6
 # line search lengths that tell a good linearisation from a bad one, and what follows for the damping
-GOOD, POOR, LOWER, RAISE = 0.6, 0.3, 0.1, 10.0
+GOOD, POOR, DAMPING_LOWER, RAISE = 0.6, 0.3, 0.1, 10.0
 # a faded weight below this share of its first is dropped
 FAINT = 1e-4
 # a step that leaves more than this share of the sum of squares asks for second derivatives
-SLOW = 0.3
+SLOW_DECREASE = 0.3
 # stagnation: over so many iterations the sum of squares falls by less than this and steps do not shrink to this share
 IDLE, DECREASE, SHRINK = 4, 1e-3, 0.5
 
@@ -150,7 +150,7 @@ class _Ending:
 
     def slow(self, state: Iteration, before: Iteration, weights: Sequence[float]) -> bool:
         """Whether residuals stay that are too large for Gauss and Newton: their second order counts then."""
-        return self._steady(weights) and state.objective > SLOW * before.objective
+        return self._steady(weights) and state.objective > SLOW_DECREASE * before.objective
 
     def verdict(self, state: Iteration, before: Sequence[Iteration], weights: Sequence[float]) -> Verdict | None:
         """How it ends here; None: it goes on."""
@@ -211,8 +211,8 @@ def _next_damping(before: Iteration, objective: float) -> float:
         return min(before.damping * RAISE, MOST_DAMPING)
     if before.length <= GOOD:
         return before.damping
-    share = np.sqrt(objective / before.objective) if before.objective > 0 else LOWER
-    return max(before.damping * min(LOWER, float(share)), LEAST_DAMPING)
+    share = np.sqrt(objective / before.objective) if before.objective > 0 else DAMPING_LOWER
+    return max(before.damping * min(DAMPING_LOWER, float(share)), LEAST_DAMPING)
 
 
 def _rms(numbers: Floats) -> float:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 Drawn = TypeVar("Drawn", SurfaceMesh, Network)
 
-COARSE_MESH = 7_500
+COARSE_MESH_POINTS = 7_500
 """Vertices below which the report's mesh of a surface of curved elements is made anew, with `REPORT_SAG`."""
 
 REPORT_SAG = 2.5e-4
@@ -122,7 +122,7 @@ def report_data(results: Results) -> ReportData:
 
 def _report_mesh(results: Results) -> SurfaceMesh:
     """The mesh of the report: finer than the files' where that is coarse, so that curved rims look curved."""
-    if isinstance(results.surface, ElementSurface) and len(results.mesh.points) < COARSE_MESH:
+    if isinstance(results.surface, ElementSurface) and len(results.mesh.points) < COARSE_MESH_POINTS:
         return results.surface.mesh(REPORT_SAG)
     return results.mesh
 

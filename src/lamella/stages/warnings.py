@@ -14,7 +14,7 @@ from lamella.base.material import Material
 from lamella.base.message import Message
 from lamella.base.vectors import diagonal
 from lamella.base.wording import counted, rounded
-from lamella.network.cell_sizes import MOST_RATIO, large_cells, small_cells
+from lamella.network.cell_sizes import EDGE_RATIO_MAX, large_cells, small_cells
 from lamella.network.density_request import NODES_MAX
 from lamella.network.network import SINGULAR, Network
 from lamella.stages.keys import with_keys
@@ -31,7 +31,7 @@ SLENDER = 2500.0
 # of the strip's height: nodes closer to each other are reported
 SMALL = 0.1
 # of the strip's height: one lower than that is another design, and is not offered
-LOWER = 0.5
+LOWER_SHARE = 0.5
 # of SMALL: shorter edges than this are in no net that is offered, so that there are none on finer elements either
 CLEARLY = 1.2
 # share of the radius of curvature beyond which half the strip's height is no small strip any more
@@ -130,7 +130,7 @@ def network_cautions(
         places = "; ".join(f"{one.edge:.3g} m at ({coordinates(one.point, 3)}) m" for one in large)
         yield Message(
             "cells_large",
-            f"{count} cell edge{'s are' if count > 1 else ' is'} over {MOST_RATIO:g} x the median, up to "
+            f"{count} cell edge{'s are' if count > 1 else ' is'} over {EDGE_RATIO_MAX:g} x the median, up to "
             f"{large[0].ratio:.3g} x ({places}): {_why_large(network, traced, large[0].ratio)}",
         )
     if network.pattern.kind == "lamellas":
@@ -166,17 +166,17 @@ def _small_cells(
             f"{counted(count, 'cell edge')} {are} shorter than a tenth of the strip's height ({100 * height:.3g} mm), "
             f"down to {1000 * small[0].edge:.2g} mm ({places}): a lamella ends just behind a node there"
             + (f"; {other}" if other else "")
-            + (f"; a strip up to {lower:g} mm high has room there" if lower >= 1000 * LOWER * height else ""),
+            + (f"; a strip up to {lower:g} mm high has room there" if lower >= 1000 * LOWER_SHARE * height else ""),
         )
 
 
 def _why_large(network: Network, traced: bool, ratio: float) -> str:
     """What makes cells large, and what to do about it."""
-    finer = (ratio / MOST_RATIO) ** _slowness(network)
+    finer = (ratio / EDGE_RATIO_MAX) ** _slowness(network)
     more = ""
     if len(network.node_points) * finer**2 < NODES_MAX:
         cells = 2 * int(np.ceil(network.cells * finer / 2))
-        more = f"{cells} cells make them about {MOST_RATIO:g} x the median of now, or "
+        more = f"{cells} cells make them about {EDGE_RATIO_MAX:g} x the median of now, or "
     if not traced:
         return (
             f"the surface is nearly planar or spherical there; {more}a boundary that bends it more makes them shorter"

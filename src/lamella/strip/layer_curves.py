@@ -25,7 +25,7 @@ from lamella.surface.element.places import Places
 from lamella.surface.surface import Surface
 
 # Runge-Kutta steps from one layer to the next
-STEPS = 2
+LAYER_STEPS = 2
 # of the distance to the singular node at a ray's end: a layer that would be farther from its ray is not followed there
 NEAR_ZERO = 0.5
 # 1/sqrt(m): mu of an umbilic itself
@@ -120,8 +120,8 @@ def _near_zero(network: Network) -> Floats:
 
 def _moved(charts: Charts, start: Places, towards: Floats, lengths: Floats) -> ChartSample:
     """What is seen where lamellas that leave places (n,) towards directions (n, 3) have isothermic lengths (n,)."""
-    where, step = start, (lengths / STEPS)[:, None]
-    for _ in range(STEPS):
+    where, step = start, (lengths / LAYER_STEPS)[:, None]
+    for _ in range(LAYER_STEPS):
 
         def rate(local: Floats, element: Integers = where.element) -> Floats:
             return _rate(charts.evaluate(Places(element, local)), towards)

@@ -16,7 +16,7 @@ from lamella.strip.sections import bearable, bearable_scale
 
 MEASURES: tuple[Literal["thickness", "height"], ...] = ("thickness", "height")
 # materials of the largest strength over stiffness whose utilisation is computed
-MOST_TRIED = 3
+MATERIALS_TRIED_MAX = 3
 
 Used = Callable[[Section, Material], float]
 """The largest utilisation of the strips of a section and material."""
@@ -81,7 +81,7 @@ def _of_known(network: Network, lamellas: Lamellas, kind: Mapping[str, Material]
     """The best known material, with the section it stands with, in words."""
     section = lamellas.section
     # bending and torsion go with the stiffness
-    first = sorted(kind, key=lambda name: -kind[name].strength / kind[name].youngs_modulus)[:MOST_TRIED]
+    first = sorted(kind, key=lambda name: -kind[name].strength / kind[name].youngs_modulus)[:MATERIALS_TRIED_MAX]
     share = {name: used(section, kind[name]) for name in first}
     best = min(first, key=share.__getitem__)
     name = f"material = {best!r}"

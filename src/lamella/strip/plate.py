@@ -29,7 +29,7 @@ from lamella.base.arrays import Floats
 from lamella.base.material import Material
 
 # of x = beta h / 2: below it the strip stays flat across within rounding
-FLAT = 1e-3
+FLAT_ACROSS = 1e-3
 # isotropic materials; others (timber) are taken without lateral contraction
 MOST_POISSON = 0.5
 
@@ -67,9 +67,9 @@ def across(
     """
     nu, kg = poisson_ratio(material), np.abs(kg)
     x = _reach(material, height, thickness, kg)
-    bent = np.maximum(x, FLAT)
+    bent = np.maximum(x, FLAT_ACROSS)
     shape, spread = _held(bent, share) if held else _free(bent, share)
-    flat = x < FLAT
+    flat = x < FLAT_ACROSS
     limit = share**2 / 2 - (0.0 if held else 1 / 6)
     stress = material.youngs_modulus * (tg**2 + nu * kg**2) * height**2 / 4 * np.where(flat, limit, shape)
     rise = np.where(flat, 0.0, (1 - spread) / np.where(flat, 1.0, kg))
@@ -79,11 +79,11 @@ def across(
 def mean_tension(material: Material, height: float, thickness: float, kg: Floats, tg: Floats) -> Floats:
     """Mean over the height of the membrane stress with the centre line held, Pa, (k,); E h^2 tg^2 / 24 at kg = 0."""
     nu, x = poisson_ratio(material), _reach(material, height, thickness, kg)
-    bent = np.maximum(x, FLAT)
+    bent = np.maximum(x, FLAT_ACROSS)
     ch, sh, c, s, _ = _functions(bent, 1.0)
     # from the jump of the shear force on the centre line
     share = (ch * s - sh * c) * np.exp(-bent) / (8 * bent**3 * (ch**2 + c**2 * np.exp(-2 * bent)))
-    strain = (tg**2 + nu * kg**2) * height**2 * np.where(x < FLAT, 1 / 24, share)
+    strain = (tg**2 + nu * kg**2) * height**2 * np.where(x < FLAT_ACROSS, 1 / 24, share)
     return np.asarray(material.youngs_modulus * strain)
 
 

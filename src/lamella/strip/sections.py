@@ -10,9 +10,9 @@ from lamella.base.wording import rounded
 from lamella.strip.lamellas import Section
 
 # of the measure found, what is offered: utilisations are compared with 1
-MARGIN = 0.995
+OFFERED_UTILISATION = 0.995
 # of the present measure, below which it is no remedy
-LEAST = 0.2
+MEASURE_SHARE_MIN = 0.2
 HALVINGS = 6
 # a section of this share of the present one in height and thickness is no strip any more
 LEAST_SCALE = 1e-3
@@ -40,7 +40,7 @@ def bearable(
         None: a fifth of the present one would not do, or the strip would no more stand on edge.
     """
     present = float(getattr(section, measure))
-    low = present * LEAST
+    low = present * MEASURE_SHARE_MIN
     if measure == "height":
         low = max(low, 2.5 * section.thickness)
     high = present
@@ -54,7 +54,7 @@ def bearable(
     for _ in range(HALVINGS):
         middle = (low * high) ** 0.5
         low, high = (middle, high) if fits(middle) else (low, middle)
-    return rounded(MARGIN * low, up=False)
+    return rounded(OFFERED_UTILISATION * low, up=False)
 
 
 def bearable_scale(section: Section, utilisation: Callable[[Section], float]) -> tuple[float, float] | None:
@@ -74,5 +74,5 @@ def bearable_scale(section: Section, utilisation: Callable[[Section], float]) ->
     for _ in range(HALVINGS):
         middle = (low * high) ** 0.5
         low, high = (middle, high) if utilisation(scaled(middle)) <= 1 else (low, middle)
-    small = scaled(MARGIN * low)
+    small = scaled(OFFERED_UTILISATION * low)
     return rounded(small.height, up=False), rounded(small.thickness, up=False)

@@ -14,7 +14,7 @@ from lamella.base.arrays import Complexes, Floats, Integers
 # points of the finite-difference formula: error O(h^4) inside, O(h^3) at the ends
 STENCIL = 5
 # samples worked on at a time, so that the stencils stay in the processor's cache
-BLOCK = 8192
+UNROLL_BLOCK = 8192
 
 
 def _derivative_weights(t: Floats, own: Integers) -> tuple[Floats, Floats]:
@@ -62,7 +62,7 @@ def _normal_curvature(points: Floats, normals: Floats, offsets: Integers) -> tup
     blocks = [
         (w, block)
         for w in np.unique(width[width >= 3]).tolist()
-        for block in np.array_split(np.flatnonzero(width == w), 1 + np.count_nonzero(width == w) // BLOCK)
+        for block in np.array_split(np.flatnonzero(width == w), 1 + np.count_nonzero(width == w) // UNROLL_BLOCK)
     ]
     for w, at in blocks:
         first = np.clip(at - w // 2, offsets[curve[at]], offsets[curve[at] + 1] - w)

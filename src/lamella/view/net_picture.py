@@ -31,7 +31,7 @@ LIFT = 0.3
 # parts each quad is drawn in, along and across: colours of vertices change inside it
 PARTS = 3
 # height of a panel over its width; pixels for title and scale; width of a panel, pixels
-TALLEST, FLATTEST, HEAD, FOOT, WIDTH = 1.6, 0.55, 34, 66, 460
+PANEL_TALLEST, PANEL_FLATTEST, PANEL_HEAD, PANEL_FOOT, PANEL_WIDTH = 1.6, 0.55, 34, 66, 460
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def draw_nets(
     path: Path,
     *,
     view: tuple[float, float] = (-60.0, 24.0),
-    width: int = WIDTH,
+    width: int = PANEL_WIDTH,
 ) -> None:
     """Draw nets side by side as a PNG file, all seen by one camera, at one scale and with one scale of colours.
 
@@ -90,15 +90,15 @@ def draw_nets(
     flats = [camera.project(panel.mesh.vertices)[0] for panel in panels]
     # each net in the middle of its panel, all at the scale of the largest
     sizes = np.array([np.ptp(flat, axis=0) for flat in flats]).max(0)
-    height = int(width * np.clip(sizes[1] / sizes[0], FLATTEST, TALLEST))
+    height = int(width * np.clip(sizes[1] / sizes[0], PANEL_FLATTEST, PANEL_TALLEST))
     scale = 1.05 * max(sizes[0] / width, sizes[1] / height)
-    whole = (width * len(panels), height + HEAD + FOOT)
+    whole = (width * len(panels), height + PANEL_HEAD + PANEL_FOOT)
     found = _colours(panels)
     # a line is in front of the faces it belongs to
     reach = LIFT * float(np.median([panel.mesh.mean_edge for panel in panels]))
     with new_figure(whole) as figure:
         for k, (panel, flat) in enumerate(zip(panels, flats, strict=True)):
-            axes = figure.add_axes((k / len(panels), FOOT / whole[1], 1 / len(panels), height / whole[1]))
+            axes = figure.add_axes((k / len(panels), PANEL_FOOT / whole[1], 1 / len(panels), height / whole[1]))
             axes.set_axis_off()
             middle = (flat.min(0) + flat.max(0)) / 2
             axes.set_xlim(middle[0] - scale * width / 2, middle[0] + scale * width / 2)
@@ -107,7 +107,13 @@ def draw_nets(
             _put(axes, panel, colours, camera, reach)
             middle_share = (k + 0.5) / len(panels)
             figure.text(
-                middle_share, 1 - HEAD / 2 / whole[1], panel.title, ha="center", va="center", fontsize=12, color=INK
+                middle_share,
+                1 - PANEL_HEAD / 2 / whole[1],
+                panel.title,
+                ha="center",
+                va="center",
+                fontsize=12,
+                color=INK,
             )
             if colours is not None:
                 _explain(figure, colours, middle_share, 0.6 / len(panels), whole[1])

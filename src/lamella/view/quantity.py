@@ -14,11 +14,11 @@ from lamella.surface.mesh import SurfaceMesh
 SEQUENTIAL = ("#26456e", "#3f7fa0", "#7fb5a5", "#d5d49a", "#f3efd0")
 DIVERGING = ("#7b3f8c", "#b99ac4", "#e4e3e6", "#9cc3a5", "#2f7d4a")
 
-ROUNDING = 1e-9
+QUANTITY_ROUNDING = 1e-9
 """H - H0 up to this share of the curvature scale is rounding, not a property of the surface."""
 CONSTANT = 1e-6
 """Other quantities that vary by less than this share of the scale are constant."""
-FLATTEST = 1e-3
+CONSTANT_SHARE = 1e-3
 """Least curvature scale, over 1 / the diagonal of the bounding box: a plane's is rounding."""
 FLAT = 1e-6
 """Where both principal curvatures are below this share of the scale, their ratio says nothing."""
@@ -84,7 +84,7 @@ def surface_quantities(mesh: SurfaceMesh, mean_curvature: float) -> dict[str, Qu
     """
     larger = np.maximum(np.abs(mesh.k1), np.abs(mesh.k2))
     area = _vertex_areas(mesh)
-    flattest = FLATTEST / diagonal(mesh.points)
+    flattest = CONSTANT_SHARE / diagonal(mesh.points)
     scale = max(flattest, _usual(larger, area))
     found = (
         _deviation(mesh.mean_curvature - mean_curvature, area, mean_curvature, scale),
@@ -100,7 +100,7 @@ def _deviation(values: Floats, area: Floats, mean_curvature: float, scale: float
     named = ("deviation", "Deviation H − H0", "1/m")
     least, most = _extent(values)
     h0 = f"H0 = {mean_curvature:.4g} 1/m".replace("-", "−")
-    if not max(-least, most) > ROUNDING * scale:
+    if not max(-least, most) > QUANTITY_ROUNDING * scale:
         # colours would show the last digits of the arithmetic
         return Quantity(*named, f"to rounding, {h0}", values, 0.0, 0.0, least, most, (DIVERGING[2],))
     limit = _limit(np.abs(values), area)

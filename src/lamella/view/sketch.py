@@ -26,11 +26,11 @@ from lamella.view.picture import surface_quads
 
 VIEW = (-60.0, 22.0)
 # pixels
-WIDTH, TALLEST, MARGIN = 420, 320, 6
+SKETCH_WIDTH, SKETCH_HEIGHT_MAX, SKETCH_MARGIN = 420, 320, 6
 # of the surface for a sketch, see `Surface.mesh`; faces that are filled one by one, samples of a net that are drawn
-TOLERANCE, MOST_FACES, MOST_SAMPLES = 0.02, 1_200, 6_000
+SKETCH_TOLERANCE, MOST_FACES, MOST_SAMPLES = 0.02, 1_200, 6_000
 # parts drawn below each other; points of a loop
-MOST_PARTS, LOOP_SAMPLES = 8, 200
+SKETCH_PARTS_MAX, SKETCH_SAMPLES = 8, 200
 # from little to all of the strength
 SCALE = ("#0d0887", "#6a00a8", "#b12a90", "#e16462", "#fca636")
 PLAIN = "#d9e0e7"
@@ -57,11 +57,11 @@ def svg(result: object) -> str:
     points = np.concatenate([line for layer in layers for line in layer.lines])
     low, high = points.min(0), points.max(0)
     size = np.maximum(high - low, 1e-9 * float((high - low).max()) or 1.0)
-    scale = float(min((WIDTH - 2 * MARGIN) / size[0], (TALLEST - 2 * MARGIN) / size[1]))
-    width, height = (round(scale * float(x)) + 2 * MARGIN for x in size)
+    scale = float(min((SKETCH_WIDTH - 2 * SKETCH_MARGIN) / size[0], (SKETCH_HEIGHT_MAX - 2 * SKETCH_MARGIN) / size[1]))
+    width, height = (round(scale * float(x)) + 2 * SKETCH_MARGIN for x in size)
 
     def written(line: Floats) -> str:
-        places = np.column_stack([line[:, 0] - low[0], high[1] - line[:, 1]]) * scale + MARGIN
+        places = np.column_stack([line[:, 0] - low[0], high[1] - line[:, 1]]) * scale + SKETCH_MARGIN
         return " ".join(f"{x:.1f},{y:.1f}" for x, y in places.tolist())
 
     drawn = []
@@ -88,7 +88,7 @@ def _layers(result: object) -> Iterator[Layer]:
 @_layers.register(ElementSurface)
 @_layers.register(ClosedForm)
 def _(surface: ElementSurface | ClosedForm) -> Iterator[Layer]:
-    return _layers(surface.mesh(TOLERANCE))
+    return _layers(surface.mesh(SKETCH_TOLERANCE))
 
 
 @_layers.register(SurfaceMesh)
@@ -142,7 +142,7 @@ def _singular(network: Network) -> Iterator[Layer]:
 
 @_layers.register(Loop)
 def _(loop: Loop) -> Iterator[Layer]:
-    points = loop.at(np.linspace(0.0, 1.0, LOOP_SAMPLES + 1))
+    points = loop.at(np.linspace(0.0, 1.0, SKETCH_SAMPLES + 1))
     yield Layer([Camera.around(points, *VIEW).project(points)[0]], INK, 1.2)
 
 
@@ -160,7 +160,7 @@ def _(part: Part) -> Iterator[Layer]:
 
 @_layers.register(Parts)
 def _(parts: Parts) -> Iterator[Layer]:
-    drawn = [part_curves(part, x, y, marks=False) for part, x, y in rows(Parts(parts.parts[:MOST_PARTS], ()))]
+    drawn = [part_curves(part, x, y, marks=False) for part, x, y in rows(Parts(parts.parts[:SKETCH_PARTS_MAX], ()))]
     yield Layer([curve.points for curves in drawn for curve in curves], LAYER_COLOURS["CUT"], 0.6, PLAIN)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 from lamella.surface.element.lagrange import EDGES
-from lamella.surface.element.surface import MOST_PARTS, ElementSurface
+from lamella.surface.element.surface import EDGE_PARTS_DRAWN_MAX, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.camera import Camera
 from lamella.view.figure import INK, new_figure, require_matplotlib, save
@@ -41,7 +41,7 @@ TRIANGLES = 40_000
 # sag of other surfaces' meshes over the diagonal of the bounding box: a tenth of a pixel
 PICTURE_SAG = 1e-4
 # pixels: below a panel for its scale and caption; around and between panels
-FOOT, GAP = 84, 22
+PICTURE_FOOT, GAP = 84, 22
 
 
 def draw_surface(
@@ -89,7 +89,12 @@ def draw_surface(
     with new_figure((width, height)) as figure:
         share = 1 / len(panels)
         for k, panel in enumerate(panels):
-            box = (k * share + GAP / width / 2, FOOT / height, share - GAP / width, 1 - (FOOT + GAP / 2) / height)
+            box = (
+                k * share + GAP / width / 2,
+                PICTURE_FOOT / height,
+                share - GAP / width,
+                1 - (PICTURE_FOOT + GAP / 2) / height,
+            )
             axes = figure.add_axes(box)
             scale = scene.framed(axes, width * box[2], height * box[3])
             quantity = quantities.get(panel)
@@ -113,7 +118,7 @@ def _sampled(results: Results) -> tuple[SurfaceMesh, Floats, Floats]:
         mesh = surface.mesh(PICTURE_SAG)
         return mesh, _open_edges(mesh), np.empty((0, 2, 3))
     elements = surface.connectivity.elements
-    parts = int(np.clip(np.ceil(np.sqrt(TRIANGLES / len(elements))), 1, MOST_PARTS))
+    parts = int(np.clip(np.ceil(np.sqrt(TRIANGLES / len(elements))), 1, EDGE_PARTS_DRAWN_MAX))
     step = np.linspace(0, 1, parts + 1)[:, None]
     corners = np.array([[0.0, 0], [1, 0], [0, 1]])
     neighbours = surface.connectivity.neighbours
@@ -273,14 +278,14 @@ def _fitting_size(scene: _Scene, panels: int) -> tuple[int, int]:
     """520 pixels a panel, and the height that the surface then has, within reason."""
     width, height = np.ptp(scene.flat, axis=0)
     picture = np.clip((520 - GAP) * height / width, 260, 760)
-    return 520 * panels, round(picture + FOOT + GAP / 2)
+    return 520 * panels, round(picture + PICTURE_FOOT + GAP / 2)
 
 
 def _explain(
     figure: Figure, box: tuple[float, float, float, float], height: int, quantity: Quantity | None, caption: str
 ) -> None:
     """Write what a panel shows below it, with its scale."""
-    middle, top = box[0] + box[2] / 2, FOOT / height
+    middle, top = box[0] + box[2] / 2, PICTURE_FOOT / height
     if quantity is None or quantity.is_constant:
         text = caption if quantity is None else f"{quantity.label} = {_number(quantity.low)} {quantity.remark}"
         figure.text(middle, top * 0.53, text, ha="center", va="center", fontsize=11.5, color=INK)

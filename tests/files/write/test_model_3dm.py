@@ -21,7 +21,7 @@ from scipy.interpolate import BSpline
 from files.write.test_samples import RADIUS, cylinder_mesh, cylinder_net, helix, inward
 from lamella.files.write import model_3dm
 from lamella.files.write.model_3dm import model_bytes
-from lamella.files.write.splines import RELATIVE_TOLERANCE, fit_spline
+from lamella.files.write.splines import SPLINE_TOLERANCE, fit_spline
 
 NODE_LAYERS = ["nodes regular", "nodes boundary", "nodes singular", "nodes seam"]
 TESTS = Path(__file__).parents[2]
@@ -105,11 +105,11 @@ def test_centre_lines_pass_through_the_samples_and_between_them_along_the_helix(
         assert (0, length) == (curve.Domain.T0, curve.Domain.T1)
         between = np.linspace(0, length, 331)
         points = np.array([xyz(curve.PointAt(s)) for s in between])
-        assert np.linalg.norm(points - exact(k, between), axis=1).max() <= 2 * RELATIVE_TOLERANCE * length
+        assert np.linalg.norm(points - exact(k, between), axis=1).max() <= 2 * SPLINE_TOLERANCE * length
         span = slice(network.sample_offsets[k], network.sample_offsets[k + 1])
         at_samples = np.array([xyz(curve.PointAt(s)) for s in network.sample_arclengths[span]])
         errors = np.linalg.norm(at_samples - network.sample_points[span], axis=1)
-        assert errors.max() <= RELATIVE_TOLERANCE * length
+        assert errors.max() <= SPLINE_TOLERANCE * length
         assert errors[[0, -1]].max() <= 1e-14
         assert len(curve.Points) < 0.6 * len(errors)
 
@@ -131,7 +131,7 @@ def test_strips_are_ruled_along_the_normals() -> None:
         for across in (-strips.section.height / 2, 0.02, strips.section.height / 2):
             points = np.array([xyz(strip.PointAt(s, across)) for s in along])
             wanted = centre + across * inward(centre)
-            assert np.linalg.norm(points - wanted, axis=1).max() <= 2 * RELATIVE_TOLERANCE * length
+            assert np.linalg.norm(points - wanted, axis=1).max() <= 2 * SPLINE_TOLERANCE * length
 
 
 def test_layers_stand_beside_the_centre_lines() -> None:

@@ -140,7 +140,7 @@ def test_a_limit_that_is_reached_holds() -> None:
 def test_the_change_that_a_refusal_offers_does(monkeypatch: pytest.MonkeyPatch) -> None:
     """The sketch takes 0.11 m: what is offered instead of 0.04 m, followed to the letter, closes it within that."""
     # on elements as coarse as the final ones
-    monkeypatch.setattr("lamella.network.adjust.adjust.COARSE", 2e-2)
+    monkeypatch.setattr("lamella.network.adjust.adjust.ADJUSTING_TOLERANCE", 2e-2)
     tables = sketch(1)
     rim = tables["surface"]["boundary"][0]
     rim["adjust"] = {"points": 0.04}

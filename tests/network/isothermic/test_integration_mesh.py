@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lamella.network.isothermic.integration_mesh import make_integration_mesh
-from lamella.network.isothermic.umbilic_patch import RINGS, umbilic_patch
+from lamella.network.isothermic.umbilic_patch import PATCH_RINGS, umbilic_patch
 from lamella.surface.element.bisect import bisect, whole
 from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.quadrature import triangle_rule
@@ -20,7 +20,7 @@ def test_rosette_is_a_disc_of_wedges_between_the_principal_lines(order: int) -> 
     argument, radius = 0.7, 2.0
     rose = umbilic_patch(order, argument, radius, 4)
     wedges = 2 * (order + 2)
-    assert len(rose.faces) == wedges * RINGS**2
+    assert len(rose.faces) == wedges * PATCH_RINGS**2
     ends = np.sort(np.stack([rose.faces, np.roll(rose.faces, -1, 1)], 2).reshape(-1, 2), 1)
     edges, times = np.unique(ends, axis=0, return_counts=True)
     assert len(rose.vertices) - len(edges) + len(rose.faces) == 1
@@ -34,7 +34,7 @@ def test_rosette_is_a_disc_of_wedges_between_the_principal_lines(order: int) -> 
     a, b, c = rose.vertices[rose.faces].T
     assert (((b - a).conj() * (c - a)).imag > 0).all()
     around = rose.vertices[rose.rim]
-    assert np.allclose(np.abs(around[::RINGS]), radius)
+    assert np.allclose(np.abs(around[::PATCH_RINGS]), radius)
     assert (np.diff(np.unwrap(np.angle(around))) > 0).all()
 
 

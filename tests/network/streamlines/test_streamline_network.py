@@ -21,7 +21,7 @@ from lamella.network.charts.element_charts import ElementCharts
 from lamella.network.charts.plane_charts import PlaneCharts
 from lamella.network.network import BOUNDARY, REGULAR, Network
 from lamella.network.pattern import Pattern
-from lamella.network.streamlines.direction_field import LEAST_ANGLE, LineField
+from lamella.network.streamlines.direction_field import CROSSING_ANGLE_MIN, LineField
 from lamella.network.streamlines.streamline_network import TracedNetwork, traced_network
 from lamella.network.streamlines.streamlines import finished, trace
 from lamella.stages.pipeline import compute
@@ -53,7 +53,7 @@ def is_sound(network: Network) -> None:
     assert (b[regular] == 1).all()
     ends = network.stop_nodes[np.r_[network.stop_offsets[:-1], network.stop_offsets[1:] - 1]]
     assert (network.node_kinds[ends] == BOUNDARY).all()
-    assert network.node_angles.min() >= LEAST_ANGLE - 1e-6
+    assert network.node_angles.min() >= CROSSING_ANGLE_MIN - 1e-6
     for k in range(len(network.ids)):
         stops = slice(network.stop_offsets[k], network.stop_offsets[k + 1])
         assert (np.diff(network.stop_arclengths[stops]) > 0).all()
@@ -209,7 +209,7 @@ def test_where_directions_stop_being_real() -> None:
     )
     network, reported = results.network, results.summary["network"]
     radius = np.hypot(*network.node_points[:, :2].T)
-    last = c * np.sqrt(5 * np.cos(np.radians(LEAST_ANGLE)) / c - 1)
+    last = c * np.sqrt(5 * np.cos(np.radians(CROSSING_ANGLE_MIN)) / c - 1)
     assert radius.max() == pytest.approx(last, rel=1e-4)
     inner = (np.abs(radius - last) < 1e-3 * last) & (network.node_kinds == BOUNDARY)
     assert reported["inner_ends"] == inner.sum()
@@ -220,7 +220,7 @@ def test_where_directions_stop_being_real() -> None:
     assert reported["flat_area_share"] == pytest.approx((real - used) / whole, abs=0.01)
     (message,) = [m for m in results.summary["warnings"] if "no direction" in m]
     assert f"{reported['unreal_area_share']:.1%} of the surface has no direction of normal curvature 0.2 1/m" in message
-    assert reported["node_angle_min_deg"] >= LEAST_ANGLE - 1e-6
+    assert reported["node_angle_min_deg"] >= CROSSING_ANGLE_MIN - 1e-6
 
 
 @pytest.mark.parametrize(("unreal", "flat", "parts"), [(8e-4, 8e-4, 0), (8e-4, 2e-3, 1), (2e-3, 2e-3, 2)])

@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 from lamella.surface.form_finding.find import find_film
-from lamella.surface.form_finding.necessary_conditions import RINGS
+from lamella.surface.form_finding.necessary_conditions import RING_DISTANCE
 from lamella.surface.form_finding.tubes import farthest, pressure_of, tube_of
 from surface.form_finding.exact_patches import ring
 from surface.form_finding.unduloid_pieces import Piece
@@ -78,4 +78,4 @@ def test_farthest_catenoid(distance: float) -> None:
     """Followed to within a step of the largest distance, 1.3254868 radii (see test_rings)."""
     reached = farthest(between(1.0, 1.0, distance), 0.0)
     assert reached is not None
-    assert RINGS - 0.02 * distance < reached <= RINGS * (1 + 1e-4)
+    assert RING_DISTANCE - 0.02 * distance < reached <= RING_DISTANCE * (1 + 1e-4)

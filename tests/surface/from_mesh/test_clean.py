@@ -11,7 +11,7 @@ from lamella.files.read.mesh import read_mesh
 from lamella.surface.from_mesh.clean import CleanMesh, clean
 from lamella.surface.from_mesh.edges import face_normals, find_edges
 from lamella.surface.from_mesh.raw_mesh import RawMesh
-from lamella.surface.from_mesh.slivers import OF_EDGE
+from lamella.surface.from_mesh.slivers import SLIVER_OF_EDGE
 from surface.from_mesh.meshes import disc, grid, irregular, moebius, sphere, stl_bytes, torus, triangles
 
 POINTS, QUADS = grid(9, 9)
@@ -160,7 +160,7 @@ def test_slivers_go_and_the_shape_stays(seed):
     assert len(mesh.points) == len(points)
     assert area(mesh) == pytest.approx(np.linalg.norm(face_normals(points, faces), axis=1).sum() / 2, rel=1e-3)
     assert any("slivers removed" in note for note in mesh.notes)
-    assert find_edges(mesh.faces).lengths(mesh.points).min() > OF_EDGE / 10
+    assert find_edges(mesh.faces).lengths(mesh.points).min() > SLIVER_OF_EDGE / 10
 
 
 def test_flat_triangles_are_flipped_inside_and_dropped_on_the_border():

@@ -7,7 +7,7 @@ import pytest
 
 from lamella import InputError
 from lamella.surface.from_mesh.clean import clean
-from lamella.surface.from_mesh.merge import OF_EDGE, OF_SIZE
+from lamella.surface.from_mesh.merge import MERGE_OF_EDGE, OF_SIZE
 from lamella.surface.from_mesh.raw_mesh import RawMesh
 from surface.from_mesh.meshes import grid, triangles
 
@@ -73,13 +73,13 @@ def test_the_tolerance_follows_size_and_edges(factor, rows):
     z = np.linspace(-1, 1, rows)
     points, quads = wrapped(np.cosh(z), z, rows)
     size, edge = np.linalg.norm(np.ptp(points.reshape(-1, 3), axis=0)), 1.1 * (z[1] - z[0])
-    limit = min(OF_SIZE * size, OF_EDGE * edge)
+    limit = min(OF_SIZE * size, MERGE_OF_EDGE * edge)
     for gap, welded in ((0.8 * limit, True), (3 * limit, False)):
         opened = points.copy()
         opened[:, -1, 1] -= gap
         if welded:
             assert len(cleaned(factor * opened, quads).borders) == 2
-        elif gap < OF_EDGE * edge:
+        elif gap < MERGE_OF_EDGE * edge:
             with pytest.raises(InputError, match="the border comes within"):
                 cleaned(factor * opened, quads)
 

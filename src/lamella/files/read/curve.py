@@ -19,7 +19,7 @@ from lamella.files.read.curves_json import read_json
 from lamella.surface.boundary.pieces import Pieces
 from lamella.surface.boundary.smooth_polyline import smooth_curve, vertices
 
-MOST_BYTES = 64_000_000
+CURVE_BYTES_MAX = 64_000_000
 """Of a file of curves: some twenty seconds of the DXF library."""
 
 _READERS = {".3dm": read_3dm, ".dxf": read_dxf, ".json": read_json}
@@ -103,9 +103,9 @@ def _require_readable(path: Path, where: str) -> None:
         raise InputError(f"{path}: no such file", "paths are relative to the project file's folder", where)
     try:
         count = path.stat().st_size
-        if count > MOST_BYTES:
+        if count > CURVE_BYTES_MAX:
             raise InputError(
-                f"{path} has {count / 1e6:,.0f} MB; at most {MOST_BYTES / 1e6:g} MB of curves are read",
+                f"{path} has {count / 1e6:,.0f} MB; at most {CURVE_BYTES_MAX / 1e6:g} MB of curves are read",
                 "save the boundary curves alone in a file of their own",
                 where,
             )

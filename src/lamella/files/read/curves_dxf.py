@@ -26,6 +26,8 @@ _SPLINE_FRAME = 16
 """Flag of a vertex that is a control point, which the polyline does not run through."""
 
 
+# of a curve's size: points nearer to one another are one
+ROUNDING_OF_SIZE = 1e-9
 # what a drawing holds that is no curve, as the trade calls it
 _OTHERS = {
     "3DFACE": "3DFACE",
@@ -231,7 +233,7 @@ def _polyline(entity: Any, points: Floats, bulges: list[float], *, closed: bool)
     parts = []
     for k in range(n if closed else n - 1):
         start, end = world[k], world[(k + 1) % n]
-        if np.linalg.norm(end - start) > 1e-9 * size:
+        if np.linalg.norm(end - start) > ROUNDING_OF_SIZE * size:
             parts.append(bulge_arc(start, end, bulges[k], frame[2]))
     return stack(parts) if parts else None
 
@@ -252,5 +254,6 @@ def _spline(entity: Any) -> Pieces | None:
     if len(points) < 2:
         return None
     if entity.closed and len(points) > 2:
-        return closed_spline(points[:-1] if np.allclose(points[0], points[-1], rtol=0, atol=1e-9) else points)
+        same = ROUNDING_OF_SIZE * diagonal(points)
+        return closed_spline(points[:-1] if np.allclose(points[0], points[-1], rtol=0, atol=same) else points)
     return open_spline(points)

@@ -16,7 +16,7 @@ MAXIMUM_FACES = 2_000_000
 """Curvature needs a few thousand faces; beyond this reading takes minutes and gigabytes."""
 
 
-BLOCK = 1_000_000
+TEXT_BLOCK = 1_000_000
 """Bytes of a text that are taken apart at a time."""
 
 
@@ -51,23 +51,23 @@ def mesh_error(message: str, remedy: str = "") -> InputError:
 
 
 def blocks(text: bytes, ends: bytes) -> Iterator[bytes]:
-    """Pieces of a text of some `BLOCK` bytes, cut behind one of the bytes `ends`.
+    """Pieces of a text of some `TEXT_BLOCK` bytes, cut behind one of the bytes `ends`.
 
     Words of a text as objects take ten to fifty times its memory: a block of them at a time does not matter.
 
     Raises
     ------
     InputError
-        No such byte within `BLOCK` bytes: it is no text of numbers.
+        No such byte within `TEXT_BLOCK` bytes: it is no text of numbers.
     """
     start = 0
     while start < len(text):
-        end = start + BLOCK
+        end = start + TEXT_BLOCK
         if end < len(text):
             end = max(text.rfind(bytes([one]), start, end) for one in ends) + 1
             if end <= start:
                 raise mesh_error(
-                    f"the file has a line of more than {BLOCK / 1e6:g} million characters", "export the mesh again"
+                    f"the file has a line of more than {TEXT_BLOCK / 1e6:g} million characters", "export the mesh again"
                 )
         yield text[start:end]
         start = end

@@ -17,7 +17,7 @@ from lamella.network.network import NODE_KINDS, Network
 from lamella.network.pattern import Pattern
 
 SCHEMA = "lamella/network/1"
-LARGEST = 500_000_000
+NETWORK_BYTES_MAX = 500_000_000
 """Bytes; a net of 500,000 nodes has fewer."""
 
 
@@ -54,9 +54,9 @@ def read_network(path: str | Path) -> Network:
     """
     path = Path(path)
     try:
-        if path.stat().st_size > LARGEST:
+        if path.stat().st_size > NETWORK_BYTES_MAX:
             raise InputError(
-                f"{path} has {path.stat().st_size / 1e6:,.0f} MB", f"at most {LARGEST / 1e6:g} MB are read"
+                f"{path} has {path.stat().st_size / 1e6:,.0f} MB", f"at most {NETWORK_BYTES_MAX / 1e6:g} MB are read"
             )
         content = orjson.loads(path.read_bytes())
     except OSError as reason:

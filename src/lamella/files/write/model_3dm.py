@@ -7,7 +7,7 @@ import rhino3dm
 
 from lamella.base.arrays import Floats
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile, nurbs_curve
-from lamella.files.write.splines import RELATIVE_TOLERANCE, fit_spline
+from lamella.files.write.splines import SPLINE_TOLERANCE, fit_spline
 from lamella.files.write.text import require_finite
 from lamella.network.network import NODE_KINDS, Network
 from lamella.network.turning import derivative
@@ -54,7 +54,7 @@ def model_bytes(
         Goes to layer "surface".
     network : Network
         Centre lines go to "lamellas A" and "lamellas B" as cubic curves with the arc length as parameter,
-        within `RELATIVE_TOLERANCE` of the length from every sample; nodes to "nodes regular",
+        within `SPLINE_TOLERANCE` of the length from every sample; nodes to "nodes regular",
         "nodes boundary", "nodes singular" and "nodes seam".
     lamellas : Lamellas, optional
         Twisted strips go to "strips A" and "strips B" as surfaces of degree 3 x 1, ruled along the normals; where a
@@ -111,7 +111,7 @@ class _Model:
         length = float(arclengths[-1])
         tangents = network.sample_tangents[span]
         spline = fit_spline(
-            arclengths, network.sample_points[span], tangents[[0, -1]], RELATIVE_TOLERANCE * length / 3**0.5
+            arclengths, network.sample_points[span], tangents[[0, -1]], SPLINE_TOLERANCE * length / 3**0.5
         )
         family = str(network.families[k])
         attributes = self.rhino.attributes(
@@ -155,7 +155,7 @@ class _Model:
         """The strip along a lamella between two edges (n, 6), or one of its layers."""
         arclengths = network.sample_arclengths[span] - network.sample_arclengths[span.start]
         length = float(arclengths[-1])
-        spline = fit_spline(arclengths, edges, slopes, RELATIVE_TOLERANCE * length / 3**0.5)
+        spline = fit_spline(arclengths, edges, slopes, SPLINE_TOLERANCE * length / 3**0.5)
         knots, place, metres = spline.knots[1:-1], self.rhino.placed, self.rhino.metres
         lower, upper = (
             nurbs_curve(3, knots / metres, place(spline.controls[:, side])) for side in (slice(0, 3), slice(3, 6))

@@ -16,7 +16,7 @@ from lamella.base.units import METRES
 from lamella.base.wording import one_line
 from lamella.surface.mesh import SurfaceMesh
 
-TOLERANCE = 1e-5
+RHINO_TOLERANCE = 1e-5
 """m; what Rhino joins within: far above rounding, far below what can be built."""
 
 
@@ -72,7 +72,7 @@ class RhinoFile:
         settings = self.file.Settings
         settings.ModelUnitSystem = getattr(rhino3dm.UnitSystem, UNITS[frame.unit])
         settings.PageUnitSystem = rhino3dm.UnitSystem.Millimeters
-        settings.ModelAbsoluteTolerance = TOLERANCE / self.metres
+        settings.ModelAbsoluteTolerance = RHINO_TOLERANCE / self.metres
 
     def placed(self, points: Floats) -> Floats:
         """Points (..., 3) in the file's unit and the drawing's coordinates."""

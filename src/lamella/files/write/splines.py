@@ -10,7 +10,7 @@ from scipy.interpolate import make_interp_spline
 from lamella.base.arrays import Floats
 
 DEGREE = 3
-RELATIVE_TOLERANCE = 1e-7
+SPLINE_TOLERANCE = 1e-7
 """Largest distance of a written curve from its samples, as a share of the curve's length."""
 
 COARSEST = 16

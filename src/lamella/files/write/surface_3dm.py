@@ -21,7 +21,7 @@ from lamella.files.whole import write_whole
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile
 from lamella.files.write.text import require_finite
 from lamella.surface.element.lagrange import lagrange, subdivision
-from lamella.surface.element.surface import MOST_PARTS, ElementSurface
+from lamella.surface.element.surface import EDGE_PARTS_DRAWN_MAX, ElementSurface
 
 MOST_PATCHES = 20_000
 """Surfaces of more patches (about 1 kB each, and slow in Rhino) are written as one mesh."""
@@ -29,7 +29,7 @@ MOST_PATCHES = 20_000
 MESH_TOLERANCE = 1e-4
 """Sag of that mesh aimed at, over the diagonal of the bounding box; what it came to is in the file."""
 
-RELATIVE_TOLERANCE = 1e-12
+PATCH_TOLERANCE = 1e-12
 """Distance of the patches from the surface, over its diagonal or its largest coordinate: rounding."""
 
 SAG_PLACES = 6
@@ -217,7 +217,7 @@ class _Model:
     def add_patches(self) -> None:
         controls = patches(self.surface)
         p = controls.shape[1] - 1
-        tolerance = RELATIVE_TOLERANCE * max(self.diagonal, float(np.abs(self.surface.nodes + self.origin).max()))
+        tolerance = PATCH_TOLERANCE * max(self.diagonal, float(np.abs(self.surface.nodes + self.origin).max()))
         self.rhino.say(
             tolerance_m=f"{tolerance:.1e}",
             surface=f"{len(controls)} Bezier patches of degree {p} x {p}, three to a curved triangle of the program: "
@@ -240,7 +240,7 @@ class _Model:
 
     def add_mesh(self, count: int) -> None:
         parts, reached = 0, np.inf
-        while reached > MESH_TOLERANCE * self.diagonal and parts < MOST_PARTS:
+        while reached > MESH_TOLERANCE * self.diagonal and parts < EDGE_PARTS_DRAWN_MAX:
             parts += 1
             reached = sag(self.surface, parts)
         # two digits, and the places between those looked at, rounded up

@@ -39,18 +39,18 @@ CLOSED = 1e-4
 NEARLY = CLOSES / 2
 # tolerance of the film on which the boundary is looked for, before a finer one that was asked for: the periods of a
 # coarser one are off by more than the misses that end the search
-COARSE = 5e-3
-MOST_STEPS, MOST_POLISHING, MOST_HALVINGS = 20, 6, 5
+ADJUSTING_TOLERANCE = 5e-3
+ADJUSTING_STEPS_MAX, MOST_POLISHING, ADJUSTING_HALVINGS_MAX = 20, 6, 5
 # steps towards all the whole numbers that are tried
 MOST_IN_ALL = 50
 # of the misses left by a step: with more, the next step's rates are found anew and not carried on
 CARRIED = 0.5
 # of the film's size: what the boundary moves in a step, at most
-LONGEST = 0.04
+BOUNDARY_MOVE_MAX = 0.04
 # range of the logarithm of the lattice's spacing
 SPACING = 0.1
 # whole numbers that ask for the smallest changes, were there no limits to them; of these are tried, with the limits
-MOST_LOOKED_AT, MOST_TRIED = 60, 4
+MOST_LOOKED_AT, INTEGERS_TRIED_MAX = 60, 4
 # a whole step has to take this part of the misses away at least
 LEAST_GAIN = 0.1
 # of an umbilic's distance from the rim: what a step leaves of it at least, to first order. Where umbilics come or go
@@ -58,19 +58,19 @@ LEAST_GAIN = 0.1
 KEPT = 0.3
 # limits this many times as large are looked for, at most, where the given ones do not do; in so many halvings, from so
 # many of the places reached, and tried with more than what suffices to first order: steps are few where room is left
-MOST_REACH, REACH_HALVINGS, MOST_WIDER, WIDER = 8.0, 6, 2, 1.5
+REACHED_LIMITS_MAX, REACH_HALVINGS, MOST_WIDER, WIDER = 8.0, 6, 2, 1.5
 # cells: misses that small change what is offered by less than what is added to it
-OFFERED = 2e-3
+OFFERED_SHARE = 2e-3
 # of the misses: what first order leaves at most where it says that they vanish; and times the limits: what takes more
 # to first order is not tried. The film's own bending has come to 1.3 times the first order, either way
 UNDONE, HOPELESS = 0.02, 3.0
 # the same at a place with misses of up to so many cells and that part of the limits used: first order is nearer there
-NEAR, MOSTLY, STOPPED = 0.3, 0.9, 1.5
+NEAR_CLOSED, MOSTLY, STOPPED = 0.3, 0.9, 1.5
 # of a limit: what takes as much has reached it
 AT_LIMIT = 1.0 - 1e-3
 # how much more a miss of a cell (see `Isothermic.dirichlet`) weighs than a full range
 WEIGHT = 1e4
-SAMPLES = 2000
+MOVED_SAMPLES = 2000
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def adjust_boundary(
     progress = patient(progress)
     films = Films(freedom, pattern, progress)
     progress(Report.step(f"adjusting {', '.join(freedom.names)}: {freedom.count} parameters"))
-    first = films.first(COARSE)
+    first = films.first(ADJUSTING_TOLERANCE)
     names = tuple(curve.name for curve in film.curves)
     around = holonomies(first.iso)
     lattice = choose_lattice(
@@ -199,7 +199,9 @@ class _Search:
         """Whole shifts to be tried, and those that take far more than what may change."""
         aims = [Aim(first, whole, lattice.step) for whole in self._targets(first, lattice)]
         reaches = [self._least_reach(aim, UNDONE) for aim in aims]
-        reported = ", ".join(f"{reach:.2g}" if reach < np.inf else f"over {2 * MOST_REACH:g}" for reach in reaches)
+        reported = ", ".join(
+            f"{reach:.2g}" if reach < np.inf else f"over {2 * REACHED_LIMITS_MAX:g}" for reach in reaches
+        )
         self.progress(
             Report.step(f"whole numbers of cells take, to first order, {reported} times what the boundary may change")
         )
@@ -215,7 +217,7 @@ class _Search:
             (reach, aim)
             for aim in aims
             # others were not stopped by their limits
-            if (reach := self._least_reach(aim, LEAST_GAIN)) <= MOST_REACH
+            if (reach := self._least_reach(aim, LEAST_GAIN)) <= REACHED_LIMITS_MAX
             and (reach > 1 or used(aim.net.shares) > AT_LIMIT)
         ]
         # to first order tells most where little is missed
@@ -223,7 +225,7 @@ class _Search:
             self.reach, self.steps = reach * WIDER, 0
             self.progress(Report.step(f"how much change would do: with {self.reach:.2g} times as much"))
             try:
-                there = self.descend(aim, goal=OFFERED)
+                there = self.descend(aim, goal=OFFERED_SHARE)
             except LostError:
                 continue
             return self.films.freedom.enough(there.net.shares)
@@ -238,7 +240,7 @@ class _Search:
             change = self._solved(aim.net, sensitivities, aim.residuals)[0]
             return aim.net.whole.size(aim.residuals - sensitivities @ change) < left * aim.size
 
-        low, high = 0.0, float(np.log(2 * MOST_REACH))
+        low, high = 0.0, float(np.log(2 * REACHED_LIMITS_MAX))
         try:
             if reaches(low):
                 return 1.0
@@ -262,14 +264,14 @@ class _Search:
         counted = self._counted(net, shifts, lattice)
         easy = net.whole.easiest(shifts, sensitivities * np.append(np.ones(len(net.shares)), SPACING), MOST_LOOKED_AT)
         # where the boundary may hardly change, only another spacing is easy: other cells than were asked for
-        near = net.whole.nearest(shifts, MOST_TRIED)
+        near = net.whole.nearest(shifts, INTEGERS_TRIED_MAX)
         near += [whole for whole in easy if not any(np.array_equal(whole, one) for one in near)]
         near = [whole for whole in near if self._counted(net, whole, lattice) == counted] or near
         # two umbilics cannot meet in one node
         factors = between_umbilics(net.iso)
         near = [whole for whole in near if keeps_apart(factors, shifts, whole)] or near
         cost = [self._solved(net, sensitivities, whole - shifts)[1] for whole in near]
-        return [near[k] for k in np.argsort(cost, kind="stable")[:MOST_TRIED].tolist()]
+        return [near[k] for k in np.argsort(cost, kind="stable")[:INTEGERS_TRIED_MAX].tolist()]
 
     def _counted(self, net: FilmNet, shifts: Complexes, lattice: Lattice) -> int:
         """Cells on a loop around the first hole; 0: no cells are counted there."""
@@ -283,7 +285,7 @@ class _Search:
     def descend(self, aim: Aim, *, hasty: bool = False, goal: float = CLOSED) -> Aim:
         """Steps on the coarse film, until misses are below a goal, cells; in haste, until one leaves most of them."""
         self._tell(aim)
-        for _ in range(MOST_STEPS):
+        for _ in range(ADJUSTING_STEPS_MAX):
             if worst(aim.residuals) < goal:
                 return aim
             if self.steps >= MOST_IN_ALL:
@@ -304,11 +306,15 @@ class _Search:
                 raise LostError(aim, "the boundary may not change by more")
             if reason and hasty and aim.size > CARRIED * before:
                 raise StuckError(aim, reason)
-        raise LostError(aim, f"not reached in {MOST_STEPS} steps")
+        raise LostError(aim, f"not reached in {ADJUSTING_STEPS_MAX} steps")
 
     def _is_stopped(self, aim: Aim) -> bool:
         """Whether first order says that the limits are far from enough, by rates that need not be found anew."""
-        if aim.sensitivities is None or worst(aim.residuals) > NEAR or self.films.freedom.used(aim.net.shares) < MOSTLY:
+        if (
+            aim.sensitivities is None
+            or worst(aim.residuals) > NEAR_CLOSED
+            or self.films.freedom.used(aim.net.shares) < MOSTLY
+        ):
             return False
         return self._least_reach(aim, UNDONE) > STOPPED
 
@@ -319,7 +325,7 @@ class _Search:
                 return self._moved(aim, aim.sensitivities, 1)
             except LostError:
                 self.progress(Report.detail("the rates carried on do not lead on"))
-        return self._moved(aim, self.films.cell_sensitivities(aim.net, aim.step), MOST_HALVINGS)
+        return self._moved(aim, self.films.cell_sensitivities(aim.net, aim.step), ADJUSTING_HALVINGS_MAX)
 
     def _moved(self, aim: Aim, sensitivities: Complexes, halvings: int) -> tuple[Aim, str]:
         """See `_step`, with given rates and so many tries."""
@@ -381,7 +387,9 @@ class _Search:
         for _ in range(MOST_POLISHING):
             self.progress(Report.detail("the film as fine as asked for"))
             try:
-                found = self.films.found(aim.net.shares + move[:-1], min(self.films.freedom.film.tolerance, COARSE))
+                found = self.films.found(
+                    aim.net.shares + move[:-1], min(self.films.freedom.film.tolerance, ADJUSTING_TOLERANCE)
+                )
                 there = self._carried(aim, found, sensitivities, move)
             except FollowError as error:
                 raise LostError(aim, str(error)) from None
@@ -443,7 +451,7 @@ class _Search:
     def _shortened(self, net: FilmNet, change: Floats) -> Floats:
         """A change no longer than the linear picture bears."""
         far = farthest_move(self.films.loops(net.shares), self.films.loops(net.shares + change[:-1]))
-        return np.asarray(change * min(1.0, LONGEST * net.equilibrium.film.size / max(far, 1e-300)))
+        return np.asarray(change * min(1.0, BOUNDARY_MOVE_MAX * net.equilibrium.film.size / max(far, 1e-300)))
 
     def _tell(self, aim: Aim) -> None:
         self.progress(
@@ -456,6 +464,6 @@ class _Search:
 
 def _moved(old: Loop, new: Loop) -> float:
     """Largest distance of a changed loop from the old one, m."""
-    t = np.arange(SAMPLES) / SAMPLES
+    t = np.arange(MOVED_SAMPLES) / MOVED_SAMPLES
     distance, _ = cKDTree(old.at(t)).query(new.at(t))
     return float(np.max(distance))

@@ -30,7 +30,7 @@ from lamella.surface.umbilic import refuse_umbilic
 # difference of shares for the loops' movement
 SHARE = 1e-5
 # of the film's size: how far the boundary moves before the film is found anew on its way
-STRIDE = 0.02
+FILM_STRIDE = 0.02
 
 
 class FollowError(ArithmeticError):
@@ -98,7 +98,7 @@ class Films:
                 self._progress,
                 volume=changed.volume,
                 stable=changed.branch == "stable",
-                stride=min(1.0, STRIDE * net.equilibrium.film.size / max(far, 1e-300)),
+                stride=min(1.0, FILM_STRIDE * net.equilibrium.film.size / max(far, 1e-300)),
             )
         except BreakError as error:
             raise FollowError(str(error)) from None

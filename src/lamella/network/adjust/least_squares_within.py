@@ -15,9 +15,9 @@ from scipy.optimize import nnls
 from lamella.base.arrays import Booleans, Floats
 
 # of a limit, or in the unit of x: solutions beyond it by less are brought back by a common factor
-BEYOND = 1e-6
+LIMIT_EXCESS = 1e-6
 # rounds of planes; each takes away most of what was beyond
-MOST_ROUNDS = 60
+PLANE_ROUNDS_MAX = 60
 
 
 def least_squares_within(
@@ -42,11 +42,11 @@ def least_squares_within(
     given, given_bounds = given / length[:, None], given_bounds / length
     normals, bounds = given, given_bounds
     x = np.asarray(solve_triangular(triangle, q_right))
-    for _ in range(MOST_ROUNDS):
+    for _ in range(PLANE_ROUNDS_MAX):
         moves = limits @ x
         far = np.linalg.norm(moves, axis=1)
-        over = far > 1 + BEYOND
-        if not over.any() and (given @ x <= given_bounds + BEYOND).all():
+        over = far > 1 + LIMIT_EXCESS
+        if not over.any() and (given @ x <= given_bounds + LIMIT_EXCESS).all():
             break
         unit = moves[over] / far[over, None]
         normals = np.vstack([normals, np.einsum("kc,kcp->kp", unit, limits[over])])

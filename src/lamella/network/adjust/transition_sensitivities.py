@@ -24,7 +24,7 @@ from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.variation import Variation
 
 # of the film's size: how far it is moved for a difference quotient
-STEP = 1e-4
+SENSITIVITY_STEP = 1e-4
 
 
 def jacobi_fields(film: Film, mean_curvature: float, rim_shifts: Floats, curvature_sensitivities: Floats) -> Floats:
@@ -84,7 +84,7 @@ def curvature_rates_of_volume(film: Film, mean_curvature: float, rim_shifts: Flo
     for number, (field, rim) in enumerate(zip(fields, still, strict=True)):
         # the lids go with the rim, which moves in all directions
         move = np.where(free, field[:, None] * film.directions(), rim)
-        step = STEP * film.size / max(float(np.abs(move).max()), 1e-12 * film.size)
+        step = SENSITIVITY_STEP * film.size / max(float(np.abs(move).max()), 1e-12 * film.size)
         ahead, behind = (enclosed_volume(film.at(film.nodes + way * step * move)) for way in (1, -1))
         volume[number] = (ahead - behind) / (2 * step)
     return np.asarray(-volume[:count] / volume[count])
@@ -146,7 +146,7 @@ def transition_sensitivities(
     depths = np.zeros((len(umbilics.depth), len(fields)))
     for number, (field, rate) in enumerate(zip(fields, curvature_sensitivities, strict=True)):
         progress(Report.detail(f"how the net follows: {number} of {len(fields)} parameters", number / len(fields)))
-        step = STEP * film.size / max(float(np.abs(field).max()), 1e-12 * film.size)
+        step = SENSITIVITY_STEP * film.size / max(float(np.abs(field).max()), 1e-12 * film.size)
         moved = ElementSurface(
             surface.kind,
             surface.mean_curvature + step * rate,

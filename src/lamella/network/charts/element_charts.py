@@ -15,7 +15,7 @@ from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
 
 # elements a step may pass, Newton's steps to a place seen from the next element, and what counts as outside of one
-MOST_HOPS, NEWTON_STEPS, OUTSIDE = 8, 4, 1e-12
+CHART_HOPS_MAX, CHART_NEWTON_STEPS, OUTSIDE = 8, 4, 1e-12
 # of an element: a place farther outside, with no element beyond, was not settled
 UNSETTLED = 1e-6
 
@@ -53,7 +53,7 @@ class ElementCharts:
         element, local = where.element.copy(), where.local.copy()
         neighbours, across = self._connectivity.neighbours, self._connectivity.neighbour_edges
         left = np.arange(len(where))
-        for _ in range(MOST_HOPS):
+        for _ in range(CHART_HOPS_MAX):
             barycentric = _barycentric(local[left])
             # the edge opposite a corner begins at the next one
             beyond = neighbours[element[left][:, None], (np.arange(3) + 1) % 3]
@@ -80,7 +80,7 @@ class ElementCharts:
     def _nearest(self, goal: Floats, where: Places) -> Floats:
         """Local coordinates of the points of charts that are next to points (n, 3), from places nearby."""
         local = where.local
-        for _ in range(NEWTON_STEPS):
+        for _ in range(CHART_NEWTON_STEPS):
             there = self.surface.frames(Places(where.element, local))
             off = goal - there.position
             across = np.stack([(off * there.e_u).sum(1), (off * there.e_v).sum(1)], 1)

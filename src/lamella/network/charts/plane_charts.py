@@ -12,7 +12,7 @@ from lamella.surface.closed_forms.scherk import Scherk, asymptotic_to_conformal
 from lamella.surface.element.places import Places
 
 # parts of the longest way across a closed form's parameters in a step, and samples along either parameter
-PARTS, SAMPLES = 80, 60
+STEP_PARTS, CHART_SAMPLES = 80, 60
 # difference of parameters along the rim, of the size
 DELTA = 1e-6
 
@@ -28,7 +28,7 @@ class PlaneCharts:
 
     def __init__(self, surface: ClosedForm) -> None:
         self.surface = surface
-        places, _ = surface.places(SAMPLES, SAMPLES)
+        places, _ = surface.places(CHART_SAMPLES, CHART_SAMPLES)
         self._middle = complex(places.real.min() + places.real.max(), places.imag.min() + places.imag.max()) / 2
         self._sides = float(np.ptp(places.real)), float(np.ptp(places.imag))
         self._size = max(self._sides)
@@ -47,7 +47,7 @@ class PlaneCharts:
         return np.zeros(len(where))
 
     def reach(self, where: Places) -> Floats:
-        return np.full(len(where), self._size / PARTS)
+        return np.full(len(where), self._size / STEP_PARTS)
 
     def settle(self, where: Places) -> Places:
         return where
@@ -73,11 +73,13 @@ class PlaneCharts:
 
     def samples(self) -> tuple[Places, Floats]:
         # cells of a grid over the parameters, by their middles
-        share = (np.arange(2 * SAMPLES) + 0.5) / (2 * SAMPLES) - 0.5
+        share = (np.arange(2 * CHART_SAMPLES) + 0.5) / (2 * CHART_SAMPLES) - 0.5
         x, y = (a.ravel() for a in np.meshgrid(*(side * share for side in self._sides), indexing="ij"))
         zeta = self._middle + x + 1j * y
         zeta = zeta[self._gap(zeta) > 0]
-        return _places(zeta), self.surface.metric(zeta) ** 2 * self._sides[0] * self._sides[1] / (2 * SAMPLES) ** 2
+        return _places(zeta), self.surface.metric(zeta) ** 2 * self._sides[0] * self._sides[1] / (
+            2 * CHART_SAMPLES
+        ) ** 2
 
     def rim_places(self, where: Places) -> RimPlaces:
         # the outlines are convex about their middles, or as good as that (Scherk's)

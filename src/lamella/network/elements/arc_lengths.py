@@ -16,9 +16,9 @@ from lamella.network.elements.segments import ElementSegments
 from lamella.surface.element.places import Places
 
 # points of a part's series to begin with and to settle for, and the share that its last two terms may have
-POINTS, SETTLE, TAIL = 6, 24, 1e-5
+SEGMENT_POINTS, SETTLE, SEGMENT_TAIL = 6, 24, 1e-5
 # of a segment: a part is longer
-LEAST = 1e-6
+SEGMENT_PART_MIN = 1e-6
 
 
 class ElementArcs:
@@ -37,11 +37,11 @@ class ElementArcs:
     def __init__(self, segments: ElementSegments) -> None:
         count = len(segments.owner)
         segment, sigma = segments.passages()
-        inside = (sigma > LEAST) & (sigma < 1 - LEAST)
+        inside = (sigma > SEGMENT_PART_MIN) & (sigma < 1 - SEGMENT_PART_MIN)
         segment, begin = np.r_[np.arange(count), segment[inside]], np.r_[np.zeros(count), sigma[inside]]
         order = np.lexsort((begin, segment))
         self._parts = _Parts(segments, segment[order], begin[order])
-        self._arcs = ArcLengths(self._parts, TAIL, SETTLE, POINTS)
+        self._arcs = ArcLengths(self._parts, SEGMENT_TAIL, SETTLE, SEGMENT_POINTS)
         self.length = np.bincount(self._parts.owner, self._arcs.length, count)
         self._first = np.searchsorted(self._parts.owner, np.arange(count + 1))
         self._before = np.cumsum(self._arcs.length) - self._arcs.length
@@ -72,7 +72,7 @@ class _Parts:
         end = np.where(np.r_[owner[1:] != owner[:-1], True], 1.0, np.r_[begin[1:], 1.0])
         self._reach = end - begin
         # where the parts are, as powers of the share: from the places at which the speed is measured first
-        self._element, self._powers = np.full(len(owner), -1), np.zeros((POINTS, len(owner), 2))
+        self._element, self._powers = np.full(len(owner), -1), np.zeros((SEGMENT_POINTS, len(owner), 2))
 
     def sigma(self, part: Integers, share: Floats) -> Floats:
         """The segments' parameters at shares of parts, arrays of equal shape."""
@@ -86,8 +86,8 @@ class _Parts:
         part = part[order]
         spots = spots[(order[:, None] * len(share) + np.arange(len(share))).ravel()]
         places, _, velocity = self._segments.velocity(spots)
-        if len(share) == POINTS:
-            element, local = places.element.reshape(-1, POINTS), places.local.reshape(-1, POINTS, 2)
+        if len(share) == SEGMENT_POINTS:
+            element, local = places.element.reshape(-1, SEGMENT_POINTS), places.local.reshape(-1, SEGMENT_POINTS, 2)
             # -1: not all in one element
             self._element[part] = np.where((element == element[:, :1]).all(1), element[:, 0], -1)
             powers = np.linalg.inv(np.vander(share, increasing=True))

@@ -12,11 +12,11 @@ from lamella.network.elements.closing_steps import CLOSES, ClosingLengths
 from lamella.network.pattern import LEAST_KEPT, Pattern
 
 # of the number of cells, and cells: how far a spacing may be moved so that the net closes with its umbilics on nodes
-REACH, LEAST_REACH, MOST_REACH = 0.1, 0.75, 3.0
+SPACING_REACH, LEAST_REACH, SPACING_REACH_MAX = 0.1, 0.75, 3.0
 # cells: a net that misses whole numbers by more gains nothing from a moved spacing
-NEARLY = 0.12
+NEARLY_CLOSED = 0.12
 # what a net that does not close costs at least; 1: one that misses by more than that
-OPEN = 0.3
+OPEN_COST = 0.3
 # choices that differ by less (1: all that a moved spacing may cost) are alike: then the finer one, for a rule
 ALIKE = 0.02
 # better numbers of cells are looked for so far away: of the number given, and cells
@@ -57,7 +57,7 @@ def near_step(count: CellCount, closing: ClosingLengths, wanted: float, pattern:
         # hardly a curve around the hole: cells are counted across the surface
         count = CellCount(count.across, count.across, 0j)
     cells = count.cells(wanted)
-    reach = float(np.clip(REACH * cells, LEAST_REACH, MOST_REACH))
+    reach = float(np.clip(SPACING_REACH * cells, LEAST_REACH, SPACING_REACH_MAX))
     tied = count.follows_period(pattern)
     multiple = pattern.multiple(count.period) if tied else 1
     least = (LEAST_KEPT if multiple > 1 else CELLS_MIN) * multiple
@@ -79,7 +79,7 @@ def near_step(count: CellCount, closing: ClosingLengths, wanted: float, pattern:
 
 def _cost(closing: ClosingLengths, step: float, wanted: float, scale: float) -> float:
     residual = closing.residual(step)
-    price = 0.0 if residual <= CLOSES / 2 else OPEN + (1 - OPEN) * min(1.0, residual / NEARLY) ** 2
+    price = 0.0 if residual <= CLOSES / 2 else OPEN_COST + (1 - OPEN_COST) * min(1.0, residual / NEARLY_CLOSED) ** 2
     return float(price + (np.log(step / wanted) * scale) ** 2)
 
 

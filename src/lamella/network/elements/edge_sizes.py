@@ -17,9 +17,9 @@ from lamella.network.pattern import Pattern
 from lamella.surface.element.quadrature import triangle_rule
 
 # parts of an edge in which a curve may end at the rim, all alike
-PARTS = (np.arange(8) + 0.5) / 8
+END_PARTS = (np.arange(8) + 0.5) / 8
 # rounds in which the pieces at the rim follow the edge
-ROUNDS = 6
+STEP_ROUNDS = 6
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,9 @@ class EdgeSizes:
     def median(self, step: float) -> float:
         """Median cell edge, m, at l0 = step, sqrt(m)."""
         # two edges a lattice point; of a curve's last edges only a part is there
-        size = np.concatenate([self.edge, np.outer(PARTS, self.last_edge).ravel(), self.last_edge])
+        size = np.concatenate([self.edge, np.outer(END_PARTS, self.last_edge).ravel(), self.last_edge])
         last = self.ends.sum(0) / step
-        many = np.concatenate([2 * self.area / step**2, np.tile(last / len(PARTS), len(PARTS)), -last / 2])
+        many = np.concatenate([2 * self.area / step**2, np.tile(last / len(END_PARTS), len(END_PARTS)), -last / 2])
         order = np.argsort(size)
         running = np.maximum.accumulate(np.cumsum(many[order]))
         middle = int(np.searchsorted(running, running[-1] / 2))
@@ -84,7 +84,7 @@ class EdgeSizes:
         # with hardly any ends
         fine = 1e-6 * float(np.sqrt(self.area.sum()))
         step = fine * spacing / self.median(fine)
-        for _ in range(ROUNDS):
+        for _ in range(STEP_ROUNDS):
             step = step * spacing / self.median(step)
         return float(step)
 

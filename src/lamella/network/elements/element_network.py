@@ -40,11 +40,11 @@ Closing = Literal["open", "round"]
 # of the curvature scale: a larger error of the normal curvature is told
 ASTRAY = 0.02
 # cell edges from a corner of the boundary within which the corner is the reason for it
-AT_CORNER = 1.5
+CORNER_EDGES = 1.5
 # of the largest utilisation: where it is less than this away from corners, a corner is the reason for it
-CONCENTRATED = 0.4
+AWAY_UTILISATION_MAX = 0.4
 # nets of up to so many nodes are tried out to meet a spacing, so often, until they do to so little
-MOST_TRIED, MOST_TRIALS, NEAR_ENOUGH = 1_200, 3, 0.02
+TRIED_NET_NODES_MAX, SPACING_TRIALS_MAX, NEAR_ENOUGH = 1_200, 3, 0.02
 
 
 class Joint(NamedTuple):
@@ -235,13 +235,13 @@ class ElementNetwork:
 
         `searched` tells what a radius does: see `lamella.stages.corner_search.radius_that_does`.
         """
-        reach = AT_CORNER * float(np.median(self.network.cell_edges))
+        reach = CORNER_EDGES * float(np.median(self.network.cell_edges))
         corner = self.corners.nearest(point, reach)
         if corner < 0:
             return ""
         radii = np.maximum(self.corners.radii, reach)
         away = utilisation[self.corners.within(self.network.sample_points, radii) < 0].max(initial=0.0)
-        if away > CONCENTRATED * utilisation.max():
+        if away > AWAY_UTILISATION_MAX * utilisation.max():
             return ""
         relief = self._relief(corner, searched)
         return (
@@ -268,7 +268,7 @@ class ElementNetwork:
 
     def _why_astray(self, worst: Floats) -> str:
         """What makes directions wrong at a place, and what helps."""
-        corner = self.corners.nearest(worst, AT_CORNER * float(np.median(self.network.cell_edges)))
+        corner = self.corners.nearest(worst, CORNER_EDGES * float(np.median(self.network.cell_edges)))
         if corner >= 0:
             return "the boundary has a corner there, which concentrates curvature; " + self.rounding(corner)
         return "the surface's directions are not told well enough there; write a smaller tolerance"
@@ -422,8 +422,8 @@ def _tried_out(
     In a net of a few rows the ends of the curves are half of its edges, and where they lie decides.
     """
     best, nearest, correction = laid, np.inf, 1.0
-    for _ in range(MOST_TRIALS):
-        if laid.lattice.estimated_nodes > MOST_TRIED:
+    for _ in range(SPACING_TRIALS_MAX):
+        if laid.lattice.estimated_nodes > TRIED_NET_NODES_MAX:
             break
         # a spacing is that of the lattice before curves are left out
         whole = replace(laid, pattern=replace(laid.pattern, every=(1, 1)))

@@ -29,7 +29,7 @@ from lamella.surface.element.rim import CORNER_CORE, CORNER_PART, SHARP_TURN, el
 from lamella.surface.element.surface import ElementSurface
 
 # of the size: points nearer to each other are one
-SAME = 1e-6
+SAME_POINT = 1e-6
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class RimCorners:
         columns = [np.concatenate(column) for column in zip(*rows, strict=True)]
         ends = np.zeros((0, 3)) if surface.slide_ends is None else surface.slide_ends
         away = np.linalg.norm(columns[0][:, None] - ends, axis=2)
-        return cls(*[*columns, (away < SAME * size).any(1)])
+        return cls(*[*columns, (away < SAME_POINT * size).any(1)])
 
     def nearest(self, point: Floats, reach: float) -> int:
         """The corner within reach, m, of a point (3,); -1: there is none."""

@@ -19,7 +19,7 @@ from lamella.network.pattern import Pattern
 # the nearest whole numbers may put two umbilics on one node; then the next ones are tried
 MOST_WAYS = 8
 # a finer lattice that can be rounded is looked for in steps of this factor, so far
-FINER, FINEST = 1.12, 5.0
+FINER_FACTOR, FINEST_FACTOR = 1.12, 5.0
 
 
 def rounded_coordinates(
@@ -51,7 +51,7 @@ def rounded_coordinates(
             f"closing the net by rounding takes up to {worst:.2g} cells, and folds it near "
             f"({coordinates(folded.place)}) m",
             (
-                f"no number of cells up to {int(FINEST * lattice.cells)} that was tried does: "
+                f"no number of cells up to {int(FINEST_FACTOR * lattice.cells)} that was tried does: "
                 if cells is None
                 else f"write cells = {cells}, "
             )
@@ -80,8 +80,8 @@ def _finer(
 ) -> int | None:
     """A larger number of cells whose lattice is rounded without a fold; None: none that was tried."""
     wanted, last = float(lattice.cells), lattice.cells
-    while wanted < FINEST * lattice.cells:
-        wanted = max(FINER * wanted, last + 1.0)
+    while wanted < FINEST_FACTOR * lattice.cells:
+        wanted = max(FINER_FACTOR * wanted, last + 1.0)
         try:
             other = finer(round(wanted))
             if other.cells > last:

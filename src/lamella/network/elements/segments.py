@@ -22,7 +22,7 @@ from lamella.network.network import A
 from lamella.surface.element.places import Places
 
 # of a ray's first cell: a place taken for the singular node's own direction
-BESIDE = 1e-3
+BESIDE_NODE = 1e-3
 # nearer to the node than where chi has risen by this (cells) a ray is led out from it to points at these multiples of
 # the parameter, inside the rosette and the first cell
 RISEN, LEADING = 0.09, np.array([1.0, 1.5, 2.0, 2.5])
@@ -153,7 +153,7 @@ class ElementSegments:
         some = np.flatnonzero(self._singular[segment])
         first_is, last_is = self._at_zero[segment[some]].T
         beside = sigma.copy()
-        beside[some] = np.clip(sigma[some], BESIDE * first_is, 1 - BESIDE * last_is)
+        beside[some] = np.clip(sigma[some], BESIDE_NODE * first_is, 1 - BESIDE_NODE * last_is)
         moved = np.flatnonzero(beside != sigma)
         places, direction = self._find(self.spots(segment, beside) if len(moved) else spots, near)
         (_, chi_x, chi_y), (position, first, second) = self.cells.jet_and_tangents(places)

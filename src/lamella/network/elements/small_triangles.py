@@ -20,7 +20,7 @@ from lamella.surface.element.connectivity import connect
 from lamella.surface.element.lagrange import local_faces
 
 # small triangles reach over at most this many cells; parts of an element's edge at least and at most
-REACH, FEWEST, MOST = 0.4, 3, 24
+SMALL_TRIANGLE_CELLS, EDGE_PARTS_MIN, EDGE_PARTS_MAX = 0.4, 3, 24
 # cells; values as near as this to a whole number are moved off it
 NUDGE = 1e-9
 # lines of a family go on where the shift is as near as this to a whole number of cells
@@ -69,7 +69,7 @@ def small_triangles(cells: IntegerGridMap, cut: Booleans, umbilics: Integers) ->
     connectivity = cells.mesh.connectivity
     corner = cells.value[:, :3]
     span = np.abs(corner - np.roll(corner, 1, 1)).max()
-    parts = int(np.clip(np.ceil(span / REACH), FEWEST, MOST))
+    parts = int(np.clip(np.ceil(span / SMALL_TRIANGLE_CELLS), EDGE_PARTS_MIN, EDGE_PARTS_MAX))
     grid = connect(connectivity.faces, int(connectivity.faces.max()) + 1, parts)
     local = grid.basis.nodes
     point = sectors(grid, cut)

@@ -18,7 +18,7 @@ from lamella.network.isothermic.holonomy import around_vertex
 from lamella.network.isothermic.isothermic import Isothermic
 
 # cells: nearer to each other than that, whole shifts may ask two umbilics to meet
-NEAR = 1.0
+MEETING_CELLS = 1.0
 
 
 def between_umbilics(iso: Isothermic) -> Floats:
@@ -64,5 +64,5 @@ def keeps_apart(factors: Floats, shifts: Complexes, whole: Complexes) -> bool:
     shifts, whole : (t,) complex
         Those of now and the whole ones, in cells.
     """
-    near = np.abs(factors @ shifts) < NEAR
-    return not bool((np.abs(factors @ whole)[near] < NEAR / 2).any())
+    near = np.abs(factors @ shifts) < MEETING_CELLS
+    return not bool((np.abs(factors @ whole)[near] < MEETING_CELLS / 2).any())

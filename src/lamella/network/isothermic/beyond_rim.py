@@ -18,7 +18,7 @@ from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
 
 # a zero nearer to a place of the rim than this many longest edges of the element there
-NEAR = 1.5
+RIM_EDGES = 1.5
 # places along an edge of the rim
 SHARES = np.array([0.1, 0.5, 0.9])
 
@@ -36,7 +36,7 @@ def zeros_beyond_rim(surface: ElementSurface, apart: float) -> Floats:
     rise = 2 * there.log_mu_gradient
     vertices = surface.nodes[connectivity.faces[where.element]]
     longest = lengths(vertices - np.roll(vertices, 1, 1)).max(1)
-    close = np.abs(rise) * NEAR * longest > 1
+    close = np.abs(rise) * RIM_EDGES * longest > 1
     rise, where = rise[close], where[close]
     step = -rise / np.abs(rise) ** 2
     target = there.position[close] + step.real[:, None] * there.e_u[close] + step.imag[:, None] * there.e_v[close]

@@ -16,7 +16,7 @@ from lamella.base.ties import shortened
 from lamella.network.isothermic.integration_mesh import IntegrationMesh
 
 # how much longer an edge counts than it is, times the rosette's radius over its distance to the nearest umbilic
-CLEAR = 3.0
+CUT_CLEARANCE = 3.0
 
 
 def cut_edges(mesh: IntegrationMesh, odd: Integers) -> Booleans:
@@ -36,7 +36,7 @@ def cut_edges(mesh: IntegrationMesh, odd: Integers) -> Booleans:
     inside = np.flatnonzero(mesh.umbilics >= 0)
     if len(inside):
         near, which = cKDTree(mesh.nodes[mesh.umbilics[inside]]).query(mesh.nodes[ends].mean(1))
-        cost = cost * (1 + CLEAR * mesh.radii[inside][which] / np.maximum(near, 1e-300))
+        cost = cost * (1 + CUT_CLEARANCE * mesh.radii[inside][which] / np.maximum(near, 1e-300))
     # an edge from rim to rim would cut off what hangs on one edge; so would the rim itself
     on_rim = mesh.loop >= 0
     free = ~on_rim[ends].all(1) | (mesh.loop[ends[:, 0]] != mesh.loop[ends[:, 1]])

@@ -19,7 +19,7 @@ from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.vectors import diagonal, lengths
 from lamella.network.isothermic.beyond_rim import zeros_beyond_rim
 from lamella.network.isothermic.umbilic_depth import depth_errors
-from lamella.network.isothermic.umbilic_patch import RINGS, UmbilicPatch, umbilic_patch
+from lamella.network.isothermic.umbilic_patch import PATCH_RINGS, UmbilicPatch, umbilic_patch
 from lamella.surface.element.bisect import Parts, bisect, whole
 from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.inverse_map import find_places
@@ -32,19 +32,19 @@ from lamella.surface.element.umbilics import SURE, Umbilics, deviator_error
 from lamella.surface.points import SurfacePoints, shape_entries
 
 # of the elements
-ORDER = 4
+INTEGRATION_ORDER = 4
 # an umbilic this near to the boundary, over the surface's size, or as near as its place is unsure, is on it: no loop
 # runs around it, and whether it lies within or beyond is nothing the surface tells
 ON_RIM, RIM_SAMPLES = 2e-3, 4000
 # the same of a corner of it that turns by this angle, radians: there Q goes like a power that is not whole (that of
 # pi / angle - 2 between straight beams, above 0 below a right angle), and elements put a zero next to it
-AT_CORNER, SHARP = 0.015, 1.2
+RIM_CORNER, PATCH_SHARP_TURN = 0.015, 1.2
 # radius of a rosette over the distance to the boundary and to the next umbilic
-TO_RIM, TO_NEXT = 0.5, 0.28
+TO_RIM, PATCH_TO_NEXT = 0.5, 0.28
 # longest edge of the elements around over the distance from the umbilic
 GROWTH = 0.45
 # between a rosette and the elements around, over its radius
-GAP = 0.15
+PATCH_GAP = 0.15
 # radii of the circle on which the order's coefficient is measured, over the rosette's
 MEASURED = 0.5
 # share of the radius from which on a deviator is to be trusted within which the leading term alone counts
@@ -94,7 +94,7 @@ class IntegrationMesh:
 
     def at_corner(self, points: Floats) -> Booleans:
         """Whether points (n, 3) are next to a sharp corner of the rim."""
-        return _near(points, self.nodes[self.corners], AT_CORNER * diagonal(self.nodes))
+        return _near(points, self.nodes[self.corners], RIM_CORNER * diagonal(self.nodes))
 
 
 @dataclass(frozen=True)
@@ -152,8 +152,8 @@ def make_integration_mesh(surface: ElementSurface, umbilics: Umbilics) -> Integr
     along = np.concatenate([rim.at(np.arange(RIM_SAMPLES) / RIM_SAMPLES) for rim in rims])
     zeros = umbilics.position.reshape(-1, 3)
     to_rim, _ = cKDTree(along).query(zeros)
-    inside = to_rim > np.clip(depth_errors(surface), ON_RIM * size, AT_CORNER * size)
-    inside &= ~_near(zeros, surface.nodes[_corners(rims)], AT_CORNER * size)
+    inside = to_rim > np.clip(depth_errors(surface), ON_RIM * size, RIM_CORNER * size)
+    inside &= ~_near(zeros, surface.nodes[_corners(rims)], RIM_CORNER * size)
     radii = np.where(inside, _radii(surface, umbilics, to_rim), ON_RIM * size)
 
     beyond = zeros_beyond_rim(surface, ON_RIM * size)
@@ -178,11 +178,11 @@ def make_integration_mesh(surface: ElementSurface, umbilics: Umbilics) -> Integr
     nodes_of_parts = _positions(parts, surface)
     for number in np.flatnonzero(inside).tolist():
         plane, radius = planes[number], float(radii[number])
-        hole = _hole(parts, nodes_of_parts, zeros[number], (1 + GAP) * radius)
+        hole = _hole(parts, nodes_of_parts, zeros[number], (1 + PATCH_GAP) * radius)
         kept &= ~hole
         order = int(umbilics.orders[number])
         leading[number] = _leading(surface, plane, order, MEASURED * radius)
-        rose = umbilic_patch(order, float(np.angle(leading[number])), radius, ORDER)
+        rose = umbilic_patch(order, float(np.angle(leading[number])), radius, INTEGRATION_ORDER)
         ring = _ring(parts.faces[hole])
         gap = _between(plane.down(parts.points[ring]), rose.vertices[rose.rim])
         names = np.concatenate([ring, count + rose.rim])
@@ -193,7 +193,7 @@ def make_integration_mesh(surface: ElementSurface, umbilics: Umbilics) -> Integr
         count += len(rose.vertices)
     faces[0] = parts.faces[kept]
     used, all_faces = np.unique(np.concatenate(faces), return_inverse=True)
-    new = connect(all_faces.reshape(-1, 3), len(used), ORDER)
+    new = connect(all_faces.reshape(-1, 3), len(used), INTEGRATION_ORDER)
     at[inside] = np.searchsorted(used, at[inside])
     loop = np.concatenate([parts.loop, np.full(count - len(parts.loop), -1)])[used]
 
@@ -234,7 +234,7 @@ def make_integration_mesh(surface: ElementSurface, umbilics: Umbilics) -> Integr
 
 def _corners(rims: tuple[ElementRim, ...]) -> Integers:
     """Vertices at which the rim has a sharp corner, (c,)."""
-    return np.concatenate([rim.vertices[rim.turns > SHARP] for rim in rims])
+    return np.concatenate([rim.vertices[rim.turns > PATCH_SHARP_TURN] for rim in rims])
 
 
 def _near(points: Floats, others: Floats, reach: float) -> Booleans:
@@ -263,8 +263,8 @@ def onto_surface(
 
 
 def _positions(parts: Parts, surface: ElementSurface) -> Floats:
-    """Nodes of order `ORDER` of every part, (m, k, 3)."""
-    nodes = lagrange(ORDER).nodes
+    """Nodes of order `INTEGRATION_ORDER` of every part, (m, k, 3)."""
+    nodes = lagrange(INTEGRATION_ORDER).nodes
     where = parts.places(np.arange(len(parts.parent)), nodes)
     return np.ascontiguousarray(surface.polynomials.values(where).T).reshape(len(parts.parent), len(nodes), 3)
 
@@ -273,10 +273,10 @@ def _radii(surface: ElementSurface, umbilics: Umbilics, to_rim: Floats) -> Float
     """Radius of the rosette at each umbilic, m."""
     corners = surface.nodes[surface.connectivity.faces[umbilics.places.element]]
     edge = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).mean(1)
-    radii = np.minimum(RINGS * edge, TO_RIM * to_rim)
+    radii = np.minimum(PATCH_RINGS * edge, TO_RIM * to_rim)
     if len(radii) > 1:
         apart, _ = cKDTree(umbilics.position).query(umbilics.position, k=2)
-        radii = np.minimum(radii, TO_NEXT * apart[:, 1])
+        radii = np.minimum(radii, PATCH_TO_NEXT * apart[:, 1])
     return np.asarray(radii)
 
 
@@ -365,7 +365,7 @@ def _patch_nodes(
     barycentric = np.column_stack([1 - basis.nodes.sum(1), basis.nodes])
     flat = z[gap[:, :3]] @ barycentric.T
     moved = flat.copy()
-    for edge, blend in zip(basis.edge_nodes[:, 1:-1], edge_blends(ORDER), strict=True):
+    for edge, blend in zip(basis.edge_nodes[:, 1:-1], edge_blends(INTEGRATION_ORDER), strict=True):
         shift = z[gap[:, edge]] - flat[:, edge]
         moved += np.where(np.isnan(shift), 0, shift) @ blend.T
     free = np.isnan(z[gap])

@@ -26,7 +26,7 @@ MIDDLE = 0.5 + 0.5j
 # of the longest principal line: a shorter period around a hole is none to count cells on
 LEAST_PERIOD = 1e-2
 # waves around a hole in which the area may be uneven, and how uneven it is at least: far above the elements' errors
-MOST_WAVES, UNEVEN = 8, 0.03
+AREA_WAVES_MAX, AREA_UNEVEN = 8, 0.03
 # of a period: places this near before the rim's start are behind it
 AT_START = 1e-3
 
@@ -62,9 +62,9 @@ def _along_loop(place: Floats, area: Floats, start: float) -> float:
     Of the crests of several waves it is the first one from the rim's start on; where the area is alike all around, as
     on surfaces of revolution, that start itself.
     """
-    for waves in range(1, MOST_WAVES + 1):
+    for waves in range(1, AREA_WAVES_MAX + 1):
         share = complex((area * np.exp(2j * np.pi * waves * place)).sum() / area.sum())
-        if abs(share) > UNEVEN:
+        if abs(share) > AREA_UNEVEN:
             crest = float(np.angle(share)) / (2 * np.pi * waves)
             behind = (crest - start + AT_START) % (1 / waves) - AT_START
             return start + behind

@@ -15,7 +15,7 @@ from lamella.surface.element.quadrature import triangle_rule
 
 # of the mean |D|: where it is less the weight does not grow any more. Its square over the rounding of 1e-16 is what
 # remains of elements' stiffness against the sum of their rows, which has to be 0
-LEAST_SHARE = 1e-4
+POISSON_SHARE_MIN = 1e-4
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Poisson:
         a, b = self.form_a, self.form_b
         square = (g * _square(a) - 2 * f * (a * b.conj()).real + e * _square(b)) / (e * g - f * f)
         # |sqrt(D) dz|^2 is 2 |D|
-        return replace(self, area=self.area * np.maximum(square / square.mean(), LEAST_SHARE) ** 2)
+        return replace(self, area=self.area * np.maximum(square / square.mean(), POISSON_SHARE_MIN) ** 2)
 
     @cached_property
     def blocks(self) -> Floats:

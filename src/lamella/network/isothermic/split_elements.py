@@ -22,7 +22,7 @@ from lamella.surface.element.lagrange import EDGES
 from lamella.surface.element.surface import ElementSurface
 
 # a place of a line inside an element is one of its vertices where it is as far as this from the edges
-INSIDE = 0.08
+SPLIT_INSIDE = 0.08
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ def _inwards(
     pieces: dict[int, list[tuple[int, int]]],
 ) -> int:
     """A vertex of the line inside an element, where it is farthest from the edges; from where the line goes on."""
-    if not waiting or max(waiting)[0] < INSIDE:
+    if not waiting or max(waiting)[0] < SPLIT_INSIDE:
         return before
     vertex = vertices.new(-1)
     inner.setdefault(element, {})[vertex] = max(waiting)[1]

@@ -14,11 +14,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lamella.base.arrays import Booleans, Complexes, Floats, Integers
-from lamella.network.isothermic.straight_walk import PARTS, FlatTriangles, Heads
-from lamella.network.isothermic.tight_lines import CLEAR, Course, Passed, tightened
+from lamella.network.isothermic.straight_walk import WALK_PARTS, FlatTriangles, Heads
+from lamella.network.isothermic.tight_lines import TIGHT_CLEAR, Course, Passed, tightened
 
-# directions out of each small triangle at an umbilic; from a place on a rim, within WIDE of its normal, rad
-FAN, RIM_FAN, WIDE = 12, 9, 1.0
+# directions out of each small triangle at an umbilic; from a place on a rim, within CUT_WIDTH of its normal, rad
+FAN, RIM_FAN, CUT_WIDTH = 12, 9, 1.0
 # lines this much longer than the shortest one are as short
 AS_SHORT = 2e-3
 # of a loop: places this near to each other are one
@@ -134,7 +134,7 @@ def _between_feet(flat: FlatTriangles, taken: Booleans, hole: int, feet: Floats)
     middles = np.sort((feet + gaps / 2)[gaps > ONE_PLACE] % 1)
     order = np.argsort(begin)
     at = order[np.searchsorted(begin[order], middles, side="right") - 1]
-    share = np.clip(((middles - begin[at]) % 1) / span[at], CLEAR, 1 - CLEAR)
+    share = np.clip(((middles - begin[at]) % 1) / span[at], TIGHT_CLEAR, 1 - TIGHT_CLEAR)
     first, last = flat.w[triangle[at], edge[at]], flat.w[triangle[at], (edge[at] + 1) % 3]
     place = first + share * (last - first)
     inwards = flat.inwards(triangle[at], edge[at], share)
@@ -205,7 +205,7 @@ def _shoot(flat: FlatTriangles, taken: Booleans, heads: Heads, origins: Complexe
             some, side = heads[out], edge[out]
             first = some.at_start(flat.w[some.triangle, side])
             last = some.at_start(flat.w[some.triangle, (side + 1) % 3])
-            share = np.clip(arrived[out], CLEAR, 1 - CLEAR)
+            share = np.clip(arrived[out], TIGHT_CLEAR, 1 - TIGHT_CLEAR)
             at = (begin[some.triangle, side] + share * span[some.triangle, side]) % 1
             foot = first + _foot(origins[some.line], first, last) * (last - first)
             rows.append((some.line, -1 - loop[out], at, first + share * (last - first), foot))
@@ -220,7 +220,7 @@ def _foot(origin: Complexes, first: Complexes, last: Complexes) -> Floats:
     """Shares of segments at which they are nearest to origins, off their ends."""
     along = last - first
     share = ((origin - first) * along.conj()).real / np.maximum(np.abs(along) ** 2, 1e-300)
-    return np.asarray(np.clip(share, CLEAR, 1 - CLEAR))
+    return np.asarray(np.clip(share, TIGHT_CLEAR, 1 - TIGHT_CLEAR))
 
 
 def _from_umbilic(flat: FlatTriangles, taken: Booleans, vertex: int) -> list[_Sight]:
@@ -246,7 +246,7 @@ def _from_loop(flat: FlatTriangles, taken: Booleans, hole: int) -> list[_Sight]:
     """The shortest straight lines from a hole to each other loop."""
     triangle, edge = flat.rim_chain(hole)
     # from the middle of every element's edge
-    some = np.arange(PARTS // 2, len(triangle), PARTS)
+    some = np.arange(WALK_PARTS // 2, len(triangle), WALK_PARTS)
     hits, start = _fan(flat, taken, hole, triangle[some], edge[some], np.full(len(some), 0.5), RIM_FAN)
     begin, span = (part[triangle, edge] for part in flat.rim_places)
     result = []
@@ -256,12 +256,12 @@ def _from_loop(flat: FlatTriangles, taken: Booleans, hole: int) -> list[_Sight]:
         np.minimum.at(least, start[hits.line[mine]], hits.distance[mine])
         if np.isfinite(least).all() and least.max() < (1 + AS_SHORT) * least.min():
             # alike all around: from where the loop begins
-            at, share = int(begin.argmin()), CLEAR
+            at, share = int(begin.argmin()), TIGHT_CLEAR
         else:
             near = _shortest(least, ((begin + span / 2) % 1)[some])
             step = _least_of_parabola(least, int(near[least[near].argmin()]))
-            at = (PARTS // 2 + int(np.floor(PARTS * step + 0.5))) % len(triangle)
-            share = float(np.clip((PARTS * step + 0.5) % 1, CLEAR, 1 - CLEAR))
+            at = (WALK_PARTS // 2 + int(np.floor(WALK_PARTS * step + 0.5))) % len(triangle)
+            share = float(np.clip((WALK_PARTS * step + 0.5) % 1, TIGHT_CLEAR, 1 - TIGHT_CLEAR))
         sight = _from_place(flat, taken, _Start(-1 - hole, int(triangle[at]), int(edge[at]), share), end)
         if sight is not None:
             result.append(sight)
@@ -283,7 +283,7 @@ def _fan(
     first, last = flat.w[triangle, edge], flat.w[triangle, (edge + 1) % 3]
     origin = (first + share * (last - first))[start]
     inwards = (1j * (last - first) / np.abs(last - first))[start]
-    turn = np.tile(np.linspace(-WIDE, WIDE, count), len(triangle))
+    turn = np.tile(np.linspace(-CUT_WIDTH, CUT_WIDTH, count), len(triangle))
     heads = Heads.out(triangle[start], edge[start], origin, inwards * np.exp(1j * turn))
     return _shoot(flat, taken, heads, origin, -1 - hole), start
 
@@ -356,9 +356,9 @@ def _next_wedge(flat: FlatTriangles, start: _Start, goal: complex, aside: int) -
 def _next_element(flat: FlatTriangles, start: _Start, share: float) -> _Start:
     """The end of the next element's edge along a rim, behind (share above 1) or before that of a start."""
     triangle, edge = flat.rim_chain(-1 - start.begin)
-    index = int(np.flatnonzero((triangle == start.triangle) & (edge == start.edge))[0]) // PARTS * PARTS
-    index = (index + PARTS if share > 1 else index - 1) % len(triangle)
-    return _Start(start.begin, int(triangle[index]), int(edge[index]), CLEAR if share > 1 else 1 - CLEAR)
+    index = int(np.flatnonzero((triangle == start.triangle) & (edge == start.edge))[0]) // WALK_PARTS * WALK_PARTS
+    index = (index + WALK_PARTS if share > 1 else index - 1) % len(triangle)
+    return _Start(start.begin, int(triangle[index]), int(edge[index]), TIGHT_CLEAR if share > 1 else 1 - TIGHT_CLEAR)
 
 
 def _followed(flat: FlatTriangles, taken: Booleans, start: _Start, end: int, goal: complex) -> Passed | None:
@@ -376,13 +376,13 @@ def _followed(flat: FlatTriangles, taken: Booleans, start: _Start, end: int, goa
         share = _where_crossed(origin, goal - origin, first, last)
         head = Heads.out(*(np.array([x]) for x in (start.triangle, corner, origin, goal - origin)))
         head = head.through(flat, np.array([start.edge]), np.array([origin]))
-    passed = [(start.triangle, start.edge, float(np.clip(share, CLEAR, 1 - CLEAR)), 1.0, 0j)]
+    passed = [(start.triangle, start.edge, float(np.clip(share, TIGHT_CLEAR, 1 - TIGHT_CLEAR)), 1.0, 0j)]
     for _ in range(flat.most_steps):
         if taken[head.triangle[0]]:
             return None
         # `place` stays where the line set out: which vertices lie to its left is a matter of one straight line
         edge, share_there, _ = head.exits(flat)
-        there = int(head.triangle[0]), int(edge[0]), float(np.clip(share_there[0], CLEAR, 1 - CLEAR))
+        there = int(head.triangle[0]), int(edge[0]), float(np.clip(share_there[0], TIGHT_CLEAR, 1 - TIGHT_CLEAR))
         passed.append((*there, float(head.sign[0]), complex(head.shift[0])))
         loop = int(flat.loop[head.triangle, edge][0])
         if loop >= 0:

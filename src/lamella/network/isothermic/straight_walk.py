@@ -17,9 +17,9 @@ from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.lagrange import EDGES, lagrange, local_faces
 
 # small triangles along the edge of an element
-PARTS = 3
+WALK_PARTS = 3
 # a straight line passes this many triangles at most, over the root of how many there are: what goes on has lost its way
-LONGEST = 8
+WALK_LENGTH_MAX = 8
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class FlatTriangles:
     ----------
     iso : Isothermic
     grid : Connectivity
-        Of the triangles; triangle t is number t % PARTS^2 of element t // PARTS^2.
+        Of the triangles; triangle t is number t % WALK_PARTS^2 of element t // WALK_PARTS^2.
     points : (g, 3)
         m.
     w : (t, 3) complex
@@ -57,8 +57,8 @@ class FlatTriangles:
     def of(cls, iso: Isothermic) -> FlatTriangles:
         """Those of isothermic coordinates."""
         connectivity = iso.mesh.connectivity
-        fine = connect(connectivity.faces, len(iso.mesh.loop), PARTS)
-        faces = local_faces(PARTS)
+        fine = connect(connectivity.faces, len(iso.mesh.loop), WALK_PARTS)
+        faces = local_faces(WALK_PARTS)
         shapes = connectivity.basis.basis(fine.basis.nodes)
         points = np.empty((fine.node_count, 3))
         points[fine.elements] = np.einsum("gk,mkc->mgc", shapes, iso.mesh.nodes[connectivity.elements])
@@ -81,7 +81,7 @@ class FlatTriangles:
     @property
     def most_steps(self) -> int:
         """Triangles that a straight line passes at most."""
-        return int(LONGEST * np.sqrt(len(self.w))) + 100
+        return int(WALK_LENGTH_MAX * np.sqrt(len(self.w))) + 100
 
     @cached_property
     def rim_places(self) -> tuple[Floats, Floats]:
@@ -102,10 +102,10 @@ class FlatTriangles:
 
         It runs as the element's edge does.
         """
-        share = share_of_edge(local, edge) * PARTS
-        part = int(np.clip(np.floor(share), 0, PARTS - 1))
-        nodes = lagrange(PARTS).edge_nodes[edge]
-        faces = local_faces(PARTS)
+        share = share_of_edge(local, edge) * WALK_PARTS
+        part = int(np.clip(np.floor(share), 0, WALK_PARTS - 1))
+        nodes = lagrange(WALK_PARTS).edge_nodes[edge]
+        faces = local_faces(WALK_PARTS)
         one = (faces == nodes[part]) & (np.roll(faces, -1, 1) == nodes[part + 1])
         small, at = (int(part[0]) for part in np.nonzero(one))
         return (element * len(faces) + small, at), float(share - part)
@@ -113,7 +113,7 @@ class FlatTriangles:
     def inwards(self, triangle: Integers, edge: Integers, share: Floats) -> Complexes:
         """Unit directions of w at right angles to the rim, from shares of small edges on it, (n,)."""
         basis = self.iso.mesh.connectivity.basis
-        small = lagrange(PARTS).nodes[local_faces(PARTS)]
+        small = lagrange(WALK_PARTS).nodes[local_faces(WALK_PARTS)]
         element, number = np.divmod(triangle, len(small))
         first, last = small[number, edge], small[number, (edge + 1) % 3]
         local, along = first + share[:, None] * (last - first), last - first
@@ -204,10 +204,10 @@ class Heads:
 
 
 def edges_of_element() -> Integers:
-    """Edge of its element on which each edge of each small triangle lies, -1: none, (PARTS^2, 3)."""
-    faces = local_faces(PARTS)
+    """Edge of its element on which each edge of each small triangle lies, -1: none, (WALK_PARTS^2, 3)."""
+    faces = local_faces(WALK_PARTS)
     result = np.full((len(faces), 3), -1)
-    for edge, nodes in enumerate(lagrange(PARTS).edge_nodes):
+    for edge, nodes in enumerate(lagrange(WALK_PARTS).edge_nodes):
         there = np.isin(faces, nodes)
         for local, (a, b) in enumerate(EDGES):
             result[there[:, a] & there[:, b], local] = edge

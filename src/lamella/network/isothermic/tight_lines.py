@@ -12,16 +12,16 @@ import numpy as np
 
 from lamella.base.arrays import Complexes, Floats, Integers
 from lamella.base.triangle import CORNERS
-from lamella.network.isothermic.straight_walk import PARTS, FlatTriangles, cross, edges_of_element, share_of_edge
+from lamella.network.isothermic.straight_walk import WALK_PARTS, FlatTriangles, cross, edges_of_element, share_of_edge
 from lamella.surface.element.lagrange import EDGES, lagrange, local_faces
 
 _AXES = np.array([CORNERS[b] - CORNERS[a] for a, b in EDGES])
 # of a small edge: a line passes as far as this from its ends; of an element's edge on the rim
-CLEAR, CLEAR_RIM = 0.01, 0.01
+TIGHT_CLEAR, CLEAR_RIM = 0.01, 0.01
 # steps of Newton's method, and how far one goes at most
-STEPS, LONGEST_STEP = 12, 0.3
+TIGHT_NEWTON_STEPS, LONGEST_STEP = 12, 0.3
 # of an element's edge: how far beyond it the end of a line is looked for
-BEYOND = 0.5
+BEYOND_EDGE = 0.5
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def tightened(flat: FlatTriangles, begin: int, end: int, passed: Passed, free: b
         Whether its ends on a rim go to where they are nearest to each other.
     """
     connectivity = flat.iso.mesh.connectivity
-    small = lagrange(PARTS).nodes[local_faces(PARTS)]
+    small = lagrange(WALK_PARTS).nodes[local_faces(WALK_PARTS)]
     element, number = np.divmod(passed.triangle, len(small))
     one, other = small[number, passed.edge], small[number, (passed.edge + 1) % 3]
     edge = edges_of_element()[number, passed.edge]
@@ -134,7 +134,7 @@ def tightened(flat: FlatTriangles, begin: int, end: int, passed: Passed, free: b
     for index, at in ((0, first), (-1, last)) if begin < 0 else ((-1, last),):
         local[index] = CORNERS[edge[index]] + np.clip(at, CLEAR_RIM, 1 - CLEAR_RIM) * _AXES[edge[index]]
     # a place inside that had to keep clear of the end of its small edge is not on the line
-    kept = (edge >= 0) | ((share > CLEAR) & (share < 1 - CLEAR))
+    kept = (edge >= 0) | ((share > TIGHT_CLEAR) & (share < 1 - TIGHT_CLEAR))
     return Tight(Course(begin, end, element[kept], edge[kept], local[kept], passed.triangle), first, last, goal)
 
 
@@ -145,7 +145,7 @@ def _nearest_pair(
     curves = [(curve, curve.deriv(), curve.deriv(2)) for curve in (one, other)]
     at = np.array([s, t])
     begun = at.copy()
-    for _ in range(STEPS):
+    for _ in range(TIGHT_NEWTON_STEPS):
         (a, a1, a2), (b, b1, b2) = (tuple(complex(c(x)) for c in curve) for curve, x in zip(curves, at, strict=True))
         apart = b - a
         slope = np.array([-(apart * a1.conjugate()).real, (apart * b1.conjugate()).real])
@@ -162,7 +162,7 @@ def _nearest_pair(
         there = values > 1e-9 * values.max()
         step = -axes[:, there] @ ((axes[:, there].T @ slope) / values[there])
         at = at + step * min(1.0, LONGEST_STEP / max(float(np.abs(step).max()), 1e-300))
-        at = np.clip(at, -BEYOND, 1 + BEYOND)
+        at = np.clip(at, -BEYOND_EDGE, 1 + BEYOND_EDGE)
     return (float(begun[0]) if one.degree() == 0 else float(at[0])), float(at[1])
 
 
@@ -174,11 +174,11 @@ def _on_line(
     share = passed.share.copy()
     value = (flat.iso.value[element] - passed.shift[:, None]) * passed.sign[:, None]
     towards = np.asarray(ends[1] - ends[0])
-    for _ in range(STEPS // 2):
+    for _ in range(TIGHT_NEWTON_STEPS // 2):
         local = one + share[:, None] * (other - one)
         w, x, y = ((value * basis.basis(local, *d)).sum(1) for d in ((0, 0), (1, 0), (0, 1)))
         slope = cross(towards, x * (other - one)[:, 0] + y * (other - one)[:, 1])
         off = cross(towards, w - ends[0])
         step = np.where(slope == 0, 0.0, -off / np.where(slope == 0, 1.0, slope))
-        share = np.clip(share + np.clip(step, -LONGEST_STEP, LONGEST_STEP), CLEAR, 1 - CLEAR)
+        share = np.clip(share + np.clip(step, -LONGEST_STEP, LONGEST_STEP), TIGHT_CLEAR, 1 - TIGHT_CLEAR)
     return share

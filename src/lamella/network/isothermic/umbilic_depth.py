@@ -17,7 +17,7 @@ from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import deviator_error
 
 # of an element: over which D is differentiated
-BESIDE = 1e-3
+DIFFERENCE_STEP = 1e-3
 
 
 @dataclass(frozen=True)
@@ -98,9 +98,9 @@ def depth_errors(surface: ElementSurface) -> Floats:
 
 def _slopes(surface: ElementSurface, places: Places, axis: int) -> tuple[Complexes, Floats]:
     """Derivatives of the deviator, 1/m, (n,), and of the position, m, (n, 3), by a local coordinate."""
-    beside = BESIDE * np.eye(2)[axis]
+    beside = DIFFERENCE_STEP * np.eye(2)[axis]
     ahead, behind = (surface.at(Places(places.element, places.local + direction * beside)) for direction in (1.0, -1.0))
     return (
-        np.asarray((ahead.deviator - behind.deviator) / (2 * BESIDE)),
-        np.asarray((ahead.position - behind.position) / (2 * BESIDE)),
+        np.asarray((ahead.deviator - behind.deviator) / (2 * DIFFERENCE_STEP)),
+        np.asarray((ahead.position - behind.position) / (2 * DIFFERENCE_STEP)),
     )

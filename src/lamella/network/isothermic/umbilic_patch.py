@@ -16,7 +16,7 @@ from lamella.base.arrays import Complexes, Integers
 from lamella.surface.element.lagrange import lagrange, subdivision
 
 # triangles along a ray from the umbilic to the rosette's rim
-RINGS = 3
+PATCH_RINGS = 3
 
 
 @dataclass(frozen=True)
@@ -57,13 +57,13 @@ def umbilic_patch(zero_order: int, argument: float, radius: float, order: int) -
     power = 2 if zero_order % 2 else 1
     corner = (np.pi * np.arange(wedges + 1) - argument) / (zero_order + 2)
     start = radius ** (1 / power) * np.exp(1j * corner / power)
-    local, triangles = subdivision(RINGS)
-    grid = np.rint(local * RINGS).astype(np.int64)
+    local, triangles = subdivision(PATCH_RINGS)
+    grid = np.rint(local * PATCH_RINGS).astype(np.int64)
     ring, step = grid.sum(1), grid[:, 1]
     # one row of numbers a ring: wedge after wedge; the last point of a wedge is the first of the next one
     first = 1 + wedges * ring * (ring - 1) // 2
     faces, nodes = [], []
-    vertices = np.zeros(1 + wedges * RINGS * (RINGS + 1) // 2, complex)
+    vertices = np.zeros(1 + wedges * PATCH_RINGS * (PATCH_RINGS + 1) // 2, complex)
     lattice = lagrange(order).nodes
     barycentric = np.column_stack([1 - lattice.sum(1), lattice])
     for wedge in range(wedges):
@@ -73,5 +73,5 @@ def umbilic_patch(zero_order: int, argument: float, radius: float, order: int) -
         vertices[number] = zeta**power
         faces.append(number[triangles])
         nodes.append((barycentric @ zeta[triangles].T).T ** power)
-    rim = np.arange(1 + wedges * RINGS * (RINGS - 1) // 2, len(vertices))
+    rim = np.arange(1 + wedges * PATCH_RINGS * (PATCH_RINGS - 1) // 2, len(vertices))
     return UmbilicPatch(vertices, np.concatenate(faces), np.concatenate(nodes), rim)

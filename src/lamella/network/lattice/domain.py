@@ -25,7 +25,7 @@ from lamella.surface.closed_forms.outline import Disc, Rectangle, Ring
 from lamella.surface.closed_forms.scherk import Scherk, asymptotic_to_conformal
 
 # places along a loop start a little before 0, so that rounding does not send its first node to the end
-FIRST = 1e-9
+LOOP_START = 1e-9
 # cells; a lattice point this close to the rim counts as on it (docs/files.md)
 RIM_TOLERANCE = 1e-6
 
@@ -223,7 +223,7 @@ class Band(PlaneDomain):
         return Rim(
             np.minimum(to_start, to_end) / abs(self.slope),
             at_end.astype(np.int64),
-            np.mod(sense * where.imag + FIRST, 2 * np.pi),
+            np.mod(sense * where.imag + LOOP_START, 2 * np.pi),
             1j * sense,
         )
 
@@ -302,7 +302,7 @@ class ScherkDomain(PlaneDomain):
     def rim(self, where: Complexes) -> Rim:
         p, q = self._asymptotic(where.imag), self._asymptotic(where.real)
         # side directions in (q, p), going round counter-clockwise; a corner belongs to the side that starts there
-        place = np.mod(np.angle(q + 1j * p) + FIRST, 2 * np.pi)
+        place = np.mod(np.angle(q + 1j * p) + LOOP_START, 2 * np.pi)
         along = np.array([-1 + 1j, -1 - 1j, 1 - 1j, 1 + 1j])[(place // (np.pi / 2)).astype(int) % 4]
         rate_q, rate_p = 1 / np.sqrt(np.cosh(q)), 1 / np.sqrt(np.cosh(p))
         distance = (self.limit - np.abs(p) - np.abs(q)) * np.minimum(rate_p, rate_q) / abs(self.slope)
@@ -331,7 +331,7 @@ class DiscDomain(PlaneDomain):
         return Rim(
             (self.radius - np.abs(where)) / abs(self.slope),
             np.zeros(len(where), np.int64),
-            np.mod(np.angle(where) + FIRST, 2 * np.pi),
+            np.mod(np.angle(where) + LOOP_START, 2 * np.pi),
             np.exp(1j * (np.angle(where) + np.pi / 2)),
         )
 
@@ -394,6 +394,6 @@ class StarDomain(Domain):
         return Rim(
             (self.radius - np.abs(where)) * rate,
             np.zeros(len(where), np.int64),
-            np.mod(np.angle(where) + FIRST, 2 * np.pi),
+            np.mod(np.angle(where) + LOOP_START, 2 * np.pi),
             np.exp(1j * (np.angle(where) + np.pi / 2)),
         )

@@ -12,7 +12,7 @@ from lamella.network.lattice.domain import RIM_TOLERANCE, Domain, Lines, Rim
 from lamella.network.network import BOUNDARY, REGULAR, SINGULAR, A
 
 # cells; how far from its end a line may meet the rim tolerance: lines that graze the rim do so at a small angle
-NEAR_END = 0.02
+LINE_NEAR_END = 0.02
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,8 @@ def build_lattice(domain: Domain, lines: Lines) -> Lattice:
     lines : Lines
         Some or all of ``domain.lines()``.
     """
-    first = np.ceil(lines.start - NEAR_END).astype(np.int64)
-    count = np.maximum(np.floor(lines.end + NEAR_END).astype(np.int64) - first + 1, 0)
+    first = np.ceil(lines.start - LINE_NEAR_END).astype(np.int64)
+    count = np.maximum(np.floor(lines.end + LINE_NEAR_END).astype(np.int64) - first + 1, 0)
     line = np.repeat(np.arange(len(count)), count)
     t = (first[line] + ragged_ranges(count)).astype(float)
     place = domain.place(lines.sheet[line], lines.base[line] + t * lines.direction[line])
@@ -85,8 +85,8 @@ def build_lattice(domain: Domain, lines: Lines) -> Lattice:
     # judged once for both lines of a crossing, whose places differ by rounding
     on_rim = np.bincount(crossing, on_rim, minlength=crossings)[crossing] > 0
     on_rim &= ~singular
-    at_start = singular | (on_rim & (t <= lines.start[line] + NEAR_END))
-    at_end = on_rim & (t >= lines.end[line] - NEAR_END)
+    at_start = singular | (on_rim & (t <= lines.start[line] + LINE_NEAR_END))
+    at_end = on_rim & (t >= lines.end[line] - LINE_NEAR_END)
     # on the rim and at a line's end a lattice point is a node even when the other family is missing
     node_here = at_start | at_end | ((degree_a > 0) & (degree_b > 0))[crossing]
 

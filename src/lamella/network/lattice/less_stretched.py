@@ -18,7 +18,7 @@ from lamella.surface.closed_forms.scherk import Scherk
 
 # by which the number of cells, and the distance from infinity, grow from one trial to the next
 CELLS_BY, DISTANCE_BY = 1.25, 4.0
-MOST_TRIALS = 12
+STRETCH_TRIALS_MAX = 12
 
 
 def less_stretched(surface: ClosedForm, density: Density, trace: Callable[[ClosedForm, Density], Any]) -> str:
@@ -43,12 +43,12 @@ def less_stretched(surface: ClosedForm, density: Density, trace: Callable[[Close
             return False
         return True
 
-    counts = (int(np.ceil(density.cells * CELLS_BY**k)) for k in range(1, MOST_TRIALS + 1))
+    counts = (int(np.ceil(density.cells * CELLS_BY**k)) for k in range(1, STRETCH_TRIALS_MAX + 1))
     cells = next((count for count in counts if makes(surface, count)), None)
     ways = [f"write cells = {cells}"] if cells else []
     if isinstance(surface, Scherk):
         left = np.pi / 2 - surface.extent
-        extents = (float(f"{np.pi / 2 - left * DISTANCE_BY**k:.9g}") for k in range(1, MOST_TRIALS + 1))
+        extents = (float(f"{np.pi / 2 - left * DISTANCE_BY**k:.9g}") for k in range(1, STRETCH_TRIALS_MAX + 1))
         extent = next((value for value in extents if makes(Scherk(value, surface.scale), density.cells)), None)
         ways += [f"end the surface earlier: extent = {extent:.9g}"] if extent else []
     return ", or ".join(ways) or "end the surface earlier"

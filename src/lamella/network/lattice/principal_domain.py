@@ -10,7 +10,7 @@ from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.surface.closed_forms.closed_form import ClosedForm
 
 # halvings that leave rounding only
-HALVINGS = 60
+DOMAIN_HALVINGS = 60
 
 
 class PrincipalRectangle(RectangleDomain):
@@ -49,7 +49,7 @@ class PrincipalScherk(ScherkDomain):
         # the place nearest to the middle is the middle of the chord
         foot = -(zeta * np.conj(rate)).real / abs(rate) ** 2
         inside, outside = np.zeros(len(base)), np.full(len(base), 2 * self.reach / abs(rate))
-        for _ in range(HALVINGS):
+        for _ in range(DOMAIN_HALVINGS):
             half = (inside + outside) / 2
             at = zeta + (foot + half) * rate
             within = np.abs(self._asymptotic(at.imag)) + np.abs(self._asymptotic(at.real)) < self.limit

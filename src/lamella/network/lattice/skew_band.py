@@ -27,13 +27,13 @@ from lamella.surface.darboux import Darboux, lamella_darboux
 from lamella.surface.points import SurfacePoints
 
 # degrees; families that cross at less make no net
-LEAST_ANGLE = 20.0
+CROSSING_ANGLE_MIN = 20.0
 # share of the range that is kept back, so that its ends hold when four digits of them are written
-MARGIN = 1e-3
+RANGE_MARGIN = 1e-3
 # degrees of the series for dp/dU to begin with and at most, and what its last terms may be
-DEGREE, MOST_DEGREE, TAIL = 32, 4096, 1e-13
+SERIES_DEGREE, MOST_DEGREE, SERIES_TAIL = 32, 4096, 1e-13
 # Newton's steps for U of given p
-STEPS = 60
+PROFILE_NEWTON_STEPS = 60
 
 
 def check_normal_curvature(surface: ClosedForm, wanted: float) -> None:
@@ -51,13 +51,14 @@ def check_normal_curvature(surface: ClosedForm, wanted: float) -> None:
     u = np.linspace(surface.outline.start, surface.outline.end, 2001)
     # the principal curvatures are H -+ |T| / r^2
     half = abs(surface.flux) / float(surface.radius_at(u).max()) ** 2
-    reach = half * np.cos(np.radians(LEAST_ANGLE))
+    reach = half * np.cos(np.radians(CROSSING_ANGLE_MIN))
     middle = surface.mean_curvature
-    low, high = (middle + (1 - MARGIN) * way * reach for way in (-1, 1))
+    low, high = (middle + (1 - RANGE_MARGIN) * way * reach for way in (-1, 1))
     if abs(wanted - middle) > reach:
         raise InputError(
             f"normal_curvature = {wanted:g} 1/m: where the surface is widest normal curvatures run from "
-            f"{middle - half:.4g} to {middle + half:.4g} 1/m, and lines have to cross at {LEAST_ANGLE:g} deg or more",
+            f"{middle - half:.4g} to {middle + half:.4g} 1/m, and lines have to cross at {CROSSING_ANGLE_MIN:g} deg "
+            "or more",
             f"choose a value from {rounded(low, up=True):g} to {rounded(high, up=False):g} 1/m, or a piece of the "
             "surface that is less wide",
             key,
@@ -78,9 +79,9 @@ class SkewBand(Band):
             c = excess * surface.radius_at(u) ** 2
             return np.asarray(((1 + c) / (1 - c)) ** power)
 
-        domain, degree = [self.ends.start, self.ends.end], DEGREE
+        domain, degree = [self.ends.start, self.ends.end], SERIES_DEGREE
         series = Chebyshev.interpolate(rate, degree, domain=domain)
-        while np.abs(series.coef[-4:]).max() > TAIL * np.abs(series.coef).max() and degree < MOST_DEGREE:
+        while np.abs(series.coef[-4:]).max() > SERIES_TAIL * np.abs(series.coef).max() and degree < MOST_DEGREE:
             degree *= 2
             series = Chebyshev.interpolate(rate, degree, domain=domain)
         self._rate, self._p = rate, series.integ(lbnd=0.0)
@@ -93,7 +94,7 @@ class SkewBand(Band):
         inside = np.clip(p, ends.start, ends.end)
         u = low + (inside - ends.start) / (ends.end - ends.start) * (high - low)
         below, above = np.full_like(u, low), np.full_like(u, high)
-        for _ in range(STEPS):
+        for _ in range(PROFILE_NEWTON_STEPS):
             residual = self._p(u) - inside
             below, above = np.where(residual < 0, u, below), np.where(residual > 0, u, above)
             moved = u - residual / self._rate(u)

@@ -21,7 +21,7 @@ import numpy as np
 from lamella.base.arrays import Booleans, Complexes, Floats
 
 # degrees; where families cross at less the net ends
-LEAST_ANGLE = 20.0
+CROSSING_ANGLE_MIN = 20.0
 # of the curvature scale: where |D| is below it a point counts as umbilic
 UMBILIC = 1e-3
 
@@ -54,12 +54,12 @@ class LineField:
         return np.asarray(np.exp(0.5j * np.angle(square)))
 
     def margin(self, mean: Floats, deviator: Complexes) -> Floats:
-        """Above 0 where the two families cross at `LEAST_ANGLE` or more, 1/m, (n,)."""
+        """Above 0 where the two families cross at `CROSSING_ANGLE_MIN` or more, 1/m, (n,)."""
         size = np.abs(deviator)
         bent = size - UMBILIC * self.scale
         if self.normal_curvature is None:
             return np.asarray(bent)
-        wide = size * np.cos(np.radians(LEAST_ANGLE)) - np.abs(self.normal_curvature - mean)
+        wide = size * np.cos(np.radians(CROSSING_ANGLE_MIN)) - np.abs(self.normal_curvature - mean)
         return np.asarray(np.minimum(wide, bent))
 
     def is_real(self, mean: Floats, deviator: Complexes) -> Booleans:

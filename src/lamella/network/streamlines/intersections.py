@@ -12,12 +12,12 @@ from lamella.network.streamlines.streamlines import Streamlines
 
 # of a chord: how far beyond its ends a crossing may seem to be at first
 SLACK = 0.6
-NEWTON_STEPS = 8
+CROSSING_NEWTON_STEPS = 8
 # of the spacing: where Newton's method ends, what lines that cross miss each other by at most, and how near to each
 # other crossings are one
-FINE, MISS, SAME = 1e-10, 1e-6, 1e-5
+CROSSING_TOLERANCE, CROSSING_MISS, SAME_CROSSING = 1e-10, 1e-6, 1e-5
 # cosine between normals of two sheets of a surface that lie side by side
-SAME_SIDE = 0.5
+CROSSING_SAME_SIDE = 0.5
 
 
 class Crossings(NamedTuple):
@@ -77,26 +77,26 @@ def _refined(lines: Streamlines, a: Integers, b: Integers, s_a: Floats, s_b: Flo
     """Crossings from guesses of them, each once."""
     lengths = lines.lengths
     off = np.full(len(a), np.inf)
-    for _ in range(NEWTON_STEPS):
+    for _ in range(CROSSING_NEWTON_STEPS):
         s_a, s_b = np.clip(s_a, 0, lengths[a]), np.clip(s_b, 0, lengths[b])
         _, sample_a, t_a = lines.at(a, s_a)
         _, sample_b, t_b = lines.at(b, s_b)
         apart = sample_b.position - sample_a.position
         off = np.linalg.norm(apart, axis=1)
-        off[(sample_a.normal * sample_b.normal).sum(1) < SAME_SIDE] = np.inf
-        if not (off > FINE * spacing).any():
+        off[(sample_a.normal * sample_b.normal).sum(1) < CROSSING_SAME_SIDE] = np.inf
+        if not (off > CROSSING_TOLERANCE * spacing).any():
             break
         x, y = _meet(t_a, t_b, apart)
         s_a, s_b = s_a + x, s_b + y
         # guesses that run away belong to no crossing
         kept = np.isfinite(off) & (np.abs(x) + np.abs(y) < 2 * spacing)
         a, b, s_a, s_b, off = a[kept], b[kept], s_a[kept], s_b[kept], off[kept]
-    met = off <= MISS * spacing
+    met = off <= CROSSING_MISS * spacing
     a, b, s_a, s_b = a[met], b[met], s_a[met], s_b[met]
     order = np.lexsort((s_a, b, a))
     a, b, s_a, s_b = a[order], b[order], s_a[order], s_b[order]
     again = np.zeros(len(a), bool)
-    again[1:] = (a[1:] == a[:-1]) & (b[1:] == b[:-1]) & (np.diff(s_a) < SAME * spacing)
+    again[1:] = (a[1:] == a[:-1]) & (b[1:] == b[:-1]) & (np.diff(s_a) < SAME_CROSSING * spacing)
     return Crossings(a[~again], b[~again], s_a[~again], s_b[~again])
 
 

@@ -13,16 +13,24 @@ from lamella.surface.element.places import Places
 # lines of each family that are tried, spread over the surface
 PROBES = 12
 # of the spacing: a line that comes back as near to its seed winds around
-BESIDE = 0.25
+SAME_LINE = 0.25
 # steps a spacing, and longest half over the surface's size
-STEPS, LONGEST = 3, 12.0
+SPACING_STEPS, HALF_LENGTH_MAX = 3, 12.0
 
 
 def wound(
     charts: Charts, field: LineField, seeds: Places, is_a: Booleans, *, spacing: float, size: float
 ) -> Streamlines:
     """Streamlines from seeds; those that come back to their seed are given up there."""
-    return trace(charts, field, seeds, is_a, step=spacing / STEPS, longest=LONGEST * size, beside=BESIDE * spacing)
+    return trace(
+        charts,
+        field,
+        seeds,
+        is_a,
+        step=spacing / SPACING_STEPS,
+        longest=HALF_LENGTH_MAX * size,
+        beside=SAME_LINE * spacing,
+    )
 
 
 def probes(

@@ -19,19 +19,19 @@ from lamella.base.ragged import ragged_ranges
 from lamella.base.ties import MARGIN, nearest_whole
 from lamella.network.charts.charts import Charts, ChartSample
 from lamella.network.streamlines.direction_field import LineField
-from lamella.network.streamlines.probing import LONGEST, wound
+from lamella.network.streamlines.probing import HALF_LENGTH_MAX, wound
 from lamella.network.streamlines.streamlines import Streamlines, finished, joined, trace
 from lamella.surface.element.places import Places
 
 # share of the seeds around a hole that must have directions, and sine of the angle to the rim they must have
-AROUND, ACROSS = 0.98, 0.17
+SEEDING_AROUND, ACROSS = 0.98, 0.17
 # of the spacing across: a line passes this near to a seed that is not used then, and no nearer than this to a gap
-CLOSE, GAP = 0.6, 1.0
-MOST_ROUNDS = 60
+CLOSE, GAP_WIDTH = 0.6, 1.0
+SEEDING_ROUNDS_MAX = 60
 # gaps filled at once, and how far apart they are, in spacings
-MOST_GAPS, APART = 24, 4.0
+MOST_GAPS, GAPS_APART = 24, 4.0
 # points of the rim that tell how deep inside a place is
-RIM_POINTS = 200
+SEEDING_RIM_POINTS = 200
 # of the size: what a place loses for being this far from the middle
 OFF_MIDDLE = 0.25
 
@@ -60,18 +60,18 @@ class Guide:
 
 def choose_guide(charts: Charts, field: LineField, size: float) -> Guide:
     """The first guide of a surface, whose size is the diagonal of its bounding box (m)."""
-    hole = charts.hole(RIM_POINTS)
+    hole = charts.hole(SEEDING_RIM_POINTS)
     if hole is not None:
         where, length = hole
         sample = charts.evaluate(where)
         usable = field.margin(sample.mean, sample.deviator) > 0
         sines = _sines_to_rim(charts, field, where, sample)
-        if usable.mean() >= AROUND and np.median(sines) > ACROSS:
+        if usable.mean() >= SEEDING_AROUND and np.median(sines) > ACROSS:
             crossing = field.crossing_sine(sample.mean, sample.deviator)
             return Guide(True, where, length, float(np.median((sines / crossing)[usable])))
     middle = _middle(charts, field, size)
     twice, families = middle[np.zeros(2, np.int64)], np.array([True, False])
-    lines = finished(trace(charts, field, twice, families, step=size / 50, longest=LONGEST * size))
+    lines = finished(trace(charts, field, twice, families, step=size / 50, longest=HALF_LENGTH_MAX * size))
     return Guide(False, middle, float(lines.lengths.max()), 1.0)
 
 
@@ -91,7 +91,7 @@ def _middle(charts: Charts, field: LineField, size: float) -> Places:
     where, area = charts.samples()
     sample = charts.evaluate(where)
     usable = field.margin(sample.mean, sample.deviator) > 0
-    rim = charts.evaluate(charts.rim_points(RIM_POINTS)).position
+    rim = charts.evaluate(charts.rim_points(SEEDING_RIM_POINTS)).position
     tree = cKDTree(np.concatenate([rim, sample.position[~usable]]))
     depth = tree.query(sample.position)[0]
     centre = (sample.position[usable] * area[usable, None]).sum(0) / area[usable].sum()
@@ -152,11 +152,13 @@ def seeded_lines(charts: Charts, field: LineField, guide: Guide, distance: float
     usable = field.margin(sample.mean, sample.deviator) > 0
     samples, position = samples[usable], sample.position[usable]
     across = spacing * field.crossing_sine(sample.mean, sample.deviator)[usable]
-    for _ in range(MOST_ROUNDS):
+    for _ in range(SEEDING_ROUNDS_MAX):
         # lines that do not end are refused: more of them tell nothing
         if lines is None or lines.endless.any():
             break
-        gaps = [_gaps(position, how.distances(position, lines, one) / across, APART * spacing) for one in (True, False)]
+        gaps = [
+            _gaps(position, how.distances(position, lines, one) / across, GAPS_APART * spacing) for one in (True, False)
+        ]
         found = np.concatenate(gaps)
         if not len(found):
             break
@@ -174,11 +176,11 @@ def seeded_lines(charts: Charts, field: LineField, guide: Guide, distance: float
 
 
 def _gaps(position: Floats, wide: Floats, apart: float) -> Integers:
-    """The widest gaps, away from each other: rows of points (n, 3) whose share of a gap is above `GAP`."""
+    """The widest gaps, away from each other: rows of points (n, 3) whose share of a gap is above `GAP_WIDTH`."""
     chosen: list[int] = []
     # of gaps as wide as each other on a symmetric surface the first
     wide = np.rint(wide / MARGIN)
-    left = np.flatnonzero(wide > GAP / MARGIN)
+    left = np.flatnonzero(wide > GAP_WIDTH / MARGIN)
     while len(left) and len(chosen) < MOST_GAPS:
         row = left[wide[left].argmax()]
         chosen.append(int(row))

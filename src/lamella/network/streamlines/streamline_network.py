@@ -24,7 +24,7 @@ from lamella.network.density_request import DensityRequest
 from lamella.network.network import A, B, Network
 from lamella.network.pattern import Pattern
 from lamella.network.sampling import Division, divide, parts_of
-from lamella.network.streamlines.direction_field import LEAST_ANGLE
+from lamella.network.streamlines.direction_field import CROSSING_ANGLE_MIN
 from lamella.network.streamlines.intersections import Crossings, find_crossings
 from lamella.network.streamlines.seeding import Seeded, seeded_lines
 from lamella.network.streamlines.stops import (
@@ -48,7 +48,7 @@ from lamella.surface.element.places import Places
 # how far the median cell edge may be from the spacing asked for, and how often seeds are spaced anew for it
 OFF_SPACING, MOST_TRIES = 0.1, 3
 # share of the area worth telling
-LEAST_SHARE = 1e-3
+AREA_SHARE_MIN = 1e-3
 # of the curvature scale: the normal curvature of lamellas is promised to be off by no more (docs/getting-started.md)
 PROMISED = 2e-3
 
@@ -116,12 +116,14 @@ class TracedNetwork:
         """
         wanted = self.network.pattern.normal_curvature
         unreal, flat = self.reach.unreal, self.reach.flat
-        if wanted is not None and max(unreal, flat) > LEAST_SHARE:
+        if wanted is not None and max(unreal, flat) > AREA_SHARE_MIN:
             parts = []
-            if unreal > LEAST_SHARE:
+            if unreal > AREA_SHARE_MIN:
                 parts.append(f"{unreal:.1%} of the surface has no direction of normal curvature {wanted:g} 1/m")
-            if flat > LEAST_SHARE:
-                parts.append(f"in {flat:.1%} of the surface the two families cross at less than {LEAST_ANGLE:g} deg")
+            if flat > AREA_SHARE_MIN:
+                parts.append(
+                    f"in {flat:.1%} of the surface the two families cross at less than {CROSSING_ANGLE_MIN:g} deg"
+                )
             yield Message(
                 "lamellas_none",
                 f"{', '.join(parts)}: no lamellas there, {self.inner_ends} of their ends lie inside the surface "

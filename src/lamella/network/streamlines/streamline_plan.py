@@ -15,13 +15,13 @@ from lamella.base.wording import rounded
 from lamella.network.charts.charts import Charts
 from lamella.network.density_request import NODES_MAX, DensityRequest
 from lamella.network.pattern import Pattern
-from lamella.network.streamlines.direction_field import LEAST_ANGLE, LineField
+from lamella.network.streamlines.direction_field import CROSSING_ANGLE_MIN, LineField
 from lamella.network.streamlines.probing import probes
-from lamella.network.streamlines.seeding import RIM_POINTS, Guide, choose_guide
+from lamella.network.streamlines.seeding import SEEDING_RIM_POINTS, Guide, choose_guide
 from lamella.network.streamlines.winding import refuse_winding
 
 # share of the surface that has lines, at least, of the normal curvatures that are offered
-OFFERED = 0.1
+OFFERED_AREA = 0.1
 
 
 class Reach(NamedTuple):
@@ -32,7 +32,7 @@ class Reach(NamedTuple):
     unreal : float
         Share without any direction of the wanted normal curvature.
     flat : float
-        Share where there are some, but the families cross at less than `LEAST_ANGLE`.
+        Share where there are some, but the families cross at less than `CROSSING_ANGLE_MIN`.
     k1_max, k2_min : float
     """
 
@@ -126,13 +126,17 @@ def _refuse_nowhere(reach: Reach, usable: Booleans, mean: Floats, half: Floats, 
             "the surface is umbilic everywhere: all directions bend alike", "bend it more one way", "surface"
         )
     # the range within which part of the surface has lines that cross well enough
-    turn = np.cos(np.radians(LEAST_ANGLE))
-    low = float(np.quantile(mean - turn * half, OFFERED))
-    high = float(np.quantile(mean + turn * half, 1 - OFFERED))
+    turn = np.cos(np.radians(CROSSING_ANGLE_MIN))
+    low = float(np.quantile(mean - turn * half, OFFERED_AREA))
+    high = float(np.quantile(mean + turn * half, 1 - OFFERED_AREA))
     none = reach.unreal >= 1 - 1e-12
     raise InputError(
         f"normal_curvature = {pattern.normal_curvature:g} 1/m: "
-        + ("no direction of the surface has it" if none else f"lines of it cross at less than {LEAST_ANGLE:g} deg")
+        + (
+            "no direction of the surface has it"
+            if none
+            else f"lines of it cross at less than {CROSSING_ANGLE_MIN:g} deg"
+        )
         + f", its normal curvatures run from k2 = {reach.k2_min:.4g} to k1 = {reach.k1_max:.4g} 1/m",
         f"choose a value from {rounded(low, up=True):g} to {rounded(high, up=False):g} 1/m (the sign is that of the "
         "surface's normal)",
@@ -153,7 +157,7 @@ def _distance(guide: Guide, request: DensityRequest) -> float:
 
 def _ends(charts: Charts, field: LineField, spacing: float) -> float:
     """Lamellas' ends on the rim: lines of a family are the spacing times the sine of the crossing angle apart."""
-    where = charts.rim_points(RIM_POINTS)
+    where = charts.rim_points(SEEDING_RIM_POINTS)
     sample, rim = charts.evaluate(where), charts.rim_places(where)
     usable = field.margin(sample.mean, sample.deviator) > 0
     arc = np.zeros(len(where))

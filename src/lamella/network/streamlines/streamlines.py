@@ -19,9 +19,9 @@ from lamella.surface.element.places import Places
 RIM, UNREAL, ENDLESS = range(3)
 """How a half ends: on the rim, where its direction stops being real, or not: it comes back, or gets too long."""
 
-MOST_STEPS = 20_000
+TRACE_STEPS_MAX = 20_000
 # halvings of the step in which a line ends: rounding is left
-HALVINGS = 46
+TRACE_HALVINGS = 46
 # turn of a line in a step, rad; steps are halved for it up to so often: at an umbilic no step is short enough
 MOST_TURN, MOST_HALVED = 0.1, 8
 # a half comes back where it passes its seed in its own sense, cosine of the angle between at least, after it was this
@@ -180,7 +180,7 @@ def trace(
     left = np.arange(2 * m)
     kept: list[tuple[Integers, Floats, Places, Floats, Floats]] = []
     margin, most = field.margin(sample.mean, sample.deviator), np.full(2 * m, step / SLOWEST)
-    for _ in range(MOST_STEPS):
+    for _ in range(TRACE_STEPS_MAX):
         velocity = _velocity(field, sample, family[left], tangent)
         # the principal curvatures bound how a line turns
         bend = np.abs(sample.mean) + np.abs(sample.deviator)
@@ -272,7 +272,7 @@ def finished(streamlines: Streamlines) -> Streamlines:
     start, tangent, is_a = streamlines.where[state], streamlines.tangent[state], streamlines.is_a[half // 2]
     inside, outside = np.zeros(len(half)), streamlines.tail[half]
     by_rim = np.zeros(len(half), bool)
-    for number in range(HALVINGS):
+    for number in range(TRACE_HALVINGS):
         # the whole step first, which is known to leave
         middle = (inside + outside) / 2 if number else outside
         there = charts.settle(_step(charts, field, start, tangent, is_a, middle))

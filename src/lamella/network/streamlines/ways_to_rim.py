@@ -16,22 +16,22 @@ from lamella.base.arrays import Floats
 from lamella.base.ties import MARGIN
 from lamella.network.charts.charts import Charts
 from lamella.network.streamlines.direction_field import LineField
-from lamella.network.streamlines.probing import LONGEST, STEPS, probes, wound
+from lamella.network.streamlines.probing import HALF_LENGTH_MAX, SPACING_STEPS, probes, wound
 from lamella.network.streamlines.streamlines import RIM, UNREAL, Streamlines, finished, joined, trace
 
 # normal curvatures that are looked at: so many between the principal curvatures; those lines are offered that cross at
 # no less than these degrees on all but this share of the area
 LOOKED_AT, CROSSING, LEFT_OUT = 61, 30.0, 0.005
 # of them are tried, those that cross best first
-MOST_TRIED = 4
+CURVATURES_TRIED_MAX = 4
 # places spread over the surface through which cuts are tried, and lines that have to be cut
-FINER = 60
+FINER_SAMPLES = 60
 # of the polyline that describes a cut, and points of its course: whole multiples of that
-MOST_SIDES, DENSE = 8, 64
+CUT_SIDES_MAX, DENSE = 8, 64
 # of the size: ends of lines that are as near to each other are at one umbilic
-NEAR = 0.1
+SAME_UMBILIC = 0.1
 # on each loop
-RIM_POINTS = 400
+CUT_RIM_POINTS = 400
 
 
 def reaching_curvature(charts: Charts, field: LineField, spacing: float, size: float) -> float | None:
@@ -53,7 +53,7 @@ def reaching_curvature(charts: Charts, field: LineField, spacing: float, size: f
         well = sines >= np.sin(np.radians(CROSSING))
         if area[~well].sum() <= LEFT_OUT * area.sum():
             choices.append((-np.rint(np.average(sines, weights=area) / MARGIN), abs(value), value))
-    for _, _, value in sorted(choices)[:MOST_TRIED]:
+    for _, _, value in sorted(choices)[:CURVATURES_TRIED_MAX]:
         few = probes(charts, LineField(value, field.scale), where, sample, spacing, size)
         if not few.endless.any() and (finished(few).ends == RIM).all():
             return value
@@ -94,23 +94,25 @@ def cut_across(charts: Charts, field: LineField, winding: Streamlines, spacing: 
         From one loop of the rim to another, the shortest one; on a surface without holes that with its ends farthest
         apart, which passes between the two umbilics that the lines go around, or through the one.
     """
-    step, family = spacing / STEPS, bool(winding.is_a[0])
+    step, family = spacing / SPACING_STEPS, bool(winding.is_a[0])
     where, _ = charts.samples()
     sample = charts.evaluate(where)
     usable = np.flatnonzero(field.margin(sample.mean, sample.deviator) > 0)
-    seeds = where[usable[np.unique(np.linspace(0, len(usable) - 1, FINER).astype(np.int64))]]
+    seeds = where[usable[np.unique(np.linspace(0, len(usable) - 1, FINER_SAMPLES).astype(np.int64))]]
     finer = wound(charts, field, seeds, np.full(len(seeds), family), spacing=spacing, size=size)
     winding = joined([winding, finer.take(np.flatnonzero(finer.endless))])
     trees = [cKDTree(winding.position[winding.half // 2 == k]) for k in range(winding.count)]
-    lines = finished(trace(charts, field, seeds, np.full(len(seeds), not family), step=step, longest=LONGEST * size))
+    lines = finished(
+        trace(charts, field, seeds, np.full(len(seeds), not family), step=step, longest=HALF_LENGTH_MAX * size)
+    )
     disc = charts.hole(1) is None
     courses = [_course(lines, k) for k in np.flatnonzero((lines.ends == RIM).reshape(-1, 2).all(1)).tolist()]
     if disc:
-        courses += _through_umbilics(lines, NEAR * size)
+        courses += _through_umbilics(lines, SAME_UMBILIC * size)
         worth = [-float(np.linalg.norm(course[-1] - course[0])) for course in courses]
     else:
-        rim = cKDTree(charts.evaluate(charts.rim_points(RIM_POINTS)).position)
-        loop = charts.rim_places(charts.rim_points(RIM_POINTS)).loop
+        rim = cKDTree(charts.evaluate(charts.rim_points(CUT_RIM_POINTS)).position)
+        loop = charts.rim_places(charts.rim_points(CUT_RIM_POINTS)).loop
         ends = [loop[rim.query(course[[0, -1]])[1]] for course in courses]
         courses = [course for course, (first, last) in zip(courses, ends, strict=True) if first != last]
         worth = [float(np.linalg.norm(np.diff(course, axis=0), axis=1).sum()) for course in courses]
@@ -152,6 +154,6 @@ def _polyline(course: Floats, off: float) -> Floats:
     while True:
         points: Floats = course[:: (len(course) - 1) // count]
         through = np.column_stack([np.interp(share * count, np.arange(count + 1), x) for x in points.T])
-        if np.linalg.norm(course - through, axis=1).max() <= off or count == MOST_SIDES:
+        if np.linalg.norm(course - through, axis=1).max() <= off or count == CUT_SIDES_MAX:
             return points
         count *= 2

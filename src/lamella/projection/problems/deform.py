@@ -28,9 +28,9 @@ from lamella.projection.vertex_normals import smoothed_normals
 # change of the ring's size from one state to the next
 STEP = 0.02
 # weight of third differences and its fade: corners of the rim hang on two edges and would turn about them
-FAIR, FADE = 0.03, 0.1
+DEFORM_FAIRNESS, DEFORM_FADE = 0.03, 0.1
 # last digits of coordinates that lengths and stars of a net can be off by
-ROUNDING = 4.0
+COORDINATE_DIGITS = 4.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -123,7 +123,7 @@ def deform(
     if radius is not None:
         require_radius(mesh, radius)
     # far from the origin rounding is larger than the tolerance: what is given is known to its last digit only
-    tolerance = max(tolerance, ROUNDING * float(np.spacing(np.abs(mesh.vertices).max())) / mesh.mean_edge)
+    tolerance = max(tolerance, COORDINATE_DIGITS * float(np.spacing(np.abs(mesh.vertices).max())) / mesh.mean_edge)
     origin = mesh.vertices.mean(0)
     mesh = mesh.at(mesh.vertices - origin)
     edge, inner, stars = mesh.mean_edge, mesh.inner, mesh.stars(mesh.inner)
@@ -135,7 +135,7 @@ def deform(
     curvature = bend if radius is None else 1 / radius
     before = circle_angles(mesh, inner)
     states: list[DeformedState] = []
-    fair = fairness(mesh, 3, weight=FAIR, fade=FADE)
+    fair = fairness(mesh, 3, weight=DEFORM_FAIRNESS, fade=DEFORM_FADE)
     current = mesh.vertices
     for now in np.linspace(1.0, share, 1 + int(np.ceil(abs(share - 1) / step - 1e-9))):
         constraints: list[Constraint] = [

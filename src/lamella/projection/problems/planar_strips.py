@@ -30,7 +30,7 @@ from lamella.strip.developable import buildable_height
 from lamella.strip.planarity import planarity_score
 
 # weights of third differences along the borders and of staying at the curve, and what they keep per iteration
-FAIR, STAY, FADE = 0.1, 0.03, 0.5
+STRIPS_FAIRNESS, STRIPS_STAY, STRIPS_FADE = 0.1, 0.03, 0.5
 # from this planarity score on the paper colours a quad in full red
 RED = 0.005
 
@@ -207,8 +207,23 @@ def _solve(
         Closeness(name="upper border", index=np.arange(half, 2 * half), surface=surface, edge=edge, offset=height),
     ]
     soft = [
-        Fairness(name="fair borders", stencils=stencils, coefficients=THIRD, edge=edge, weight=FAIR, fade=FADE),
-        Fixed(name="start", index=np.arange(2 * half), points=points, edge=edge, weight=STAY, fade=FADE, hard=False),
+        Fairness(
+            name="fair borders",
+            stencils=stencils,
+            coefficients=THIRD,
+            edge=edge,
+            weight=STRIPS_FAIRNESS,
+            fade=STRIPS_FADE,
+        ),
+        Fixed(
+            name="start",
+            index=np.arange(2 * half),
+            points=points,
+            edge=edge,
+            weight=STRIPS_STAY,
+            fade=STRIPS_FADE,
+            hard=False,
+        ),
     ]
     return solve(
         [Block("vertices", points, edge), Block("face normals", normals / np.linalg.norm(normals, axis=1)[:, None])],

@@ -23,9 +23,9 @@ from lamella.projection.vertex_normals import smoothed_normals
 
 # weight of the given vertices and its fade: while it lasts the radius follows the whole net; a heavier one pulls the
 # net off its constraints, and the way back through its softest modes is long
-STAY, FADE = 0.01, 0.3
+RADIUS_STAY, RADIUS_FADE = 0.01, 0.3
 # largest radius to look for, in sizes of the mesh: a flatter net is a plane, whose radius nothing determines
-FLATTEST = 1e3
+STAR_RADIUS_MAX = 1e3
 
 
 @dataclass(frozen=True)
@@ -66,8 +66,8 @@ def find_radius(
     normals = smoothed_normals(start)[inner]
     bend = star_curvature(start.vertices, inner, neighbours, normals)
     size = diagonal(mesh.vertices)
-    if abs(bend) * FLATTEST * size < 1:
-        return StarRadius(FLATTEST * size, np.inf)
+    if abs(bend) * STAR_RADIUS_MAX * size < 1:
+        return StarRadius(STAR_RADIUS_MAX * size, np.inf)
     radius = 1 / abs(bend)
     more, angles = crossing(start, angle, form)
     blocks = [
@@ -85,8 +85,8 @@ def find_radius(
         index=np.arange(len(mesh.vertices)),
         points=mesh.vertices,
         edge=edge,
-        weight=STAY,
-        fade=FADE,
+        weight=RADIUS_STAY,
+        fade=RADIUS_FADE,
         hard=False,
     )
     solution = solve(

@@ -25,7 +25,7 @@ from lamella.projection.unknowns import Block
 # of the mean edge: a vertex farther from its foot point is beyond the surface's border
 BEYOND = 0.1
 # weight of third differences at the start and per iteration
-FAIR, FADE = 0.1, 0.3
+STRAIGHTEN_FAIRNESS, STRAIGHTEN_FADE = 0.1, 0.3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -109,7 +109,7 @@ def straighten(
     circles = total / np.maximum(2 * mesh.valence, 1)
     solution = solve(
         [Block("vertices", mesh.vertices, edge), Block("circles", circles, edge)],
-        [*hard, *fairness(mesh, 3, weight=FAIR, fade=FADE)],
+        [*hard, *fairness(mesh, 3, weight=STRAIGHTEN_FAIRNESS, fade=STRAIGHTEN_FADE)],
         iterations=iterations,
         tolerance=tolerance,
         on_iteration=on_iteration,

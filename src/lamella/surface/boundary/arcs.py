@@ -12,7 +12,7 @@ from lamella.surface.boundary.pieces import Pieces, lines
 _WIDEST = math.pi / 2
 """A piece of more than half a turn has no rational quadratic of positive weights; quarters are well conditioned."""
 
-STRAIGHT = 1e-10
+STRAIGHT_ARC = 1e-10
 """Of its chord: an arc of less height is a straight line. Programs write such bulges for straight sides."""
 
 
@@ -60,11 +60,11 @@ def bulge_arc(start: Floats, end: Floats, bulge: float, normal: Floats) -> Piece
     start, end : (3,)
         Different points, m.
     bulge : float
-        0: a straight line, of degree 1; so is what leaves its chord by less than `STRAIGHT` of it.
+        0: a straight line, of degree 1; so is what leaves its chord by less than `STRAIGHT_ARC` of it.
     normal : (3,)
         Unit normal of the arc's plane.
     """
-    if abs(bulge) < 2 * STRAIGHT:
+    if abs(bulge) < 2 * STRAIGHT_ARC:
         return lines(np.array([start, end]), closed=False)
     chord = end - start
     right = np.cross(chord, normal)

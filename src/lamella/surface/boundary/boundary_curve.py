@@ -20,7 +20,7 @@ from lamella.surface.boundary.splines import closed_spline
 from lamella.surface.boundary.waves import waved
 
 # points of a loop for its middle
-SAMPLES = 1000
+LOOP_SAMPLES = 1000
 
 Triple = tuple[float, float, float]
 
@@ -185,7 +185,7 @@ class BoundaryCurve:
 
 def placed(loop: Loop, place: Place, where: str = "") -> Loop:
     """A held loop turned and scaled about the centroid of its length, and shifted."""
-    middle = loop.at(np.arange(SAMPLES) / SAMPLES).mean(0)
+    middle = loop.at(np.arange(LOOP_SAMPLES) / LOOP_SAMPLES).mean(0)
     turn = Rotation.from_rotvec(np.radians(place.turn)).as_matrix()
     # the pieces of a course are measured from its origin
     shift = middle + np.array(place.shift) + place.scale * turn @ (loop.course.origin - middle)

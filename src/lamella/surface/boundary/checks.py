@@ -16,10 +16,10 @@ from lamella.surface.boundary.knots import is_knotted
 MOST_SIZE = 5000.0
 """m. No gridshell is that large, a drawing in millimetres is."""
 
-MOST_RATIO = 1e4
+SIZE_RATIO_MAX = 1e4
 """Size of the largest loop over that of the smallest: beyond it one is a slip of the unit or of the decimal point."""
 
-LEAST_DISTANCE = 1e-6
+DISTANCE_MIN = 1e-6
 """Of a loop's size: places nearer than this touch."""
 
 LEAST_CORNER = 1.0
@@ -70,15 +70,15 @@ def check_loops(loops: Sequence[Loop]) -> None:
             _check_slide(loop, slide, where)
     sizes = np.array([loop.size for loop in loops])
     small = int(np.argmin(sizes))
-    if sizes.max() > MOST_RATIO * sizes[small]:
+    if sizes.max() > SIZE_RATIO_MAX * sizes[small]:
         large = loops[int(np.argmax(sizes))]
         raise InputError(
             f"the loop {loops[small].name!r} is {sizes[small]:.4g} m large and {large.name!r} {sizes.max():.4g} m: "
-            f"over {MOST_RATIO:,.0f} times as large",
+            f"over {SIZE_RATIO_MAX:,.0f} times as large",
             "check the unit and the decimal points of both",
             _key(small),
         )
-    touch = closest_touch(loops, LEAST_DISTANCE)
+    touch = closest_touch(loops, DISTANCE_MIN)
     if touch:
         raise _touching(loops, touch)
     if len(loops) == 1 and is_knotted(loops[0]):
@@ -176,7 +176,7 @@ def _check_slide(loop: Loop, slide: Slide, where: str) -> None:
     if slide.point is not None and slide.normal is not None:
         height = np.abs((points - slide.point) @ slide.normal)
         k = int(np.argmax(height))
-        if height[k] > LEAST_DISTANCE * loop.size:
+        if height[k] > DISTANCE_MIN * loop.size:
             raise InputError(
                 f"the loop {loop.name!r} slides on a plane but leaves it: at {place(points[k])}, "
                 f"{t[k] % 1 * loop.length:.4g} m along it, it is {height[k]:.4g} m away",

@@ -6,7 +6,7 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
 
-CORNER_ANGLE = 40.0
+CORNER_TURN = 40.0
 """Degrees."""
 
 ALWAYS_CORNER = 59.0
@@ -29,7 +29,7 @@ def turning_angles(points: Floats) -> Floats:
     return np.asarray(np.arctan2(sine, np.einsum("ij,ij->i", before, after)))
 
 
-def find_corners(points: Floats, corner_angle: float = CORNER_ANGLE) -> Booleans:
+def find_corners(points: Floats, corner_angle: float = CORNER_TURN) -> Booleans:
     """Corners of the curve that a closed polyline (k, 3) means, bool (k,).
 
     A corner turns by more than `corner_angle`, degrees, and by more than twice what the curvature on both sides of it

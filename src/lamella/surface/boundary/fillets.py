@@ -27,7 +27,7 @@ from lamella.base.wording import rounded
 from lamella.surface.boundary.curve import Loop, Sliding, make_loop, place
 from lamella.surface.boundary.pieces import Pieces, stack
 
-DEGREE = 7
+FILLET_DEGREE = 7
 FLAT_SPEED = 6 / 7
 """Speed of a fillet at its ends over d, for small turns: the one with the least curvature."""
 
@@ -40,10 +40,10 @@ MOST_TURN = 0.97 * pi
 LEFT = 0.02
 """Of a side between two fillets, at least."""
 
-NEAR = 0.8
+FILLET_NEAR = 0.8
 """Of the given radius: a smaller one is reported."""
 
-PLACES = 401
+FILLET_PLACES = 401
 """Along a fillet, for its least radius."""
 
 
@@ -95,7 +95,7 @@ def rounded_loop(loop: Loop, radius: float, where: str = "") -> Loop:
     fillet = old < 0
     tightest = _least_radius(pieces, np.flatnonzero(fillet))
     remarks = loop.remarks
-    if tightest < NEAR * radius:
+    if tightest < FILLET_NEAR * radius:
         remarks += (
             Message(
                 "fillets_tight",
@@ -109,7 +109,7 @@ def rounded_loop(loop: Loop, radius: float, where: str = "") -> Loop:
 
 def tangent_length(turn: float) -> float:
     """Distance from the corner at which a fillet of least radius 1 begins, for straight sides that turn, radians."""
-    u = np.linspace(0, 1, PLACES)
+    u = np.linspace(0, 1, FILLET_PLACES)
     c, s, m = cos(turn / 2), sin(turn / 2), _speed(turn)
     rest = 1 - u**2
     along, along2 = c * (m + 35 / 16 * (1 - m) * rest**3), -35 * 6 / 16 * c * (1 - m) * u * rest**2
@@ -205,12 +205,14 @@ def _fillet(before: Pieces, behind: Pieces, speed: float) -> Pieces:
     """The polynomial from the end of one side to the start of the next one, `speed` in m over its parameter."""
     start = _at_speed(_jet(before.controls[-1, ::-1]) * np.array([1, -1, 1, -1])[:, None], speed)
     end = _at_speed(_jet(behind.controls[0]), speed) * np.array([1, -1, 1, -1])[:, None]
-    falling = np.array([DEGREE, DEGREE * (DEGREE - 1), DEGREE * (DEGREE - 1) * (DEGREE - 2)])
+    falling = np.array(
+        [FILLET_DEGREE, FILLET_DEGREE * (FILLET_DEGREE - 1), FILLET_DEGREE * (FILLET_DEGREE - 1) * (FILLET_DEGREE - 2)]
+    )
     halves = []
     for jet in (start, end):
         differences = np.concatenate([jet[:1], jet[1:] / falling[:, None]])
         halves.append([sum(comb(k, j) * differences[j] for j in range(k + 1)) for k in range(4)])
-    controls = np.ones((1, DEGREE + 1, 4))
+    controls = np.ones((1, FILLET_DEGREE + 1, 4))
     controls[0, :, :3] = [*halves[0], *halves[1][::-1]]
     return Pieces(controls)
 
@@ -248,8 +250,8 @@ def _at_speed(jet: Floats, speed: float) -> Floats:
 
 def _least_radius(pieces: Pieces, fillets: Integers) -> float:
     """m."""
-    which = np.repeat(fillets, PLACES)
-    _, first, second = pieces.evaluate(which, np.tile(np.linspace(0, 1, PLACES), len(fillets)))
+    which = np.repeat(fillets, FILLET_PLACES)
+    _, first, second = pieces.evaluate(which, np.tile(np.linspace(0, 1, FILLET_PLACES), len(fillets)))
     curvature = np.linalg.norm(np.cross(first, second), axis=1) / np.linalg.norm(first, axis=1) ** 3
     return float(1 / curvature.max())
 

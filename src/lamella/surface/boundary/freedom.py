@@ -21,11 +21,11 @@ from lamella.surface.boundary.waves import wave_rows
 POINTS_A_WAVE = 3
 # places along a loop where its waves together are limited, and to what share of the limit: the curve through shifted
 # points goes a little further between them
-PLACES, NEAR_LIMIT = 144, 0.98
+FREEDOM_PLACES, NEAR_LIMIT = 144, 0.98
 # of a limit: what is offered instead of one that does not do is larger than what is needed
 SPARE = 0.05
 # where nothing says what may change: of a loop's size
-USUAL = 0.05
+USUAL_CHANGE = 0.05
 
 
 Change = Callable[[AdjustableFilm, Floats], AdjustableFilm]
@@ -170,7 +170,11 @@ def _of_curve(index: int, curve: BoundaryCurve, usual: bool) -> list[_Part]:
     if curve.adjust is not None:
         move, scale, tilt, points = curve.adjust.move, curve.adjust.scale, curve.adjust.tilt, curve.adjust.points
     elif usual and size:
-        move, scale, points = USUAL * size, USUAL, USUAL * size if curve.points is not None else 0.0
+        move, scale, points = (
+            USUAL_CHANGE * size,
+            USUAL_CHANGE,
+            USUAL_CHANGE * size if curve.points is not None else 0.0,
+        )
     parts = []
     # an even wave is a shift
     first = 1 if move else 0
@@ -181,12 +185,12 @@ def _of_curve(index: int, curve: BoundaryCurve, usual: bool) -> list[_Part]:
             most = min(MOST_WAVES, len(curve.points) // POINTS_A_WAVE)
             apply = _waved(index, wave_rows(np.arange(len(curve.points)) / len(curve.points), most)[first:])
         # at some places between the points too
-        rows = wave_rows(np.arange(PLACES) / PLACES, most)[first:] / NEAR_LIMIT
-        limits = np.zeros((PLACES, 3, len(rows), axes))
+        rows = wave_rows(np.arange(FREEDOM_PLACES) / FREEDOM_PLACES, most)[first:] / NEAR_LIMIT
+        limits = np.zeros((FREEDOM_PLACES, 3, len(rows), axes))
         for axis in range(axes):
             limits[:, axis, :, axis] = rows.T
         ranges = np.full(axes * len(rows), points)
-        by_part = limits.reshape(PLACES, 3, -1)
+        by_part = limits.reshape(FREEDOM_PLACES, 3, -1)
         parts.append(_Part(f"points of {curve.name!r}", "points", index, ranges, by_part, apply))
     if move:
         parts.append(_part(f"place of {curve.name!r}", "move", index, move, axes, _placed(index)))

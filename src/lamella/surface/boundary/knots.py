@@ -17,13 +17,13 @@ import numpy as np
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.surface.boundary.curve import Loop
 
-SAMPLES = 600
+KNOT_SAMPLES = 600
 """Points of the curve, besides its corners: more than any boundary's knot needs, whose strands keep apart."""
 
 MOST_CROSSINGS = 400
 """Of a projection; the minor takes 0.2 s then."""
 
-BLOCK = 200
+KNOT_BLOCK = 200
 """Edges of a polygon that are compared at once with all others, for memory."""
 
 PRIME = 2**31 - 1
@@ -55,7 +55,7 @@ class Crossings(NamedTuple):
 def is_knotted(loop: Loop) -> bool:
     """Whether the Alexander polynomial of the loop, from one projection of it, proves a knot."""
     # a strand may pass within a corner
-    t = np.unique(np.concatenate([np.arange(SAMPLES) / SAMPLES, loop.corners[~loop.smooth]]))
+    t = np.unique(np.concatenate([np.arange(KNOT_SAMPLES) / KNOT_SAMPLES, loop.corners[~loop.smooth]]))
     crossings = find_crossings(loop.at(t))
     count = len(crossings.over)
     if not 3 <= count <= MOST_CROSSINGS:
@@ -116,7 +116,7 @@ def find_crossings(points: Floats) -> Crossings:
     plan, height = points @ np.stack([x, np.cross(z, x)], 1), points @ z
     n = len(points)
     step, rise = np.roll(plan, -1, 0) - plan, np.roll(height, -1) - height
-    blocks = [_meetings(plan, step, first) for first in range(0, n, BLOCK)]
+    blocks = [_meetings(plan, step, first) for first in range(0, n, KNOT_BLOCK)]
     i, j, s, t, turn = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
     first_above = height[i] + s * rise[i] > height[j] + t * rise[j]
     one, other = i + s, j + t
@@ -128,7 +128,7 @@ def find_crossings(points: Floats) -> Crossings:
 def _meetings(plan: Floats, step: Floats, first: int) -> tuple[Integers, Integers, *tuple[Floats, ...]]:
     """Edges i of a block and later ones j that meet in plan, shares of them, and the product of their directions."""
     n = len(plan)
-    i, j = np.triu_indices(min(BLOCK, n - first), first + 2, n)
+    i, j = np.triu_indices(min(KNOT_BLOCK, n - first), first + 2, n)
     i += first
     apart = plan[j] - plan[i]
     turn = step[i, 0] * step[j, 1] - step[i, 1] * step[j, 0]

@@ -20,7 +20,7 @@ _ROUNDING = 1e-9
 """Of a curve's size: ends further apart have a gap."""
 
 
-MOST_COORDINATE = 1e12
+PIECE_COORDINATE_MAX = 1e12
 """In the unit of a file; beyond it a model in millimetres is not even known to a tenth of one."""
 
 LEAST_WEIGHT = 1e-9
@@ -72,13 +72,13 @@ class Pieces:
 
     @property
     def sound(self) -> bool:
-        """Whether its numbers make a curve: there are pieces, points within `MOST_COORDINATE`, weights of like size."""
+        """Whether its numbers make a curve: pieces, points within `PIECE_COORDINATE_MAX`, weights of like size."""
         weights = self.controls[..., 3]
         if not self.count or not np.isfinite(self.controls).all():
             return False
         if not weights.min() > LEAST_WEIGHT * weights.max():
             return False
-        return bool((np.abs(self.controls[..., :3]) <= MOST_COORDINATE * self.controls[..., 3:]).all())
+        return bool((np.abs(self.controls[..., :3]) <= PIECE_COORDINATE_MAX * self.controls[..., 3:]).all())
 
     def evaluate(self, piece: Integers, s: Floats) -> tuple[Floats, Floats, Floats]:
         """Position and its first two derivatives by s.

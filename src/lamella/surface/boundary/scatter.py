@@ -13,10 +13,10 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
 
-FEWEST = 12
+SCATTER_POINTS_MIN = 12
 """A stretch with fewer vertices says too little of what is scatter and what is meant."""
 
-LEAST, MOST = 5e-5, 0.05
+SCATTER_MIN, SCATTER_MAX = 5e-5, 0.05
 """Of the mean edge: less bends a spline by less than a curvature that elements of the default tolerance resolve, more
 is no scatter but a shape of few vertices."""
 
@@ -24,11 +24,11 @@ NO_SMOOTHER = 0.5
 """What a polynomial through eight neighbours misses, over what one through six does: about 1 for scatter, at most 0.3
 for a smooth curve, even a hexagon's."""
 
-ALTERNATING = -0.7
+SCATTER_ALTERNATING = -0.7
 """What is missed at neighbouring vertices, as a correlation: -0.89 for scatter, whose eighth differences turn from
 vertex to vertex; -0.5 for a smooth curve of three vertices a wave, more for finer ones."""
 
-ORDER = 3
+SCATTER_ORDER = 3
 """Of the differences that are made small; those of second order would pull circles inwards."""
 
 
@@ -69,13 +69,17 @@ def smooth_scatter(points: Floats, corner: Booleans) -> tuple[Floats, float, flo
 def _smooth(points: Floats, *, closed: bool) -> tuple[Floats, float]:
     """One stretch and its scatter; the ends of an open one stay."""
     count = len(points)
-    if count < FEWEST:
+    if count < SCATTER_POINTS_MIN:
         return points, 0.0
     following = np.roll(points, -1, axis=0) if closed else points[1:]
     steps = np.linalg.norm(following - points[: len(following)], axis=1)
     mean = float(steps.mean())
     (six, _), (eight, correlation) = (_residual(points, steps, reach, closed) for reach in (3, 4))
-    if not LEAST * mean < eight < MOST * mean or eight < NO_SMOOTHER * six or correlation > ALTERNATING:
+    if (
+        not SCATTER_MIN * mean < eight < SCATTER_MAX * mean
+        or eight < NO_SMOOTHER * six
+        or correlation > SCATTER_ALTERNATING
+    ):
         return points, 0.0
     operator = _differences(steps / mean, closed)
     free = np.arange(count) if closed else np.arange(1, count - 1)
@@ -138,12 +142,12 @@ def _residual(points: Floats, steps: Floats, reach: int, closed: bool) -> tuple[
 def _differences(steps: Floats, closed: bool) -> Floats:
     """Matrix of the divided differences of third order of a stretch with given steps."""
     count = len(steps) if closed else len(steps) + 1
-    rows = count if closed else count - ORDER
+    rows = count if closed else count - SCATTER_ORDER
     along = np.concatenate([[0.0], np.cumsum(steps)])
-    index = np.arange(rows)[:, None] + np.arange(ORDER + 1)
+    index = np.arange(rows)[:, None] + np.arange(SCATTER_ORDER + 1)
     place = along[index % count] + (along[-1] * (index // count) if closed else 0.0)
     apart = place[:, :, None] - place[:, None, :]
-    apart[:, range(ORDER + 1), range(ORDER + 1)] = 1.0
+    apart[:, range(SCATTER_ORDER + 1), range(SCATTER_ORDER + 1)] = 1.0
     result = np.zeros((rows, count))
-    np.put_along_axis(result, index % count, factorial(ORDER) / apart.prod(axis=2), axis=1)
+    np.put_along_axis(result, index % count, factorial(SCATTER_ORDER) / apart.prod(axis=2), axis=1)
     return result

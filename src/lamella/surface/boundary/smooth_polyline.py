@@ -13,7 +13,7 @@ from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.vectors import diagonal
 from lamella.base.wording import counted
-from lamella.surface.boundary.corners import CORNER_ANGLE, edge_lengths, find_corners, thinned, turning_angles
+from lamella.surface.boundary.corners import CORNER_TURN, edge_lengths, find_corners, thinned, turning_angles
 from lamella.surface.boundary.pieces import Pieces, lines, stack
 from lamella.surface.boundary.scatter import smooth_scatter
 from lamella.surface.boundary.splines import closed_spline, open_spline
@@ -21,19 +21,19 @@ from lamella.surface.boundary.splines import closed_spline, open_spline
 LITTLE = 20.0
 """Degrees: a polygon of 18 corners turns by as much at each; polygons that are meant have fewer."""
 
-FEWEST = 16
+SMOOTH_POINTS_MIN = 16
 """Vertices that turn a little, for a polyline to be a curve and not a polygon."""
 
-STRAIGHT = 1e-6
+STRAIGHT_PIECE = 1e-6
 """Radians; less is no turn."""
 
 LONG = 5.0
 """Times both of its neighbours: such an edge is a straight side, and no step along a curve."""
 
-MOST_POINTS = 240
+SMOOTH_POINTS_MAX = 240
 """Vertices of a rim; with more, rounding of the file would show in the curvature between neighbours."""
 
-OFF = 1e-6
+SMOOTH_OFF = 1e-6
 """Of the size, or of the scatter if that is more: how far vertices that are left out may lie off the curve."""
 
 
@@ -47,15 +47,15 @@ def smooth_curve(
     points : (n, 3)
         Vertices, m, the first not repeated, no two in a row at one place.
     interpolation : "spline", "polyline" or None
-        As the project says. Where it says nothing a polyline is a curve if at least `FEWEST` of its vertices turn by
-        less than `LITTLE`, and the others are corners.
+        As the project says. Where it says nothing a polyline is a curve if at least `SMOOTH_POINTS_MIN` of its
+        vertices turn by less than `LITTLE`, and the others are corners.
     where : str
         Key for messages.
     """
-    corner = find_corners(points, CORNER_ANGLE)
+    corner = find_corners(points, CORNER_TURN)
     turns = turning_angles(points)
-    little = ~corner & (turns > STRAIGHT)
-    is_curve = np.count_nonzero(little) >= FEWEST and turns[~corner].max() < np.radians(LITTLE)
+    little = ~corner & (turns > STRAIGHT_PIECE)
+    is_curve = np.count_nonzero(little) >= SMOOTH_POINTS_MIN and turns[~corner].max() < np.radians(LITTLE)
     if interpolation == "polyline" or (interpolation is None and not is_curve):
         return lines(points, closed=True), None
     if not is_curve:
@@ -78,7 +78,7 @@ def smooth_curve(
 def _curve(points: Floats, corner: Booleans, where: str) -> tuple[Pieces, float]:
     """A smooth curve through vertices, with corners, and how far it passes them, m."""
     size = diagonal(points)
-    most = MOST_POINTS
+    most = SMOOTH_POINTS_MAX
     while True:
         rows: Floats = np.column_stack((points, corner)).astype(np.float64)
         if len(points) > most:
@@ -88,7 +88,7 @@ def _curve(points: Floats, corner: Booleans, where: str) -> tuple[Pieces, float]
         pieces = through_points(kept, sharp | _side_ends(kept), where)
         off = _largest_distance(pieces, points)
         # what is rounding of the file is no reason for more of its vertices
-        if off <= max(OFF * size, 6 * scatter) or len(points) <= most:
+        if off <= max(SMOOTH_OFF * size, 6 * scatter) or len(points) <= most:
             return pieces, off if off > 1e-9 * size else 0.0
         most *= 2
 

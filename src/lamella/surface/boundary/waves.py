@@ -18,7 +18,7 @@ from lamella.base.arrays import Booleans, Floats
 from lamella.surface.boundary.curve import Loop
 from lamella.surface.boundary.pieces import Pieces
 
-PARTS = 128
+WAVE_PARTS = 128
 """Least number of pieces a waved curve has."""
 
 
@@ -47,7 +47,7 @@ def waved(loop: Loop, shifts: Floats) -> tuple[Pieces, Booleans]:
     """
     course = loop.course
     ends = np.append(course.joints, course.length)
-    counts = np.maximum(np.ceil(np.diff(ends) * (PARTS / course.length)).astype(int), 1)
+    counts = np.maximum(np.ceil(np.diff(ends) * (WAVE_PARTS / course.length)).astype(int), 1)
     piece = np.repeat(np.arange(course.pieces.count), counts)
     first = np.concatenate([[0], np.cumsum(counts)[:-1]])
     share = (np.arange(len(piece)) - first[piece]) / counts[piece]

@@ -20,7 +20,7 @@ from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.places import Places
 
 # rounds of cuts; each halves the longest edges of what is too large
-MOST_ROUNDS = 60
+BISECT_ROUNDS_MAX = 60
 
 
 @dataclass(frozen=True)
@@ -75,14 +75,14 @@ def bisect(
     too_large : callable
         Which triangles are, (m,), from their corners (m, 3, 3), m, and longest edges (m,), m.
     """
-    for _ in range(MOST_ROUNDS):
+    for _ in range(BISECT_ROUNDS_MAX):
         corners = parts.points[parts.faces]
         edges = lengths(corners - np.roll(corners, -1, 1))
         marked = too_large(corners, edges.max(1))
         if not marked.any():
             return parts
         parts = _cut(parts, connectivity, nodes, edges, marked)
-    raise ValueError(f"elements are still too large after {MOST_ROUNDS} rounds of cuts")
+    raise ValueError(f"elements are still too large after {BISECT_ROUNDS_MAX} rounds of cuts")
 
 
 def _cut(parts: Parts, connectivity: Connectivity, nodes: Floats, long: Floats, marked: Booleans) -> Parts:

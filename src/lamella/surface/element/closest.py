@@ -14,11 +14,11 @@ from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
 
 # samples of each element among which the search starts: this many to an edge
-SAMPLES = 5
-MOST_STEPS = 40
+CLOSEST_SAMPLES = 5
+CLOSEST_STEPS_MAX = 40
 MOST_IDLE = 3
 # Newton's steps end below this in local coordinates
-FINE = 1e-13
+CLOSEST_TOLERANCE = 1e-13
 
 
 class ClosestPoint:
@@ -39,7 +39,7 @@ class ClosestPoint:
     @cached_property
     def _tree(self) -> cKDTree:
         """The samples of all elements, element by element."""
-        basis = self._connectivity.basis.basis(subdivision(SAMPLES)[0])
+        basis = self._connectivity.basis.basis(subdivision(CLOSEST_SAMPLES)[0])
         return cKDTree(np.matmul(basis, self._nodes[self._connectivity.elements]).reshape(-1, 3))
 
     @cached_property
@@ -63,7 +63,7 @@ class ClosestPoint:
             m.
         """
         _, sample = self._tree.query(points)
-        local, _ = subdivision(SAMPLES)
+        local, _ = subdivision(CLOSEST_SAMPLES)
         return self.near(points, Places(sample // len(local), local[sample % len(local)]))
 
     def near(self, points: Floats, start: Places) -> tuple[Places, Floats]:
@@ -92,7 +92,7 @@ class ClosestPoint:
         element, local = element.copy(), local.copy()
         active = np.arange(len(points))
         best, idle = np.full(len(points), np.inf), np.zeros(len(points), int)
-        for _ in range(MOST_STEPS):
+        for _ in range(CLOSEST_STEPS_MAX):
             moved, leaving = self._step(points[active], element[active], local[active])
             change = np.abs(moved - local[active]).max(1)
             local[active] = moved
@@ -106,7 +106,7 @@ class ClosestPoint:
             goes = (across >= 0) & (idle[hopping] < MOST_IDLE)
             best[hopping] = np.minimum(distance, best[hopping])
             element[hopping[goes]], local[hopping[goes]] = across[goes], entered[goes]
-            going = change > FINE
+            going = change > CLOSEST_TOLERANCE
             going[np.flatnonzero(hop)[goes]] = True
             active = active[going]
             if not len(active):

@@ -14,15 +14,15 @@ Jet = Callable[[Places], Floats]
 # Is told which targets go over which edges of which elements, and may change these targets.
 Cross = Callable[[Integers, Integers, Integers], None]
 
-MOST_STEPS, MOST_HOPS = 40, 20
+INVERSE_STEPS_MAX, INVERSE_HOPS_MAX = 40, 20
 # of the wanted values; nearer is there
-FINE = 1e-12
+INVERSE_TOLERANCE = 1e-12
 # local coordinates: the step after one as small as this is rounding, since the steps' sizes are squared
-SMALL = 1e-6
+INVERSE_LAST_STEP = 1e-6
 # local coordinates; a place this far beyond an edge is on it
 ON_EDGE = 1e-6
 # values this near are there as well when the steps have run out
-NEAR = 1e-9
+INVERSE_ACCEPTED = 1e-9
 
 
 def find_places(
@@ -65,10 +65,10 @@ def find_places(
             index, at, place = index[inside], at[inside], place[:, inside]
         found[index], result.element[index], result.local[index] = True, at, place.T
 
-    for _ in range(MOST_STEPS):
+    for _ in range(INVERSE_STEPS_MAX):
         value, by_x, by_y = jet(Places(element, local.T))
         residual = target.take(active, 1) - value
-        there = np.maximum(np.abs(residual[0]), np.abs(residual[1])) < FINE
+        there = np.maximum(np.abs(residual[0]), np.abs(residual[1])) < INVERSE_TOLERANCE
         determinant = by_x[0] * by_y[1] - by_x[1] * by_y[0]
         step = np.stack([residual[0] * by_y[1] - residual[1] * by_y[0], by_x[0] * residual[1] - by_x[1] * residual[0]])
         step /= np.where(np.abs(determinant) < 1e-300, 1.0, determinant)
@@ -76,7 +76,7 @@ def find_places(
         step *= np.where(there, 0.0, np.minimum(1, 0.5 / np.maximum(size, 1e-300)))
         moved = local + step
         third = 1 - moved[0] - moved[1]
-        done = there | (size < SMALL)
+        done = there | (size < INVERSE_LAST_STEP)
         local = np.minimum(np.maximum(moved, -0.3), 1.3)
         # beyond an edge by more than rounding: go on in the neighbour
         beyond = np.flatnonzero((np.minimum(np.minimum(moved[0], moved[1]), third) < -1e-9) & ~there)
@@ -86,7 +86,7 @@ def find_places(
             there_is = connectivity.neighbours.take(element[beyond], 0).T[[1, 2, 0]] >= 0
             depth = np.where(there_is, barycentric, np.inf)
             edge = (depth.argmin(0) + 1) % 3
-            goes = (depth.min(0) < -1e-9) & (hops[active[beyond]] < MOST_HOPS)
+            goes = (depth.min(0) < -1e-9) & (hops[active[beyond]] < INVERSE_HOPS_MAX)
             beyond, edge, barycentric = beyond[goes], edge[goes], barycentric[:, goes]
             cross(active[beyond], element[beyond], edge)
             element[beyond], local[:, beyond] = _entered(connectivity, element[beyond], edge, barycentric)
@@ -97,7 +97,7 @@ def find_places(
         active, element, local = active[left], element[left], local.take(left, 1)
         if not len(active):
             return result, found
-    near = (np.abs(target[:, active] - jet(Places(element, local.T))[0]) < NEAR).all(0)
+    near = (np.abs(target[:, active] - jet(Places(element, local.T))[0]) < INVERSE_ACCEPTED).all(0)
     settle(active[near], element[near], local[:, near])
     return result, found
 

@@ -18,7 +18,7 @@ SHARP_TURN = 0.35
 # elements do not resolve, not at all
 CORNER_PART, CORNER_CORE = 0.03, 0.003
 # places along an edge among which the nearest one is looked for, and how often again between its neighbours
-PLACES, ROUNDS = 17, 8
+NEAREST_PLACES, NEAREST_ROUNDS = 17, 8
 
 
 @dataclass(frozen=True)
@@ -92,11 +92,11 @@ def element_rims(connectivity: Connectivity, nodes: Floats, rim_loop: Integers) 
 def nearest_on_edges(edges: Floats, point: Floats) -> tuple[int, float]:
     """Curved edge, and share of its parameter, where edges with nodes (b, p + 1, 3) come nearest to a point (3,)."""
     order = edges.shape[1] - 1
-    shares = np.linspace(0, 1, PLACES)
+    shares = np.linspace(0, 1, NEAREST_PLACES)
     apart = ((edge_values(order, shares) @ edges - point) ** 2).sum(2)
     edge, at = (int(k) for k in np.unravel_index(apart.argmin(), apart.shape))
-    for _ in range(ROUNDS):
-        shares = np.linspace(shares[max(at - 1, 0)], shares[min(at + 1, PLACES - 1)], PLACES)
+    for _ in range(NEAREST_ROUNDS):
+        shares = np.linspace(shares[max(at - 1, 0)], shares[min(at + 1, NEAREST_PLACES - 1)], NEAREST_PLACES)
         at = int(((edge_values(order, shares) @ edges[edge] - point) ** 2).sum(1).argmin())
     return edge, float(shares[at])
 

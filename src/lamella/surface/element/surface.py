@@ -32,7 +32,7 @@ from lamella.surface.umbilic import umbilic_reason
 # order of continuous fields from second derivatives of positions, by that of the elements
 SMOOTHED_ORDER = {2: 1, 3: 2, 4: 3}
 # most parts an element's edge is cut into for files and pictures
-MOST_PARTS = 64
+EDGE_PARTS_DRAWN_MAX = 64
 MOST_TRIANGLES = 400_000
 # of a mesh's tolerance, the sag of its rim
 RIM_SHARE = 0.25
@@ -322,7 +322,7 @@ class ElementSurface(Shown):
         edges = np.linalg.norm(self._corners[:, :3] - np.roll(self._corners[:, :3], -1, 1), axis=2).max(1)
         # an edge of length l over a curvature k sags by k l^2 / 8
         parts = np.ceil(np.sqrt(np.percentile(bend * edges**2, 99) / (8 * tolerance * size)))
-        most = int(np.clip(np.sqrt(MOST_TRIANGLES / len(self._corners)), 1, MOST_PARTS))
+        most = int(np.clip(np.sqrt(MOST_TRIANGLES / len(self._corners)), 1, EDGE_PARTS_DRAWN_MAX))
         parts = int(np.clip(parts, 1, most))
         mesh = self.subdivided(parts, RIM_SHARE * tolerance * size)
         left = mesh.sag() / (tolerance * size)

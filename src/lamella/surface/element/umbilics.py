@@ -21,19 +21,19 @@ from lamella.surface.element.rim import rim_marks
 from lamella.surface.points import SurfacePoints
 
 # small triangles along an element's edge in which a zero is looked for
-PARTS = 4
+SEARCH_PARTS = 4
 # Newton steps from a small triangle's middle
-MOST_STEPS = 30
+UMBILIC_STEPS_MAX = 30
 # of the surface's size: zeros nearer to each other are one found twice, and those farther apart are never one
-SAME, APART = 1e-6, 0.3
+SAME_ZERO, ZEROS_APART = 1e-6, 0.3
 # zeros are one of higher order where the deviator between them is below this many times its error; the least that
 # leaves no negative order
 ERRORS = (1.0, 4.0, 16.0, 64.0)
 # neighbours of a zero that it may be one with, and places on the way to each
-NEIGHBOURS, ON_THE_WAY = 6, 5
+ZERO_NEIGHBOURS, ON_THE_WAY = 6, 5
 # radius of the circle on which turns are counted, over the zeros' distance from its middle and of the surface's size;
 # at most this part of the way to the next zeros
-AROUND, LEAST_RADIUS, TO_NEXT = 1.5, 2e-3, 0.5
+CIRCLE_RADIUS, CIRCLE_RADIUS_MIN, CIRCLE_TO_NEXT = 1.5, 2e-3, 0.5
 # places on a circle around a zero, and times its error that a deviator is to be trusted
 CIRCLE, SURE = 48, 20.0
 # of the size: umbilics whose distances from the rim differ by less are alike
@@ -105,7 +105,7 @@ def find_umbilics(surface: SmoothElements) -> Umbilics:
     sum of their orders, in their middle (the middle of the roots of z^m + a z^(m - 1) + ... is -a / m: it moves by the
     error itself, not by a root of it).
     """
-    local, faces = subdivision(PARTS)
+    local, faces = subdivision(SEARCH_PARTS)
     m = len(surface.connectivity.elements)
     axes = surface.frames_everywhere(np.full((1, 2), 1 / 3)).e_u
     value = _turned(surface.at_everywhere(local), np.repeat(axes, len(local), 0)).reshape(m, -1)
@@ -120,8 +120,8 @@ def find_umbilics(surface: SmoothElements) -> Umbilics:
     size = diagonal(surface.nodes)
     if not len(found):
         return Umbilics(found, np.zeros((0, 3)), np.zeros(0, np.int64))
-    places, position = _distinct(found, surface.frames(found).position, SAME * size)
-    ends, ratio = _ratios(surface, places, position, APART * size)
+    places, position = _distinct(found, surface.frames(found).position, SAME_ZERO * size)
+    ends, ratio = _ratios(surface, places, position, ZEROS_APART * size)
     for most in ERRORS:
         places_of, position_of, orders = _gathered(surface, places, position, ends[ratio <= most], size)
         # the Hopf differential is holomorphic: a negative turn is noise next to a zero of higher order
@@ -171,7 +171,9 @@ def _distinct(places: Places, position: Floats, reach: float) -> tuple[Places, F
 
 def _ratios(surface: SmoothElements, places: Places, position: Floats, reach: float) -> tuple[Integers, Floats]:
     """Pairs (p, 2) of zeros within `reach` (m), and the largest deviator between them over its error, (p,)."""
-    distance, near = cKDTree(position).query(position, min(NEIGHBOURS + 1, len(position)), distance_upper_bound=reach)
+    distance, near = cKDTree(position).query(
+        position, min(ZERO_NEIGHBOURS + 1, len(position)), distance_upper_bound=reach
+    )
     start, column = np.nonzero(np.isfinite(distance.reshape(len(position), -1)))
     ends = np.sort(np.stack([start, near.reshape(len(position), -1)[start, column]], 1), 1)
     ends = np.unique(ends[ends[:, 0] < ends[:, 1]], axis=0)
@@ -209,12 +211,12 @@ def _gathered(
     _, first = np.unique(group, return_index=True)
     extent = np.zeros(len(centre))
     np.maximum.at(extent, group, lengths(position - centre[group]))
-    radius = np.maximum(AROUND * extent, LEAST_RADIUS * size)
+    radius = np.maximum(CIRCLE_RADIUS * extent, CIRCLE_RADIUS_MIN * size)
     for number in range(len(centre)):
         others = position[group != number]
         if len(others):
             free = lengths(others - centre[number]).min() - extent[number]
-            radius[number] = min(radius[number], extent[number] + TO_NEXT * max(free, 0))
+            radius[number] = min(radius[number], extent[number] + CIRCLE_TO_NEXT * max(free, 0))
     places, position = surface.closest_near(centre, places[first])
     return places, position, _turns(surface, places, position, radius)
 
@@ -229,14 +231,14 @@ def _recentred(surface: SmoothElements, places: Places, position: Floats, orders
     for number in np.flatnonzero(orders > 1).tolist():
         m, here = int(orders[number]), slice(number, number + 1)
         free = lengths(np.delete(position, number, 0) - position[number]).min(initial=np.inf)
-        most = TO_NEXT * min(free, float(tree.query(position[number])[0]))
+        most = CIRCLE_TO_NEXT * min(free, float(tree.query(position[number])[0]))
         value = _circle(surface, places[here], position[here], np.array([most]))[0]
         error = float(deviator_error(surface, places.element[here])[0])
         radius = most * min(1.0, (SURE * error / np.abs(value).mean()) ** (1 / m))
         value = _circle(surface, places[here], position[here], np.array([radius]))[0]
         modes = np.fft.fft(value)
         shift = -radius * modes[m - 1] / (m * modes[m])
-        if abs(shift) < TO_NEXT * radius:
+        if abs(shift) < CIRCLE_TO_NEXT * radius:
             frame = surface.frames(places[here])
             moved[number] += shift.real * frame.e_u[0] + shift.imag * frame.e_v[0]
     return surface.closest_near(moved, places) if len(moved) else (places, position)
@@ -256,7 +258,7 @@ def _newton(surface: SmoothElements, start: Places, axes: Floats) -> tuple[Place
     step = 1e-5
     ahead = step * np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])
     every, each = np.tile(element, 3), np.tile(axes, (3, 1))
-    for _ in range(MOST_STEPS):
+    for _ in range(UMBILIC_STEPS_MAX):
         there = Places(every, (local + ahead).reshape(-1, 2))
         value, *further = _turned(surface.at(there), each).reshape(3, -1)
         change = (np.stack(further, 1) - value[:, None]) / step

@@ -17,17 +17,17 @@ from lamella.surface.remesh.size_field import SizeField
 # elements at a corner, over the size of its core
 CORNER_ELEMENT = 0.25
 # where the turn at a corner is measured, as a fraction of the loop
-BESIDE = 1e-5
+CORNER_STEP = 1e-5
 # |D| next to such a corner, over the curvature scale, from which on the corner concentrates curvature
-CONCENTRATED = 1.5
+ERROR_CONCENTRATION = 1.5
 # order of the regular places in each element at which H is checked
 CHECKED = 8
 # least |D| over the curvature scale that an error is weighed by
 LEAST_WEIGHED = 0.1
 # of the tolerance that a new mesh aims at, and the rings of neighbours that share their largest error
-AIM, RINGS = 0.6, 2
+ERROR_AIM, CORNER_RINGS = 0.6, 2
 # most an element's edge shrinks or grows at once; once the sizes have settled none grows
-SHRINK, GROW = 0.3, 1.3
+SIZE_SHRINK, GROW = 0.3, 1.3
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ class CornerZones:
 
     def concentrated(self, points: Floats, deviator: Floats) -> CornerZones:
         """With cores as large as the zones where |D| at points (n,), over the curvature scale, is nowhere large."""
-        large = points[deviator > CONCENTRATED]
+        large = points[deviator > ERROR_CONCENTRATION]
         some = np.array(
             [
                 bool(_within(large, centre[None], radius[None]).any())
@@ -147,7 +147,7 @@ class CornerZones:
 def _turns(loop: Loop, corners: Floats) -> Floats:
     """Angle by which a loop turns at corners, radians, (c,)."""
     there = loop.at(corners)
-    before, after = there - loop.at(corners - BESIDE), loop.at(corners + BESIDE) - there
+    before, after = there - loop.at(corners - CORNER_STEP), loop.at(corners + CORNER_STEP) - there
     return np.asarray(np.arctan2(np.linalg.norm(np.cross(before, after), axis=1), np.einsum("ij,ij->i", before, after)))
 
 
@@ -180,13 +180,13 @@ def refined_sizes(
     # an element counts with its neighbours: among alike ones the largest error sits in any of them
     knots = _near_knots(film, corners.mean(1), edges)
     worst = np.where(knots, 0, deviation.of_element)
-    for _ in range(RINGS):
+    for _ in range(CORNER_RINGS):
         of_node = np.zeros(len(film.mesh.points))
         np.maximum.at(of_node, film.connectivity.faces, worst[:, None])
         worst = of_node[film.connectivity.faces].max(1)
-    factor = (AIM * tolerance / np.maximum(worst, 1e-300)) ** (1 / (order - 1))
-    factor[knots] = np.minimum(factor, AIM * tolerance / np.maximum(deviation.of_element, 1e-300))[knots]
-    factor = np.clip(factor, SHRINK, GROW if coarsen else 1.0)
+    factor = (ERROR_AIM * tolerance / np.maximum(worst, 1e-300)) ** (1 / (order - 1))
+    factor[knots] = np.minimum(factor, ERROR_AIM * tolerance / np.maximum(deviation.of_element, 1e-300))[knots]
+    factor = np.clip(factor, SIZE_SHRINK, GROW if coarsen else 1.0)
     middles = corners.mean(1)
     zones = deviation.zones
     sharp = zones.core < zones.radius

@@ -27,9 +27,9 @@ from lamella.surface.remesh.remesh import TriangleMesh
 
 # of the whole way: first step, and the least one; Newton steps of a film, and after which a path that fails ends
 FIRST_STEP, LEAST_STEP = 1 / 8, 1 / 256
-MANY, MOST_NEWTON = 15, 150
+HOMOTOPY_STEPS_MAX, HOMOTOPY_NEWTON_MAX = 15, 150
 # loops drawn together keep this far apart, and move by this much at least, over the size of the largest
-APART = 0.05
+LOOPS_APART = 0.05
 
 
 class BreakError(ArithmeticError):
@@ -114,7 +114,7 @@ def drawn_together(loops: Loops) -> Path:
 
     def begin(k: int) -> Begin:
         axis = middles[k] - np.delete(middles, k, 0).mean(0) if len(loops) > 1 else np.zeros(3)
-        turn = np.eye(3) if np.linalg.norm(axis) < APART * size else _turn(vector_area(_points(loops[k])), axis)
+        turn = np.eye(3) if np.linalg.norm(axis) < LOOPS_APART * size else _turn(vector_area(_points(loops[k])), axis)
         return lambda t: (loops[k].at(t) - middles[k]) @ turn.T + middles.mean(0)
 
     starts = [begin(k) for k in range(len(loops))]
@@ -137,7 +137,7 @@ def _size(loops: Loops) -> float:
 def is_moved(begin: Loops, end: Loops) -> bool:
     """Whether a path moves its loops by more than a little."""
     size = _size(end)
-    return any(np.abs(_points(a) - _points(b)).max() > APART * size for a, b in zip(begin, end, strict=True))
+    return any(np.abs(_points(a) - _points(b)).max() > LOOPS_APART * size for a, b in zip(begin, end, strict=True))
 
 
 def _points(loop: Loop) -> Floats:
@@ -148,7 +148,7 @@ def are_apart(loops: Loops) -> bool:
     """Whether loops keep clear of each other."""
     points = [_points(loop) for loop in loops]
     size = _size(loops)
-    return all(cKDTree(p).query(q)[0].min() > APART * size for k, p in enumerate(points) for q in points[k + 1 :])
+    return all(cKDTree(p).query(q)[0].min() > LOOPS_APART * size for k, p in enumerate(points) for q in points[k + 1 :])
 
 
 def from_flat(chart: Chart, loops: Loops) -> tuple[Path, TriangleMesh]:
@@ -237,10 +237,10 @@ def along_loops(
     def found(film: Film, there: Loops, at: float) -> Equilibrium:
         moved = _moved(film, there)
         if volume is None:
-            return find_equilibrium(moved, curvature, FixedH(stable), most_steps=MANY)
+            return find_equilibrium(moved, curvature, FixedH(stable), most_steps=HOMOTOPY_STEPS_MAX)
         wanted = begin + (volume - begin) * (at - first) / (1 - first)
         missing = wanted - enclosed_volume(moved)
-        return find_equilibrium(moved, curvature, Volume(missing), most_steps=MANY)
+        return find_equilibrium(moved, curvature, Volume(missing), most_steps=HOMOTOPY_STEPS_MAX)
 
     try:
         while share < 1:
@@ -248,9 +248,9 @@ def along_loops(
             try:
                 here = found(film, path(wanted), wanted)
             except NoFilmError as error:
-                steps += MANY
+                steps += HOMOTOPY_STEPS_MAX
                 step /= 2
-                if step < LEAST_STEP or steps > MOST_NEWTON:
+                if step < LEAST_STEP or steps > HOMOTOPY_NEWTON_MAX:
                     raise BreakError(share, steps, str(error)) from None
                 continue
             steps += here.steps

@@ -22,14 +22,14 @@ from lamella.base.ties import MARGIN, grid_of, least_axis, nearest_whole, rounde
 from lamella.surface.remesh.topology import scattered
 
 # smallest angle of the chart's triangles, deg; Ruppert's refinement ends for certain below about 20.7
-LEAST_ANGLE = 20.0
+CHART_ANGLE_MIN = 20.0
 MOST_VERTICES = 20_000
 # a plan serves where its curves keep this far apart, over its size, and run at least this much of their length in it
 LEAST_GAP, LEAST_RUN = 0.02, 0.2
 # of the distance to its neighbours, by which a vertex on a rim of the chart is moved
-UNEVEN = 1e-3
+CHART_UNEVEN = 1e-3
 # Fourier modes of a loop that place a hole in the abstract disc
-MODES = 24
+CHART_MODES = 24
 
 
 class Curve(Protocol):
@@ -208,9 +208,9 @@ def _disc(loops: Sequence[Curve], parameters: Sequence[Floats]) -> list[Complexe
 
 def _harmonic_disc(coefficients: Complexes, places: Complexes) -> Floats:
     """Harmonic map of the unit disc with given Fourier coefficients (256, 3) on the rim, at places (n,), (n, 3)."""
-    k = np.arange(1, MODES + 1)
+    k = np.arange(1, CHART_MODES + 1)
     powers = places[:, None] ** k
-    return np.asarray(coefficients[0].real + 2 * (powers @ coefficients[1 : MODES + 1]).real)
+    return np.asarray(coefficients[0].real + 2 * (powers @ coefficients[1 : CHART_MODES + 1]).real)
 
 
 def _apart(centres: Complexes, radii: Floats) -> tuple[Complexes, Floats]:
@@ -260,7 +260,7 @@ def _uneven(rim: Complexes, size: float) -> Complexes:
     rim = rounded(rim.real, grid) + 1j * rounded(rim.imag, grid)
     step = np.minimum(np.abs(rim - np.roll(rim, 1)), np.abs(rim - np.roll(rim, -1)))
     share = np.stack([scattered(len(rim)), scattered(2 * len(rim))[len(rim) :]], 1) / 2.0**32 - 0.5
-    return np.asarray(rim + UNEVEN * step * (share @ np.array([1, 1j])))
+    return np.asarray(rim + CHART_UNEVEN * step * (share @ np.array([1, 1j])))
 
 
 def _triangulated(kind: str, rims: Sequence[Complexes], parameters: Sequence[Floats]) -> Chart:
@@ -279,7 +279,7 @@ def _triangulated(kind: str, rims: Sequence[Complexes], parameters: Sequence[Flo
         mesh.refine_triangles(
             MOST_VERTICES,
             pythoncdt.RefinementCriterion.SMALLEST_ANGLE,
-            np.radians(LEAST_ANGLE),
+            np.radians(CHART_ANGLE_MIN),
             mesh.collect_outer_triangles_and_holes(),
         )
         mesh.erase_outer_triangles_and_holes()

@@ -8,19 +8,19 @@ from dataclasses import dataclass
 
 from lamella.base.progress import Progress
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
-from lamella.surface.form_finding.family import MANY, Member, Stretch, member_of, stretches
+from lamella.surface.form_finding.family import FAMILY_STEPS_MAX, Member, Stretch, member_of, stretches
 from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.newton import Along, Equilibrium, FixedH, NoFilmError, Volume, find_equilibrium
 
 # of its first size, of the radius 1 / H or of the volume's edge: a film larger than this many times has left for good
-FAR = 5.0
+FAMILY_SIZE_MAX = 5.0
 # and of its first size, on the way to a film without pressure, which lies in the convex hull of its loops
 FAR_CALM = 2.0
 # negative eigenvalues more than at the start, with which no stable film is looked for any further on
 MORE = 1
 # of the first size: way along the family past a fold of the stable films, to where they may be stable again. Two films
 # that both keep near their loops are no farther apart than that
-BEYOND = 1.0
+BOTH_APART = 1.0
 
 
 class FoldError(ArithmeticError):
@@ -95,7 +95,7 @@ def to_curvature(start: Equilibrium, target: float, progress: Progress, *, unsta
     first = member_of(start.film, start.mean_curvature)
     away = target - start.mean_curvature
     size = start.film.size
-    largest = FAR * max(size, 1 / abs(target)) if target else FAR_CALM * size
+    largest = FAMILY_SIZE_MAX * max(size, 1 / abs(target)) if target else FAR_CALM * size
     if abs(away) * start.film.size < 1e-9:
         sides = [first, first.backwards()]
     else:
@@ -160,7 +160,7 @@ class _Side:
             raise NoFilmError("along the path films get less and less stable", last.second.film)
         if self.fold is not None:
             self.beyond += last.step
-            if self.beyond > BEYOND * self.start.film.size:
+            if self.beyond > BOTH_APART * self.start.film.size:
                 raise NoFilmError("past their fold the films stay unstable", last.second.film)
         elif not last.first.negative and last.second.negative:
             self.fold = last.extreme()
@@ -172,7 +172,9 @@ def _on_stretch(stretch: Stretch, target: float, progress: Progress, unstable: b
     for root in stretch.roots("mean_curvature", target):
         with suppress(NoFilmError):
             near = _part(stretch, float(root))
-            found = find_equilibrium(near.film, target, FixedH(stable=False), most_steps=MANY, progress=progress)
+            found = find_equilibrium(
+                near.film, target, FixedH(stable=False), most_steps=FAMILY_STEPS_MAX, progress=progress
+            )
             steps += near.steps + found.steps
             if (found.negative > 0) == unstable and _between(stretch, found.film):
                 return Reached(found, steps)
@@ -196,7 +198,7 @@ def to_volume(start: Equilibrium, volume: float, progress: Progress) -> Reached:
     if (missing < 0) != (first.growth < 0):
         first = first.backwards()
     turned, fold = 0, volume
-    for stretch in stretches(first, progress, FAR * max(start.film.size, abs(volume) ** (1 / 3))):
+    for stretch in stretches(first, progress, FAMILY_SIZE_MAX * max(start.film.size, abs(volume) ** (1 / 3))):
         for root in stretch.roots("volume", volume):
             with suppress(NoFilmError):
                 near = _part(stretch, float(root))
@@ -214,7 +216,7 @@ def to_volume(start: Equilibrium, volume: float, progress: Progress) -> Reached:
 def _part(stretch: Stretch, step: float) -> Equilibrium:
     """A film on the way from the first to the second."""
     first = stretch.first
-    return find_equilibrium(first.film, first.mean_curvature, Along(first.weights, step), most_steps=MANY)
+    return find_equilibrium(first.film, first.mean_curvature, Along(first.weights, step), most_steps=FAMILY_STEPS_MAX)
 
 
 def _between(stretch: Stretch, film: Film) -> bool:

@@ -26,7 +26,7 @@ from lamella.surface.form_finding.film import Film, Loop, Slide
 from lamella.surface.form_finding.free_boundary import FreeRim, within
 
 # pieces of a drawn loop between two corners at least, and points of each
-PIECES, POINTS = 64, 8
+LID_PIECES, LID_POINTS = 64, 8
 
 
 def enclosed_volume(film: Film) -> float:
@@ -100,11 +100,11 @@ def _along(edges: Floats) -> tuple[Floats, Floats]:
 
 
 def _pieces(loop: Loop) -> tuple[Floats, Floats]:
-    """Middles t of short pieces of a drawn loop that end at its corners, and points (m, POINTS, 3) along them."""
+    """Middles t of short pieces of a drawn loop that end at its corners, and points (m, LID_POINTS, 3) along them."""
     corners = np.asarray(loop.corners, float)
-    marks = np.unique(np.concatenate([np.arange(PIECES) / PIECES, corners, [1.0]]))
+    marks = np.unique(np.concatenate([np.arange(LID_PIECES) / LID_PIECES, corners, [1.0]]))
     # next to a mark the other side of a corner must not be met by rounding
-    share = np.linspace(1e-12, 1 - 1e-12, POINTS)
+    share = np.linspace(1e-12, 1 - 1e-12, LID_POINTS)
     t = marks[:-1, None] + np.diff(marks)[:, None] * share
     return (marks[:-1] + marks[1:]) / 2, loop.at(t.ravel()).reshape(*t.shape, 3)
 

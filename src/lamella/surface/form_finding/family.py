@@ -26,11 +26,11 @@ from lamella.surface.form_finding.variation import Variation
 
 # largest shift of a first step and of any, over the film's size; a path that needs smaller ones than the last ends
 FIRST_STEP, LARGEST_STEP, LEAST_STEP = 0.05, 0.2, 1e-4
-MOST_FILMS, MOST_NEWTON = 80, 500
+FAMILY_FILMS_MAX, FAMILY_NEWTON_MAX = 80, 500
 # eigenvalues that may change their sign between neighbouring films, unless the step is this short over the film's size
 CHANGED, SHORT_STEP = 1, 0.02
 # Newton steps at which the next step along the family may be longer, and that a film may take
-FEW, MANY = 5, 10
+FAMILY_FEW_STEPS, FAMILY_STEPS_MAX = 5, 10
 
 
 @dataclass(frozen=True)
@@ -143,17 +143,19 @@ def stretches(start: Member, progress: Progress, largest: float) -> Iterator[Str
     """
     here, begin, steps = start, start.film.size, 0
     step = FIRST_STEP * begin
-    for _ in range(MOST_FILMS):
+    for _ in range(FAMILY_FILMS_MAX):
         step = min(step, LARGEST_STEP * here.film.size)
         try:
-            found = find_equilibrium(here.film, here.mean_curvature, Along(here.weights, step), most_steps=MANY)
+            found = find_equilibrium(
+                here.film, here.mean_curvature, Along(here.weights, step), most_steps=FAMILY_STEPS_MAX
+            )
             there = member_of(found.film, found.mean_curvature)
             if abs(there.negative - here.negative) > CHANGED and step > SHORT_STEP * here.film.size:
                 # worn elements have solutions of their own, which no film is near to
                 raise NoFilmError("the step leads to another family", here.film)
         except NoFilmError as error:
-            steps, step = steps + MANY, step / 2
-            if step < LEAST_STEP * begin or steps > MOST_NEWTON:
+            steps, step = steps + FAMILY_STEPS_MAX, step / 2
+            if step < LEAST_STEP * begin or steps > FAMILY_NEWTON_MAX:
                 raise NoFilmError(
                     f"the path of films breaks at H = {here.mean_curvature:.5g} 1/m ({error})", here.film
                 ) from None
@@ -174,17 +176,17 @@ def stretches(start: Member, progress: Progress, largest: float) -> Iterator[Str
             # what cannot be made anew may still go on as it is
             with suppress(NoFilmError):
                 there = _renewed(there)
-        if found.steps <= FEW:
+        if found.steps <= FAMILY_FEW_STEPS:
             step *= 1.5
         here = there
-    raise NoFilmError(f"not within {MOST_FILMS} films (last H = {here.mean_curvature:.5g} 1/m)", here.film)
+    raise NoFilmError(f"not within {FAMILY_FILMS_MAX} films (last H = {here.mean_curvature:.5g} 1/m)", here.film)
 
 
 def _renewed(member: Member) -> Member:
     """The same film on new elements."""
     film = renewed(member.film)
     new = member_of(film, member.mean_curvature)
-    film = find_equilibrium(film, member.mean_curvature, Along(new.weights, 0.0), most_steps=MANY).film
+    film = find_equilibrium(film, member.mean_curvature, Along(new.weights, 0.0), most_steps=FAMILY_STEPS_MAX).film
     new = member_of(film, member.mean_curvature)
     # H and volume run on as they did
     same = new.rise * member.rise * film.size**4 + new.growth * member.growth

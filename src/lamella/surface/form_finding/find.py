@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from lamella.surface.boundary import Loop as BoundaryLoop
 
 # of the film's size: a film of the same mean curvature this near is told
-BESIDE = 0.02
+OTHER_FILM_DISTANCE = 0.02
 # tolerance of the elements on which other films than the one asked for are tried
-COARSE = 2e-2
+OTHER_FILMS_TOLERANCE = 2e-2
 # Newton steps spent on other films before no further one is tried: some seconds, whatever the boundary
-MOST_TRIED = 120
+OTHER_FILMS_STEPS_MAX = 120
 # of the film's size: it hangs where it is this much lower than its whole boundary, and nowhere higher by as much
 HANGS = 0.01
 
@@ -70,7 +70,11 @@ def notes_on(found: Found, *, given_curvature: bool = True) -> tuple[Message, ..
                 "slightly different boundary may have no surface at all",
             )
         )
-    if given_curvature and verdict.verdict != "fold" and verdict.beside < BESIDE * found.equilibrium.film.size:
+    if (
+        given_curvature
+        and verdict.verdict != "fold"
+        and verdict.beside < OTHER_FILM_DISTANCE * found.equilibrium.film.size
+    ):
         stable = verdict.verdict == "stable"
         notes.append(
             Message(
@@ -154,13 +158,13 @@ def find_film(
     """
     progress = patient(progress)
     unstable = branch == "unstable"
-    coarse = max(tolerance, COARSE)
+    coarse = max(tolerance, OTHER_FILMS_TOLERANCE)
 
     tried = 0
 
     def finds(others: tuple[Loop, ...], value: float, unstable: bool = False) -> bool:
         nonlocal tried
-        if tried > MOST_TRIED:
+        if tried > OTHER_FILMS_STEPS_MAX:
             return False
         progress(Report.step(f"trying mean_curvature = {value:g} 1/m"))
         search = FirstFilm(others, order, silent, short=len(others) == 1)

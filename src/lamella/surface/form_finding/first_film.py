@@ -41,9 +41,9 @@ SHARES = (0.6, 0.4, 0.25, 0.15, 0.08)
 # of those, how many are followed to the given loops
 MOST_PATHS = 2
 # H times the film's size, of a film followed at fixed volume: it is the wanted one but for rounding
-NEARLY = 1e-3
+NEARLY_REQUESTED = 1e-3
 # Newton steps to the wanted one
-FEW = 12
+EXACT_STEPS_MAX = 12
 
 
 @dataclass(frozen=True)
@@ -346,10 +346,10 @@ class FirstFilm:
 
 def _exactly(here: Equilibrium, mean_curvature: float) -> Equilibrium:
     """A film of very nearly a mean curvature (1/m), stable or not, with that one."""
-    if abs(here.mean_curvature - mean_curvature) * here.film.size > NEARLY:
+    if abs(here.mean_curvature - mean_curvature) * here.film.size > NEARLY_REQUESTED:
         return here
     try:
-        return find_equilibrium(here.film, mean_curvature, FixedH(stable=False), most_steps=FEW)
+        return find_equilibrium(here.film, mean_curvature, FixedH(stable=False), most_steps=EXACT_STEPS_MAX)
     except NoFilmError:
         return here
 

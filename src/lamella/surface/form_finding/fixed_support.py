@@ -17,7 +17,7 @@ from lamella.surface.form_finding.film import Loop, Slide
 from lamella.surface.form_finding.free_boundary import within
 
 # samples of a part; degree of the polynomials less 2; Fourier modes; samples of a loop for its length
-SAMPLES, DEGREE, MODES, LENGTH_SAMPLES = 200, 3, 3, 2000
+SUPPORT_SAMPLES, SUPPORT_DEGREE, SUPPORT_MODES, LENGTH_SAMPLES = 200, 3, 3, 2000
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def fixed_loop(loop: Loop, *, straight: bool = False) -> FixedLoop:
     for slide in loop.slides:
         if slide.direction is not None:
             continue
-        share = np.arange(SAMPLES + 1) / SAMPLES
+        share = np.arange(SUPPORT_SAMPLES + 1) / SUPPORT_SAMPLES
         points = loop.at(slide.start + (slide.end - slide.start) * share)
         basis = _basis(share, slide)
         coefficients = np.zeros((basis.shape[1], 3), complex)
@@ -97,6 +97,6 @@ def fixed_loop(loop: Loop, *, straight: bool = False) -> FixedLoop:
 def _basis(share: Floats, slide: Slide) -> Complexes:
     """Functions (n, k) of the share of a part: its chord's ends and bubbles over it, or waves around a whole loop."""
     if slide.end - slide.start >= 1:
-        return np.asarray(np.exp(2j * np.pi * share[:, None] * np.arange(-MODES, MODES + 1)))
-    bubbles = (share * (1 - share))[:, None] * (2 * share[:, None] - 1) ** np.arange(DEGREE)
+        return np.asarray(np.exp(2j * np.pi * share[:, None] * np.arange(-SUPPORT_MODES, SUPPORT_MODES + 1)))
+    bubbles = (share * (1 - share))[:, None] * (2 * share[:, None] - 1) ** np.arange(SUPPORT_DEGREE)
     return np.column_stack([1 - share, share, bubbles]).astype(complex)

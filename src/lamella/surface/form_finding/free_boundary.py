@@ -12,7 +12,7 @@ from lamella.surface.element.placing import rim_parameters
 from lamella.surface.form_finding.film import Film, Loop, NoFilmError, Slide
 
 # points of an edge at which its arc length is taken, and Gauss points between two of them
-PIECES, GAUSS = 8, 6
+SLIDE_PIECES, GAUSS = 8, 6
 # of its first length: a sliding loop shorter than that is about to vanish
 SHRUNK = 0.02
 
@@ -68,7 +68,7 @@ class FreeRim:
             sliding |= within(t, slide.start, slide.end)
         edge = np.searchsorted(self._starts, t[sliding], side="right") - 1
         arc = np.clip(((t[sliding] - self._starts[edge]) % 1) / self._spans[edge], 0, 1)
-        share = (arc[:, None] ** np.arange(PIECES + 1) * self._shares[edge]).sum(1)
+        share = (arc[:, None] ** np.arange(SLIDE_PIECES + 1) * self._shares[edge]).sum(1)
         powers = np.vander(share, len(self._basis), increasing=True) @ self._basis
         points[sliding] = np.einsum("nk,nkc->nc", powers, self._nodes[edge])
         return points
@@ -126,15 +126,15 @@ def _slid(film: Film, index: int, parameter: Floats) -> FreeRim:
 def _arc_lengths(nodes: Floats, basis: Floats) -> tuple[Floats, Floats]:
     """Lengths of edges with nodes (b, p + 1, 3), and their parameters as polynomials of the arc length fraction."""
     gauss, weight = np.polynomial.legendre.leggauss(GAUSS)
-    places = ((np.arange(PIECES)[:, None] + (gauss + 1) / 2) / PIECES).ravel()
+    places = ((np.arange(SLIDE_PIECES)[:, None] + (gauss + 1) / 2) / SLIDE_PIECES).ravel()
     p = len(basis) - 1
     slopes = np.zeros((len(places), p + 1))
     slopes[:, 1:] = np.arange(1, p + 1) * np.vander(places, p, increasing=True)
-    speed = np.linalg.norm(np.matmul(slopes @ basis, nodes), axis=2).reshape(len(nodes), PIECES, GAUSS)
-    arc = np.cumsum((speed * weight).sum(2) / (2 * PIECES), axis=1)
+    speed = np.linalg.norm(np.matmul(slopes @ basis, nodes), axis=2).reshape(len(nodes), SLIDE_PIECES, GAUSS)
+    arc = np.cumsum((speed * weight).sum(2) / (2 * SLIDE_PIECES), axis=1)
     length = arc[:, -1]
     fraction = np.column_stack([np.zeros(len(nodes)), arc / length[:, None]])
-    powers = fraction[:, :, None] ** np.arange(PIECES + 1)
-    wanted = np.broadcast_to(np.linspace(0, 1, PIECES + 1)[:, None], (len(nodes), PIECES + 1, 1))
+    powers = fraction[:, :, None] ** np.arange(SLIDE_PIECES + 1)
+    wanted = np.broadcast_to(np.linspace(0, 1, SLIDE_PIECES + 1)[:, None], (len(nodes), SLIDE_PIECES + 1, 1))
     shares: Floats = np.asarray(np.linalg.solve(powers, wanted)[..., 0], np.float64)
     return np.asarray(length, np.float64), shares

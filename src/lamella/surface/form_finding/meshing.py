@@ -32,7 +32,7 @@ MOST_COARSE = 1500
 
 
 # elements are made anew below this angle, deg, or where their normals turn by this many times what they should
-SLENDER, BENT = 18.0, 1.7
+SLENDER_CHART, BENT = 18.0, 1.7
 # flat triangles along the edge of a curved one that new elements start from
 FACETS = 2
 
@@ -189,7 +189,7 @@ def least_angle(film: Film) -> Floats:
 
 def is_worn(film: Film) -> bool:
     """Whether a film has outgrown its elements: slender ones, or such that its normal turns too much in them."""
-    if least_angle(film).min() < SLENDER:
+    if least_angle(film).min() < SLENDER_CHART:
         return True
     corners = film.nodes[film.connectivity.faces]
     edges = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).max(1)

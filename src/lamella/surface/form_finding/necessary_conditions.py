@@ -15,14 +15,14 @@ from lamella.surface.form_finding.chart import Curve, samples_of, vector_area
 from lamella.surface.form_finding.film import Loop
 
 # two equal coaxial rings: largest distance over their radius, the maximum of 2 acosh(x) / x
-RINGS = 1.3254868387
+RING_DISTANCE = 1.3254868387
 # half opening of the double cone no connected minimal surface leaves through both of: sinh of coth(x) = x
 CONE = 1.5088795615
-SAMPLES = 2000
+CONDITION_SAMPLES = 2000
 # height of a flat loop over its length
-FLAT = 1e-6
+FLAT_HEIGHT = 1e-6
 # turn (rad) the wrong way that is rounding
-STRAIGHT = 1e-7
+STRAIGHT_LOOP = 1e-7
 
 
 class ImpossibleError(InputError):
@@ -74,9 +74,9 @@ def refuse_single(loops: Sequence[Curve], mean_curvature: float) -> None:
     """
     if len(loops) > 1 or mean_curvature:
         return
-    points = loops[0].at(samples_of(loops[0], SAMPLES))
+    points = loops[0].at(samples_of(loops[0], CONDITION_SAMPLES))
     _, length, axes = np.linalg.svd(points - points.mean(0), full_matrices=False)
-    if length[2] <= FLAT * length[0]:
+    if length[2] <= FLAT_HEIGHT * length[0]:
         raise ImpossibleError(
             "there is no unstable surface: the boundary is flat, and without pressure its only surface is the plane",
             "branch",
@@ -106,7 +106,7 @@ def is_convex_along(points: Floats, axis: Floats) -> bool:
         return False
     turns = np.angle(np.roll(seen, -1) / seen)
     turns = turns if turns.sum() > 0 else -turns
-    return bool(turns.min() > -STRAIGHT and abs(turns.sum() - 2 * np.pi) < 1e-6)
+    return bool(turns.min() > -STRAIGHT_LOOP and abs(turns.sum() - 2 * np.pi) < 1e-6)
 
 
 def refuse_flux(loops: Sequence[Curve], mean_curvature: float) -> None:
@@ -116,7 +116,7 @@ def refuse_flux(loops: Sequence[Curve], mean_curvature: float) -> None:
     """
     if len(loops) > 1 or not mean_curvature:
         return
-    points = loops[0].at(np.arange(SAMPLES) / SAMPLES)
+    points = loops[0].at(np.arange(CONDITION_SAMPLES) / CONDITION_SAMPLES)
     enclosed = float(np.linalg.norm(vector_area(points)))
     length = loops[0].length
     limit = length / (2 * max(enclosed, 1e-300))
@@ -135,7 +135,7 @@ def refuse_apart(loops: Sequence[Curve]) -> None:
     Loops in the two nappes of a cone of half opening arctan 1.5089 bound no connected minimal surface: docs/theory.md
     has the proof.
     """
-    first, second = (loop.at(np.arange(SAMPLES) / SAMPLES) for loop in loops)
+    first, second = (loop.at(np.arange(CONDITION_SAMPLES) / CONDITION_SAMPLES) for loop in loops)
     middles = [points.mean(0) for points in (first, second)]
     apart = middles[1] - middles[0]
     distance = float(np.linalg.norm(apart))
@@ -152,7 +152,7 @@ def refuse_apart(loops: Sequence[Curve]) -> None:
             same = abs(most0 - most1) < 1e-6 * size
             reported = (
                 f"{distance / most0:.6g} radii; a film between two equal rings exists up to a distance of "
-                f"{RINGS:.7f} radii ({limit:.6g} m)"
+                f"{RING_DISTANCE:.7f} radii ({limit:.6g} m)"
                 if same
                 else f"a film between rings of radius {most0:.5g} and {most1:.5g} m exists up to {limit:.6g} m"
             )

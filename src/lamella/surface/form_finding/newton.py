@@ -34,12 +34,12 @@ from lamella.surface.form_finding.film import Film, NoFilmError
 from lamella.surface.form_finding.variation import FirstVariation, Variation
 
 # a step this small, over the film's size, is the last: the next would be its square
-LAST_STEP = 1e-7
+NEWTON_LAST_STEP = 1e-7
 # directions follow the film once a normal has turned this far from its node's, as a cosine
 TURNED = 0.7
 # share of the residual that a step leaves, above which its factorisation is used again
 MUCH_LEFT = 0.03
-MOST_HALVINGS = 12
+NEWTON_HALVINGS_MAX = 12
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ def find_equilibrium(
                 + (f", {step.negative} negative eigenvalues" if step.negative else "")
             )
         )
-        if step.share == 1 and step.move <= LAST_STEP * size and abs(step.change) * size <= 1e-6:
+        if step.share == 1 and step.move <= NEWTON_LAST_STEP * size and abs(step.change) * size <= 1e-6:
             return Equilibrium(search.film, search.mean_curvature, number, step.negative, tuple(moves))
     raise NoFilmError(f"no convergence in {most_steps} steps (last shift {moves[-1]:.2g} m)", search.film)
 
@@ -339,7 +339,7 @@ def _line_search(
 ) -> tuple[Film, FirstVariation, float]:
     """The longest of the halved steps in which no element folds and the slope along the step does not grow."""
     share = 1.0
-    for _ in range(MOST_HALVINGS):
+    for _ in range(NEWTON_HALVINGS_MAX):
         nodes = film.nodes + share * shift[:, None] * variation.directions
         there = variation.first(nodes)
         folded = ((there.normals * first.normals).sum(0) < 0.3).any() or (there.elements < 0.1 * first.elements).any()

@@ -27,17 +27,17 @@ from lamella.surface.form_finding.adaptivity import away_from_corners
 from lamella.surface.form_finding.film import Film
 
 # of the diagonal of the least squares, so that shifts that change next to nothing stay small
-DAMPING = 0.01
+REDISTRIBUTION_DAMPING = 0.01
 # least diagonal that is damped by its own part, over the median: with 0.01 and less, shifts where there is little bend
 # grow from the rounding of the nodes, a thousandfold at each call
 FLOOR = 0.05
-TOLERANCE, MOST_STEPS = 1e-2, 60
+REDISTRIBUTION_TOLERANCE, REDISTRIBUTION_STEPS_MAX = 1e-2, 60
 # longest shift, over the shortest edge of the elements around
-LONGEST = 0.05
+SHIFT_MAX = 0.05
 # of an element's area, at each of its vertices, where the curvature of a polynomial is farthest off
 AT_VERTEX = 0.02
 # elements worked on at a time
-ELEMENTS = 500
+ELEMENT_BLOCK = 500
 
 
 def redistributed(film: Film, mean_curvature: float) -> Film:
@@ -57,7 +57,7 @@ def redistributed(film: Film, mean_curvature: float) -> Film:
     _, weights = check_rule(connectivity.basis.order)
     m, k = len(elements), 2 * (elements.shape[1] - 3)
     matrix, pull = np.empty((m, k, k)), np.empty((m, k))
-    for rows in blocks(m, ELEMENTS):
+    for rows in blocks(m, ELEMENT_BLOCK):
         rates, mean, area = variation_of_mean_curvature(film, normals, frames, rows)
         weighted = rates * (weights * area)[..., None]
         matrix[rows] = np.matmul(weighted.transpose(0, 2, 1), rates)
@@ -68,7 +68,7 @@ def redistributed(film: Film, mean_curvature: float) -> Film:
     free = diagonal > 0
     if not free.any():
         return film
-    damping = np.where(free, DAMPING * np.maximum(diagonal, FLOOR * np.median(diagonal[free])), 1.0)
+    damping = np.where(free, REDISTRIBUTION_DAMPING * np.maximum(diagonal, FLOOR * np.median(diagonal[free])), 1.0)
 
     def image_of(shifts: Floats) -> Floats:
         parts = np.matmul(matrix, shifts[unknowns])
@@ -80,8 +80,8 @@ def redistributed(film: Film, mean_curvature: float) -> Film:
         return np.asarray(inverse_diagonal * shifts)
 
     right = -(gathering @ pull.ravel())[:, None]
-    goal = TOLERANCE**2 * np.einsum("nc,nc->c", right, conditioned(right))
-    solution = conjugate_gradients(image_of, conditioned, right, np.zeros((2 * n, 1)), goal, MOST_STEPS)
+    goal = REDISTRIBUTION_TOLERANCE**2 * np.einsum("nc,nc->c", right, conditioned(right))
+    solution = conjugate_gradients(image_of, conditioned, right, np.zeros((2 * n, 1)), goal, REDISTRIBUTION_STEPS_MAX)
     shift = np.matmul(frames, solution.reshape(n, 2, 1))[..., 0]
     return film.at(film.nodes + _part(film, lengths(shift))[:, None] * shift)
 
@@ -167,5 +167,5 @@ def _part(film: Film, shift: Floats) -> Floats:
     corners = film.nodes[film.connectivity.faces]
     edge = lengths(corners - np.roll(corners, 1, 1)).min(1)
     limit = np.full(len(shift), np.inf)
-    np.minimum.at(limit, film.connectivity.elements, LONGEST * edge[:, None])
+    np.minimum.at(limit, film.connectivity.elements, SHIFT_MAX * edge[:, None])
     return np.asarray(np.minimum(1, limit / np.maximum(shift, 1e-300)))

@@ -19,14 +19,14 @@ from lamella.surface.form_finding.newton import Equilibrium, NoFilmError
 from lamella.surface.form_finding.redistribution import redistributed
 from lamella.surface.form_finding.stability import stability_of
 
-MOST_ROUNDS = 12
+REFINEMENT_ROUNDS_MAX = 12
 # at the limit of nodes another round is worth its time while it lowers the deviation by more than this
-SLOW = 0.7
+SLOW_FALL = 0.7
 # nodes are moved within the surface again rather than elements made smaller while the deviation is at most this many
 # times the tolerance, and as long as it falls below this part
-NEAR, GAIN = 2.5, 0.8
+NEAR_TOLERANCE, GAIN = 2.5, 0.8
 # of the tolerance, kept for what lies between the places that are checked
-MARGIN = 0.9
+TOLERANCE_USED = 0.9
 # of the curvature scale: a film that is off by more is none to speak of
 WRONG = 0.1
 
@@ -67,9 +67,9 @@ def adapted(
             "make the boundary less bent, or allow a larger tolerance",
             "loops",
         ) from None
-    shortfall = f"it was not reached in {MOST_ROUNDS} rounds of refinement"
+    shortfall = f"it was not reached in {REFINEMENT_ROUNDS_MAX} rounds of refinement"
     best: tuple[float, Equilibrium] | None = None
-    for round_ in range(MOST_ROUNDS):
+    for round_ in range(REFINEMENT_ROUNDS_MAX):
         here, deviation = _at_rest(here, settled, tolerance)
         progress(
             Report.step(
@@ -80,11 +80,11 @@ def adapted(
         gain = deviation.weighted / best[0] if best else 0.0
         if best is None or deviation.weighted < best[0]:
             best = (deviation.weighted, here)
-        if deviation.weighted <= MARGIN * tolerance:
+        if deviation.weighted <= TOLERANCE_USED * tolerance:
             shortfall = ""
             break
         size, allowed = refined_sizes(here.film, deviation, tolerance, most_nodes, coarsen=round_ < 2)
-        if not allowed and here.film.connectivity.node_count > 0.7 * most_nodes and gain > SLOW:
+        if not allowed and here.film.connectivity.node_count > 0.7 * most_nodes and gain > SLOW_FALL:
             shortfall = f"elements as small as that asks for would need more than most_nodes = {most_nodes:,} nodes"
             break
         try:
@@ -159,7 +159,7 @@ def _at_rest(
         before, after = deviation.weighted, deviation_of(moved.film, moved.mean_curvature)
         if after.weighted < before:
             here, deviation = moved, after
-        if not tolerance < deviation.weighted < min(NEAR * tolerance, GAIN * before):
+        if not tolerance < deviation.weighted < min(NEAR_TOLERANCE * tolerance, GAIN * before):
             return here, deviation
 
 

@@ -22,9 +22,9 @@ from lamella.surface.form_finding.meshing import is_worn, renewed
 from lamella.surface.form_finding.newton import Equilibrium, FixedH, NoFilmError, Volume, find_equilibrium
 
 # stiffness of the first springs times the film's size, how it falls and rises, and the most and least of it
-FIRST, FALL, RISE, MOST, LEAST = 10.0, 4.0, 8.0, 1e6, 1e-3
+SPRINGS_FIRST, SPRINGS_FALL, SPRINGS_RISE, SPRINGS_MAX, SPRINGS_MIN = 10.0, 4.0, 8.0, 1e6, 1e-3
 # films on the way, and Newton steps of one
-MOST_FILMS, MANY = 60, 15
+RELEASE_FILMS_MAX, RELEASE_STEPS_MAX = 60, 15
 # once the springs' largest force is below this part of the film's tension, the film is tried without them
 CALM = 0.05
 
@@ -51,35 +51,37 @@ def release(start: Equilibrium, loops: tuple[Loop, ...], volume: float | None, p
 
     def found(springs: Floats | None) -> Equilibrium:
         condition = FixedH() if volume is None else Volume(volume - enclosed_volume(film))
-        return find_equilibrium(film, curvature, condition, springs=springs, most_steps=MANY, progress=progress)
+        return find_equilibrium(
+            film, curvature, condition, springs=springs, most_steps=RELEASE_STEPS_MAX, progress=progress
+        )
 
-    stiffness, calm = FIRST / size, True
-    for _ in range(MOST_FILMS):
+    stiffness, calm = SPRINGS_FIRST / size, True
+    for _ in range(RELEASE_FILMS_MAX):
         if calm:
             try:
                 free = found(None)
             except NoFilmError as error:
-                steps += MANY
+                steps += RELEASE_STEPS_MAX
                 progress(Report.detail(f"edges cannot be let go yet: {error}"))
             else:
                 return Reached(free, steps + free.steps)
-        if stiffness * size < LEAST:
+        if stiffness * size < SPRINGS_MIN:
             raise NoFilmError("the sliding edges find no place", film)
         try:
             there = found(stiffness * rim_lengths(film))
         except NoFilmError as error:
-            steps, stiffness, calm = steps + MANY, stiffness * RISE, False
-            if stiffness * size > MOST:
+            steps, stiffness, calm = steps + RELEASE_STEPS_MAX, stiffness * SPRINGS_RISE, False
+            if stiffness * size > SPRINGS_MAX:
                 raise NoFilmError(f"let go, the sliding edges run away ({error})", film) from None
             continue
         steps += there.steps
         moved = np.linalg.norm(there.film.nodes - film.nodes, axis=1)[film.connectivity.rim_nodes].max()
         progress(Report.detail(f"edges held with {stiffness * size:.3g} over the film's size move by {moved:.3g} m"))
         film, curvature, calm = there.film, there.mean_curvature, bool(moved * stiffness < CALM)
-        stiffness /= FALL
+        stiffness /= SPRINGS_FALL
         if is_worn(film):
             film = renewed(film)
-    raise NoFilmError(f"the sliding edges find no place in {MOST_FILMS} films", film)
+    raise NoFilmError(f"the sliding edges find no place in {RELEASE_FILMS_MAX} films", film)
 
 
 def rim_lengths(film: Film) -> Floats:

@@ -14,14 +14,14 @@ from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.meshing import facets
 
 # facets along the edge of an element
-PARTS = 2
+FACET_PARTS = 2
 # of an edge's length and of a facet's height: what is nearer to the rim of either is none of it
-MARGIN = 1e-9
+RIM_MARGIN = 1e-9
 
 
 def self_crossing(film: Film) -> Floats | None:
     """Points (n, 3) where a film passes through itself, m, or None."""
-    mesh = facets(film, PARTS)
+    mesh = facets(film, FACET_PARTS)
     points, faces = mesh.points, mesh.faces
     sides = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), 1)
     edges = np.unique(sides, axis=0)
@@ -40,7 +40,7 @@ def self_crossing(film: Film) -> Floats | None:
     beside = np.cross(off, one)
     v = (way * beside).sum(1) / volume
     share = (other * beside).sum(1) / volume
-    inside = (np.minimum(np.minimum(u, v), 1 - u - v) > MARGIN) & (np.abs(share - 0.5) < 0.5 - MARGIN)
+    inside = (np.minimum(np.minimum(u, v), 1 - u - v) > RIM_MARGIN) & (np.abs(share - 0.5) < 0.5 - RIM_MARGIN)
     if not inside.any():
         return None
     return np.asarray(start[inside] + share[inside, None] * way[inside])

@@ -25,7 +25,7 @@ FOLD = 0.05
 # of 1 / area: above it no other film is near enough for its distance to be estimated
 NEAR_FOLD = 2.0
 # step of the third variation's difference quotient, over the film's size
-STEP = 1e-3
+STABILITY_STEP = 1e-3
 # shifts tried below the spectrum, each four times the one before
 SHIFTS = 40
 
@@ -106,7 +106,7 @@ def stability_of(film: Film, mean_curvature: float) -> Stability:
 
 def _third_variation(film: Film, variation: Variation, mean_curvature: float, mode: Floats) -> float:
     """Third variation of area + 2 H volume along a mode."""
-    step = STEP * film.size
+    step = STABILITY_STEP * film.size
     free = film.unknowns >= 0
 
     def second(shift: float) -> float:

@@ -24,15 +24,15 @@ from lamella.surface.form_finding.first_film import FirstFilm
 from lamella.surface.form_finding.newton import NoFilmError
 from lamella.surface.form_finding.search_error import SearchError
 
-SAMPLES = 400
+TUBE_SAMPLES = 400
 # of the first size: as far as a family is followed for where it gets stable or unstable
-FAR = 0.5
+TUBE_SIZE_MAX = 0.5
 # of the range of H, from either end, what is left out: next to a fold films are found with difficulty
-INSIDE = 0.25
+TUBE_INSIDE = 0.25
 # distances, of the loops' mean radius, at which a film is looked for that is then followed to larger ones
-NEAR = (0.6, 1.0, 0.3)
+TUBE_DISTANCES = (0.6, 1.0, 0.3)
 # loops with their middles less than this apart, of their radius, are no ends of a tube
-LEAST_DISTANCE = 0.05
+TUBE_DISTANCE_MIN = 0.05
 
 
 @dataclass(frozen=True)
@@ -76,12 +76,12 @@ def tube_of(loops: tuple[Loop, ...], order: int) -> Tube | None:
     """Two loops as ends of a tube; None: they are not two, or in each other."""
     if len(loops) != 2:
         return None
-    first, second = (loop.at(samples_of(loop, SAMPLES)) for loop in loops)
+    first, second = (loop.at(samples_of(loop, TUBE_SAMPLES)) for loop in loops)
     apart = second.mean(0) - first.mean(0)
     distance = float(np.linalg.norm(apart))
     across = [_across(points, apart / max(distance, 1e-300)) for points in (first, second)]
     radius = float(np.mean([np.linalg.norm(points, axis=1).mean() for points in across]))
-    if distance < LEAST_DISTANCE * radius:
+    if distance < TUBE_DISTANCE_MIN * radius:
         return None
     way = apart / distance
     step = np.roll(first, -1, 0) - first
@@ -110,7 +110,7 @@ def pressure_of(tube: Tube) -> float | None:
     if not ends:
         return None
     low, high = min(ends), max(ends)
-    room = INSIDE * (high - low)
+    room = TUBE_INSIDE * (high - low)
     return float(np.clip(tube.mean_curvature, low + room, high - room))
 
 
@@ -125,7 +125,7 @@ def _stable(side: Member) -> tuple[float, ...]:
                 begin = stretch.extreme()
             elif begin is not None and stretch.second.negative:
                 return begin, stretch.extreme()
-            if way > FAR * side.film.size:
+            if way > TUBE_SIZE_MAX * side.film.size:
                 break
     except NoFilmError:
         pass
@@ -137,7 +137,7 @@ def farthest(tube: Tube, mean_curvature: float) -> float | None:
 
     The loops are moved along the line between their middles, from near each other; None: no film is found there.
     """
-    for part in NEAR:
+    for part in TUBE_DISTANCES:
         share = part * tube.radius / tube.distance
         if share < 1 and are_apart(tube.at(share)):
             reached = _followed(tube.at, share, tube, mean_curvature)

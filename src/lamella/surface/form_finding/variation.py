@@ -23,7 +23,7 @@ from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.quadrature import triangle_rule
 
 # worked on at a time: their tables stay in the processor's cache
-ELEMENTS = 192
+VARIATION_BLOCK = 192
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ class Variation:
         """
         m, k = len(self.connectivity.elements), self._local.shape[2]
         result = np.empty((m, k * (k + 1) // 2))
-        for some in blocks(m, ELEMENTS):
+        for some in blocks(m, VARIATION_BLOCK):
             self._second_of(some, first, result[some])
         if mean_curvature:
             _, x, y = self._volume_basis

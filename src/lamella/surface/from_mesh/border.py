@@ -9,7 +9,7 @@ import numpy as np
 from lamella.base.arrays import Booleans, Floats
 from lamella.base.message import Message
 from lamella.base.wording import loop_names
-from lamella.surface.boundary.corners import CORNER_ANGLE, edge_lengths, find_corners, thinned
+from lamella.surface.boundary.corners import CORNER_TURN, edge_lengths, find_corners, thinned
 from lamella.surface.boundary.scatter import smooth_scatter
 from lamella.surface.from_mesh.border_zigzag import is_zigzag, smooth_zigzag
 from lamella.surface.from_mesh.clean import CleanMesh
@@ -39,7 +39,7 @@ class BorderCurve:
 
 
 def border_curves(
-    mesh: CleanMesh, corner_angle: float = CORNER_ANGLE, most: int | None = None
+    mesh: CleanMesh, corner_angle: float = CORNER_TURN, most: int | None = None
 ) -> tuple[BorderCurve, ...]:
     """Curves of all border loops of a mesh, in their order.
 
@@ -62,7 +62,7 @@ def border_curves(
 
 
 def border_curve(
-    points: Floats, normals: Floats, corner_angle: float = CORNER_ANGLE, spacing: float | None = None
+    points: Floats, normals: Floats, corner_angle: float = CORNER_TURN, spacing: float | None = None
 ) -> BorderCurve:
     """Points and corners of the curve a closed polyline means.
 

@@ -11,13 +11,13 @@ MEAN_TURN = np.radians(20.0)
 TURN = np.radians(10.0)
 """Smaller turns are straight stretches between teeth."""
 
-ALTERNATING = 0.6
+BORDER_ALTERNATING = 0.6
 """Part of the turns that are followed by one to the other side."""
 
 OF_DEPTH = 0.75
 """A curve through the middle of the teeth is half their depth away; a little more is left for uneven ones."""
 
-FEWEST = 12
+BORDER_VERTICES_MIN = 12
 """A loop with fewer vertices has no teeth, only corners."""
 
 
@@ -32,13 +32,13 @@ def signed_turns(points: Floats, normals: Floats) -> Floats:
 
 def is_zigzag(points: Floats, normals: Floats) -> bool:
     """Whether the turns of a closed polyline are large and alternate in sign."""
-    if len(points) < FEWEST:
+    if len(points) < BORDER_VERTICES_MIN:
         return False
     turns = signed_turns(points, normals)
     teeth = turns[np.abs(turns) > TURN]
-    if len(teeth) < FEWEST or np.abs(turns).mean() <= MEAN_TURN:
+    if len(teeth) < BORDER_VERTICES_MIN or np.abs(turns).mean() <= MEAN_TURN:
         return False
-    return bool(np.mean(teeth * np.roll(teeth, -1) < 0) > ALTERNATING)
+    return bool(np.mean(teeth * np.roll(teeth, -1) < 0) > BORDER_ALTERNATING)
 
 
 def smooth_zigzag(points: Floats) -> tuple[Floats, float]:

@@ -26,8 +26,8 @@ FRAGMENT = 1e-3
 NARROW_HOLE = 0.05
 """A hole narrower than this part of its own edges is a crack."""
 
-ROUNDING = 1e-9
-"""m; vertices nearer to one another differ by rounding."""
+MESH_ROUNDING = 1e-10
+"""Of the mesh's size: vertices nearer to one another differ by rounding."""
 
 SMALL_HOLE = 8
 """Holes with more vertices are judged by how near their sides come, for they need not be plane."""
@@ -78,11 +78,12 @@ def clean(raw: RawMesh) -> CleanMesh:
             )
         )
     if merged.welded:
+        apart = merged.gap > MESH_ROUNDING * diagonal(points)
         notes.append(
             Message(
                 "vertices_welded",
                 f"{counted(merged.welded, 'border vertex', 'border vertices')} welded to others "
-                + (f"up to {1000 * merged.gap:.2g} mm away" if merged.gap > ROUNDING else "a rounding away"),
+                + (f"up to {1000 * merged.gap:.2g} mm away" if apart else "a rounding away"),
             )
         )
     whole = drop_collapsed(faces)

@@ -9,7 +9,7 @@ import numpy as np
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.surface.from_mesh.edges import find_edges
 
-LARGEST = 8
+COVERINGS_MAX = 8
 """Corners of a face whose triangles are looked for: larger ones are outlines rather than faces."""
 
 
@@ -27,7 +27,7 @@ def covered_faces(points: Floats, sizes: Integers, corners: Integers) -> Boolean
     """
     covered = np.zeros(len(sizes), bool)
     triangle = np.flatnonzero(sizes == 3)
-    larger = [size for size in np.unique(sizes).tolist() if 3 < size <= LARGEST]
+    larger = [size for size in np.unique(sizes).tolist() if 3 < size <= COVERINGS_MAX]
     if not len(triangle) or not larger:
         return covered
     _, one = np.unique(points, axis=0, return_inverse=True)

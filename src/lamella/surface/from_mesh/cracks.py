@@ -9,13 +9,13 @@ from lamella.base.arrays import Floats, Integers
 from lamella.surface.from_mesh.edges import find_edges
 from lamella.surface.from_mesh.merge import drop_collapsed
 
-ON_EDGE = 1e-3
+CRACK_ON_EDGE = 1e-3
 """A border vertex within this part of a border edge's length from that edge lies on it."""
 
 NEAR_EDGE = 0.02
 """Within this part of the edges there, two stretches of border leave a gap the mesh cannot mean."""
 
-ROUNDS = 20
+CRACK_ROUNDS = 20
 
 
 def close_t_junctions(points: Floats, faces: Integers) -> tuple[Integers, int]:
@@ -28,11 +28,11 @@ def close_t_junctions(points: Floats, faces: Integers) -> tuple[Integers, int]:
         Vertices on edges.
     """
     closed = 0
-    for _ in range(ROUNDS):
+    for _ in range(CRACK_ROUNDS):
         edges = find_edges(faces)
         halves = edges.halves[edges.first[edges.border]]
-        which, vertex, along, _ = near_border(points, faces, halves, ON_EDGE)
-        inside = (along > ON_EDGE) & (along < 1 - ON_EDGE)
+        which, vertex, along, _ = near_border(points, faces, halves, CRACK_ON_EDGE)
+        inside = (along > CRACK_ON_EDGE) & (along < 1 - CRACK_ON_EDGE)
         which, vertex, along = which[inside], vertex[inside], along[inside]
         face = halves[which] // 3
         opposite = faces[face, (halves[which] + 2) % 3]

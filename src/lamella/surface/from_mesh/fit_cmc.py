@@ -33,15 +33,15 @@ from lamella.surface.from_mesh.to_elements import as_film, checked_loops
 # the user is warned of it
 MINIMAL, REPORTED = 2e-3, 1e-4
 # vertices of a mesh whose curvature may be read wrongly for its coarseness alone: the surface itself decides then
-COARSE = 400
+COARSE_VERTICES = 400
 # 1/m; a radius of a thousand kilometres
-LEAST = 1e-9
+CURVATURE_MIN = 1e-9
 # mean cosine between neighbouring faces
 CRUMPLED = 0.8
 # largest distance between mesh and surface, over the size, at which the surface still is what the mesh means
-FAR = 0.05
+DEVIATION_MAX = 0.05
 # typical distance between them, over the size, that the user is warned of
-OFF = 2e-4
+FIT_OFF = 2e-4
 
 
 class NotConstantError(InputError):
@@ -183,7 +183,7 @@ def _coarse(
     free = options.mean_curvature == "fit"
     start = fit.mean_curvature if free else float(options.mean_curvature)
     uneven = fit.deviation > options.deviation
-    if uneven and (len(mesh.points) > COARSE or _crumpled(mesh)):
+    if uneven and (len(mesh.points) > COARSE_VERTICES or _crumpled(mesh)):
         raise _not_constant(fit, options.deviation)
     progress(Report.step("laying elements on the mesh"))
     try:
@@ -229,10 +229,10 @@ def _crumpled(mesh: CleanMesh) -> bool:
 
 def _refuse_far(distance: Floats, here: Equilibrium) -> None:
     size = here.film.size
-    if distance.max() > FAR * size:
+    if distance.max() > DEVIATION_MAX * size:
         raise NotConstantError(
             f"the nearest surface of H = {here.mean_curvature:.4g} 1/m is up to {distance.max():.4g} m away from the "
-            f"mesh (limit {FAR * size:.4g} m, {FAR:.0%} of its size): the mesh does not mean it",
+            f"mesh (limit {DEVIATION_MAX * size:.4g} m, {DEVIATION_MAX:.0%} of its size): the mesh does not mean it",
             "give another mean_curvature, or mend the mesh",
             "faces",
         )
@@ -241,7 +241,7 @@ def _refuse_far(distance: Floats, here: Equilibrium) -> None:
 def _reported_off(distance: Floats, size: float, fit: Fit) -> tuple[Message, ...]:
     """That the surface is not the mesh."""
     typical = float(np.sqrt((distance**2).mean()))
-    if typical <= OFF * size:
+    if typical <= FIT_OFF * size:
         return ()
     return (
         Message(
@@ -255,7 +255,7 @@ def _reported_off(distance: Floats, size: float, fit: Fit) -> tuple[Message, ...
 
 def _reported_zero(mean_curvature: float, nearest: float) -> tuple[Message, ...]:
     """That H was taken as 0, if it was and is more than rounding."""
-    if mean_curvature == nearest or abs(nearest) < LEAST:
+    if mean_curvature == nearest or abs(nearest) < CURVATURE_MIN:
         return ()
     return (
         Message(

@@ -49,9 +49,9 @@ SLOPE, CURVATURE = 1e-3, 1e-5
 # vertices an unknown: with fewer the fit follows every one of them
 VERTICES_PER_NODE = 1.2
 # of the tolerance that the jump of the curvature aims at: its root mean square is well below the largest error
-AIM = 0.2
+FIT_AIM = 0.2
 # Gauss-Newton's steps, and the shift over the size after which it ends
-MOST_STEPS, LAST_MOVE = 12, 1e-7
+FIT_STEPS_MAX, LAST_MOVE = 12, 1e-7
 # elements at least, and of the sizes that loops and bend ask for, the share of each round
 LEAST_ELEMENTS, SHARES = 8, (1.0, 0.6, 0.36, 0.22)
 # of the curvature scale: elements through the vertices whose curvature jumps by more are smoothed, or given up; a
@@ -64,9 +64,9 @@ RELAXING = 3
 # of the curvature scale: a mesh whose curvature jumps by more is refused
 ROUGHEST = 0.5
 # of the curvature scale: what scatter leaves open at half of the vertices; with more, even signs are unknown
-OPEN = 1.0
+FIT_OPEN = 1.0
 # of that limit, what a scatter that is offered may leave open in each of some draws; halvings until one does
-ENOUGH, DRAWS, MOST_HALVINGS = 0.7, 3, 6
+SCATTER_ENOUGH, DRAWS, SCATTER_HALVINGS_MAX = 0.7, 3, 6
 
 
 class Kept(NamedTuple):
@@ -88,7 +88,7 @@ def fitted_film(film: Film, points: Floats, areas: Floats, progress: Progress) -
     connectivity, basis = film.connectivity, film.connectivity.basis
     free = connectivity.inner_unknowns >= 0
     distance = np.zeros(len(points))
-    for step in range(MOST_STEPS):
+    for step in range(FIT_STEPS_MAX):
         directions = film.directions()
         places, position = ClosestPoint(connectivity, film.nodes)(points)
         nodes = connectivity.elements[places.element]
@@ -221,7 +221,7 @@ def kept_film(
         if best is not None and jump >= best.jump:
             break
         best = Kept(film, jump)
-        if jump <= AIM * tolerance or bool((least(mesh.points) >= wanted(mesh.points)).all()):
+        if jump <= FIT_AIM * tolerance or bool((least(mesh.points) >= wanted(mesh.points)).all()):
             break
     assert best is not None
     return best
@@ -415,7 +415,7 @@ def kept_surface(
         progress(Report.step(note))
     errors = vertex_errors(film, fits, mesh.faces, smoothed)
     typical = float(np.sqrt(np.average(errors**2, weights=vertex_areas(mesh.points, mesh.faces)))) / scale
-    if smoothed is not None and np.median(errors) > OPEN * scale:
+    if smoothed is not None and np.median(errors) > FIT_OPEN * scale:
         raise _too_scattered(smoothed, mesh.faces, flat.mesh.loop >= 0, float(np.median(errors)) / scale, scale)
     distance = distances(film, given)
     doubts: tuple[Message, ...] = ()
@@ -467,7 +467,7 @@ def _too_scattered(smoothed: Smoothed, faces: Integers, border: Booleans, error:
     return InputError(
         f"the mesh is too rough to tell a curvature: its vertices scatter by {1000 * smoothed.scatter:.2g} mm "
         f"(standard deviation) about a smooth surface, which leaves normal curvatures open by {error:.2g} of the "
-        f"curvature scale {scale:.4g} 1/m at half of them (limit {OPEN:g})",
+        f"curvature scale {scale:.4g} 1/m at half of them (limit {FIT_OPEN:g})",
         f"with these edges vertices have to be known to {1000 * enough:.2g} mm (standard deviation)"
         if enough
         else "give a finer mesh: with these edges no scatter is small enough",
@@ -481,7 +481,7 @@ def _endurable(smoothed: Smoothed, faces: Integers, border: Booleans, scale: flo
     By draws, since what is left open does not go with the scatter in proportion: more of it is smoothed more.
     """
     normals = vertex_normals(smoothed.points, faces)
-    for scatter in smoothed.scatter * np.cumprod(np.full(MOST_HALVINGS, 0.5)):
+    for scatter in smoothed.scatter * np.cumprod(np.full(SCATTER_HALVINGS_MAX, 0.5)):
         for seed in range(DRAWS):
             noise = scatter * np.random.default_rng(seed).normal(size=(len(normals), 1))
             points = smoothed.points + noise * normals
@@ -490,7 +490,7 @@ def _endurable(smoothed: Smoothed, faces: Integers, border: Booleans, scale: flo
                 errors = disagreement(fit_vertices(points, faces), faces)
             else:
                 errors = disagreement(fit_vertices(found.points, faces, READING), faces, 1.0) + found.curvature_error
-            if np.median(errors) > ENOUGH * OPEN * scale:
+            if np.median(errors) > SCATTER_ENOUGH * FIT_OPEN * scale:
                 break
         else:
             return float(scatter)

@@ -13,26 +13,26 @@ from lamella.base.vectors import diagonal
 from lamella.surface.from_mesh.edges import find_edges, vertex_areas, vertex_normals
 from lamella.surface.from_mesh.raw_mesh import mesh_error
 
-NEIGHBOURS = 30
+FIT_NEIGHBOURS = 30
 """Fewest neighbours a quartic with its 15 coefficients should have: three rings around a regular inner vertex."""
 
-COARSE = 50
+SMALL_MESH = 50
 COARSE_NEIGHBOURS = 18
-"""Three rings are half of a mesh with fewer vertices than `COARSE`; there a cubic over two rings is better."""
+"""Three rings are half of a mesh with fewer vertices than `SMALL_MESH`; there a cubic over two rings is better."""
 
 MOST_RINGS = 6
 FEWEST_FOR = {15: 22, 10: 14, 6: 0}
 """Coefficients of a quartic, cubic and quadric, and the neighbours each needs; small meshes have no more."""
 
-SAME_SIDE = 0.2
+FIT_SAME_SIDE = 0.2
 """Neighbours whose normals turn away further (cosine) do not lie over the same piece of the tangent plane."""
 
 TRIMMED = 0.9
 """Part of the area the deviation is taken over: one-sided fits at the border are much worse."""
 
 FEWEST_VERTICES = 12
-BLOCK = 4096
-STEADYING = 1e-10
+FIT_BLOCK = 4096
+FIT_STEADYING = 1e-10
 """Added to the diagonal of the scaled normal equations: a stencil that leaves a coefficient open gets 0 for it."""
 
 
@@ -125,7 +125,7 @@ def vertex_curvatures(points: Floats, faces: Integers) -> tuple[Floats, Floats]:
         normal = normals[vertices]
         first, second = tangents(normal)
         offset = points[neighbours] - points[vertices][:, None, :]
-        same_side = present & (np.einsum("vkj,vj->vk", normals[neighbours], normal) > SAME_SIDE)
+        same_side = present & (np.einsum("vkj,vj->vk", normals[neighbours], normal) > FIT_SAME_SIDE)
         # A crumpled mesh has no such neighbours; a wild value there shows in the deviation.
         present = np.where(same_side.sum(axis=1, keepdims=True) > min(FEWEST_FOR), same_side, present)
         x, y, z = (np.einsum("vkj,vj->vk", offset, axis) for axis in (first, second, normal))
@@ -140,7 +140,7 @@ def vertex_curvatures(points: Floats, faces: Integers) -> tuple[Floats, Floats]:
         weighted = basis * weight[:, :, None]
         matrix = weighted.transpose(0, 2, 1) @ basis
         trace = np.trace(matrix, axis1=1, axis2=2)[:, None]
-        matrix[:, range(terms), range(terms)] += STEADYING * np.maximum(trace, np.finfo(float).tiny)
+        matrix[:, range(terms), range(terms)] += FIT_STEADYING * np.maximum(trace, np.finfo(float).tiny)
         right = weighted.transpose(0, 2, 1) @ z[:, :, None]
         xx, xy, yy, gx, gy = np.linalg.solve(matrix, right)[:, :5, 0].T
         slope = 1 + gx**2 + gy**2
@@ -169,9 +169,9 @@ def stencils(faces: Integers, count: int, neighbours: int = 0) -> list[tuple[Int
     """Vertices in blocks (v,), vertices around them (v, k), and which of these are there rather than filling, (v, k).
 
     A vertex is among those around it; there are as many rings of them as have more than `neighbours`, by default
-    `NEIGHBOURS` or `COARSE_NEIGHBOURS`.
+    `FIT_NEIGHBOURS` or `COARSE_NEIGHBOURS`.
     """
-    fewest = neighbours or (NEIGHBOURS if count >= COARSE else COARSE_NEIGHBOURS)
+    fewest = neighbours or (FIT_NEIGHBOURS if count >= SMALL_MESH else COARSE_NEIGHBOURS)
     ends = find_edges(faces).ends
     rows, columns = np.concatenate((ends[:, 0], ends[:, 1])), np.concatenate((ends[:, 1], ends[:, 0]))
     ring = csr_array((np.ones(len(rows), dtype=np.int32), (rows, columns)), shape=(count, count))
@@ -198,8 +198,8 @@ def _padded(reach: csr_array, vertices: Integers) -> list[tuple[Integers, Intege
     sizes = np.diff(reach.indptr)
     order = np.argsort(sizes, kind="stable")
     blocks = []
-    for begin in range(0, len(order), BLOCK):
-        rows = order[begin : begin + BLOCK]
+    for begin in range(0, len(order), FIT_BLOCK):
+        rows = order[begin : begin + FIT_BLOCK]
         within = np.arange(sizes[rows].max())
         present = within < sizes[rows, None]
         where = np.where(present, reach.indptr[rows, None] + within, 0)

@@ -17,7 +17,7 @@ OF_SIZE = 1e-4
 """Border vertices closer than this part of the mesh's size, a millimetre at 10 m, are welded: no surface means so
 narrow a slit, and programs leave seams open by about their own tolerance (0.001 of the unit drawn in)."""
 
-OF_EDGE = 0.02
+MERGE_OF_EDGE = 0.02
 """... but never further apart than this part of the border edges there, lest a fine mesh be crumpled."""
 
 
@@ -84,7 +84,7 @@ def _of_points(points: Floats, faces: Integers, most: float, median: float) -> I
 
     A finely divided rim has short edges too, but they lead on.
     """
-    tolerance = min(most, OF_EDGE * median)
+    tolerance = min(most, MERGE_OF_EDGE * median)
     ends = _border(faces)
     ends = ends[np.flatnonzero(np.linalg.norm(points[ends[:, 1]] - points[ends[:, 0]], axis=1) < tolerance)]
     if not len(ends):
@@ -106,7 +106,7 @@ def _of_seams(points: Floats, faces: Integers, most: float, median: float) -> In
     lengths = np.linalg.norm(points[ends[:, 1]] - points[ends[:, 0]], axis=1)
     reach = np.zeros(len(points))
     np.maximum.at(reach, ends.ravel(), np.repeat(lengths, 2))
-    reach = np.minimum(most, OF_EDGE * reach)
+    reach = np.minimum(most, MERGE_OF_EDGE * reach)
     border = np.unique(ends)
     pairs = border[cKDTree(points[border]).query_pairs(float(reach.max()), output_type="ndarray")]
     apart = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)

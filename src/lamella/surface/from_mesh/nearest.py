@@ -24,10 +24,10 @@ from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.newton import Equilibrium, NoFilmError, Volume, find_equilibrium
 from lamella.surface.form_finding.variation import Variation
 
-MOST_STEPS = 12
+NEAREST_STEPS_MAX = 12
 # a step that moves no vertex by more than this part of the size changes H by less than the elements' error
 LAST_MOVE = 1e-7
-MOST_HALVINGS = 6
+NEAREST_HALVINGS_MAX = 6
 
 
 def nearest_of_family(start: Equilibrium, points: Floats, areas: Floats, progress: Progress) -> Equilibrium:
@@ -51,7 +51,7 @@ def nearest_of_family(start: Equilibrium, points: Floats, areas: Floats, progres
     """
     here, steps = start, start.steps
     off, answer = _distances(here, points)
-    for _ in range(MOST_STEPS):
+    for _ in range(NEAREST_STEPS_MAX):
         if not areas @ answer**2 > 0:
             break
         volume = float(areas @ (off * answer) / (areas @ answer**2))
@@ -76,7 +76,7 @@ def _stepped(
     here: Equilibrium, volume: float, points: Floats, areas: Floats, before: float
 ) -> tuple[Equilibrium, Floats, Floats] | None:
     """The surface a volume further, or a part of it, that is nearer; None: there is none."""
-    for _ in range(MOST_HALVINGS):
+    for _ in range(NEAREST_HALVINGS_MAX):
         try:
             new = find_equilibrium(here.film, here.mean_curvature, Volume(volume), most_steps=12)
             off, answer = _distances(new, points)

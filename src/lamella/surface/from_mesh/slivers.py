@@ -9,7 +9,7 @@ from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.surface.from_mesh.edges import Edges, face_normals, find_edges
 from lamella.surface.from_mesh.merge import drop_collapsed
 
-OF_EDGE = 1e-4
+SLIVER_OF_EDGE = 1e-4
 """An edge shorter, or a triangle thinner, than this part of the median edge is a sliver.
 
 Single precision places the vertices of a mesh of a hundred edges across to 1e-5 of an edge: the direction of such an
@@ -17,7 +17,7 @@ edge is wrong by some degrees, so it says nothing about the surface, while meshe
 thousand at most. What is removed moves nothing by more than this either.
 """
 
-ROUNDS = 60
+SLIVER_ROUNDS = 60
 
 
 def remove_slivers(points: Floats, faces: Integers) -> tuple[Integers, int, int]:
@@ -46,9 +46,9 @@ def remove_slivers(points: Floats, faces: Integers) -> tuple[Integers, int, int]
     """
     if not len(faces):
         return faces, 0, 0
-    limit = OF_EDGE * float(np.median(find_edges(faces).lengths(points)))
+    limit = SLIVER_OF_EDGE * float(np.median(find_edges(faces).lengths(points)))
     removed = 0
-    for _ in range(ROUNDS):
+    for _ in range(SLIVER_ROUNDS):
         if not len(faces) or not _thin(points, faces, limit).any():
             return faces, removed, 0
         edges = find_edges(faces)

@@ -19,7 +19,7 @@ from lamella.surface.remesh.remesh import TriangleMesh
 # a border of more vertices is thinned: noise between neighbours would make its curve rough
 MOST_BORDER_POINTS = 240
 # samples of a border's curve between two of its vertices
-SAMPLES = 24
+EDGE_SAMPLES = 24
 # Newton's steps from the nearest sample to a vertex's foot point on its curve
 FOOT_STEPS = 6
 
@@ -62,7 +62,7 @@ def as_film(mesh: CleanMesh, loops: tuple[Loop, ...]) -> Film:
 
 def _parameters(points: Floats, loop: Loop) -> Floats:
     """Increasing parameters of border vertices on their loop."""
-    fine = np.arange(SAMPLES * len(points)) / (SAMPLES * len(points))
+    fine = np.arange(EDGE_SAMPLES * len(points)) / (EDGE_SAMPLES * len(points))
     _, near = cKDTree(loop.at(fine)).query(points)
     t = fine[near]
     # to the foot point itself: a vertex on the curve stays where it is

@@ -20,7 +20,7 @@ from lamella.surface.boundary import Loop
 from lamella.surface.element.placing import edge_blends
 from lamella.surface.form_finding.film import Film
 from lamella.surface.from_mesh.edges import find_edges, vertex_normals
-from lamella.surface.from_mesh.mean_curvature_fit import SAME_SIDE, stencils, tangents
+from lamella.surface.from_mesh.mean_curvature_fit import FIT_SAME_SIDE, stencils, tangents
 
 EXPONENTS = np.array([(i, n - i) for n in range(1, 5) for i in range(n, -1, -1)])
 """Powers of x and y in a quartic without constant, by degree."""
@@ -31,9 +31,9 @@ TERMS = {4: 14, 3: 9, 2: 5, 1: 2}
 NEIGHBOURS_PER_TERM = 1.5
 """A fit with fewer conditions follows single vertices."""
 
-NEAR, FALL = 0.01, 5
-"""Weights fall like (NEAR + (distance / reach)^2)^-FALL: the first ring is met nearly, the outer ones say what it
-leaves open. On coarse meshes that is a third of the error of even weights."""
+FIT_NEAR, FIT_FALL = 0.01, 5
+"""Weights fall like (FIT_NEAR + (distance / reach)^2)^-FIT_FALL: the first ring is met nearly, the outer ones say
+what it leaves open. On coarse meshes that is a third of the error of even weights."""
 
 NEWTON = 4
 """Steps to a graph; quadratic from within the sagitta of an edge."""
@@ -133,7 +133,7 @@ def fit_vertices(points: Floats, faces: Integers, degree: int = 4) -> VertexFits
     coefficients, reach = np.zeros((len(points), len(EXPONENTS))), np.ones(len(points))
     for block in local_heights(points, faces, normals, 0):
         others = block.present & (block.neighbours != block.vertices[:, None])
-        weight = np.where(others, 1 / (NEAR + block.x**2 + block.y**2) ** FALL, 0)
+        weight = np.where(others, 1 / (FIT_NEAR + block.x**2 + block.y**2) ** FIT_FALL, 0)
         found = solved(_powers(block.x, block.y)[:, :, : TERMS[degree]], weight, block.z, others)
         coefficients[block.vertices, : found.shape[1]] = found * block.reach[:, None]
         reach[block.vertices] = block.reach
@@ -157,7 +157,7 @@ def local_heights(points: Floats, faces: Integers, normals: Floats, neighbours: 
     first, second = tangents(normals)
     for vertices, around, present in stencils(faces, len(points), neighbours):
         offset = points[around] - points[vertices][:, None, :]
-        present = present & (np.einsum("vkj,vj->vk", normals[around], normals[vertices]) > SAME_SIDE)
+        present = present & (np.einsum("vkj,vj->vk", normals[around], normals[vertices]) > FIT_SAME_SIDE)
         x, y, z = (np.einsum("vkj,vj->vk", offset, axis[vertices]) for axis in (first, second, normals))
         away = np.hypot(x, y)
         reach = np.where(present, away, 0).max(axis=1)

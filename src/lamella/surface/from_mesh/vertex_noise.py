@@ -26,7 +26,7 @@ from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.surface.from_mesh.edges import vertex_areas, vertex_normals
 from lamella.surface.from_mesh.vertex_fits import EXPONENTS, TERMS, local_heights
 
-FEWEST, MOST = 30, 5_000
+NOISE_VERTICES_MIN, NOISE_VERTICES_MAX = 30, 5_000
 """Vertices: fewer leave too little beside a quartic, more are fitted by elements larger than their faces."""
 
 NEIGHBOURS = {2: 9, 3: 14, 4: 22}
@@ -51,7 +51,7 @@ surface add nothing."""
 SECOND, BEND = slice(2, 5), np.array([2.0, 1.0, 2.0])
 """Terms x^2, xy and y^2 of `EXPONENTS`, and their second derivatives."""
 
-SAMPLES, DEVIATIONS = 64, 2.0
+NOISE_SAMPLES, DEVIATIONS = 64, 2.0
 """Surfaces drawn from those that vertices and scatter admit; standard deviations reported as the error."""
 
 
@@ -141,11 +141,11 @@ def without_scatter(points: Floats, faces: Integers, border: Booleans) -> Smooth
         Its border vertices. They stay where the likelihood is larger with them held, that is where the border does not
         scatter itself.
     """
-    if not FEWEST <= len(points) <= MOST:
+    if not NOISE_VERTICES_MIN <= len(points) <= NOISE_VERTICES_MAX:
         return None
     normals = vertex_normals(points, faces)
     forms = [_form(points, faces, normals, degree) for degree in NEIGHBOURS]
-    choices = [free for free in (np.ones(len(points), bool), ~border) if free.sum() >= FEWEST / 2]
+    choices = [free for free in (np.ones(len(points), bool), ~border) if free.sum() >= NOISE_VERTICES_MIN / 2]
     fits = [fit for fit in (_fitted(form, free) for free in choices for form in forms) if fit is not None]
     if not fits:
         return None
@@ -235,7 +235,7 @@ def _fitted(form: _Form, free: Booleans) -> _Fitted | None:
     moves = np.zeros(len(free))
     moves[free], least, _ = solved(decade)
     weight = 10**decade / shortest
-    probes = np.random.default_rng(0).choice([-1.0, 1.0], (int(free.sum()), SAMPLES))
+    probes = np.random.default_rng(0).choice([-1.0, 1.0], (int(free.sum()), NOISE_SAMPLES))
     # 1 less the mean influence of a vertex on its own place (Hutchinson's estimate of the trace)
     without = 1 - float((probes * _factor(matrix, weight).solve(probes)).mean())
     left_out = float((moves[free] ** 2).mean()) / max(without, np.finfo(float).tiny) ** 2
@@ -255,9 +255,9 @@ def _curvature_error(points: Floats, faces: Integers, normals: Floats, fitted: _
     """
     form, free = fitted.form, fitted.free
     draw = np.random.default_rng(0)
-    right = draw.normal(size=(len(points), SAMPLES))
+    right = draw.normal(size=(len(points), NOISE_SAMPLES))
     for block in _stencils(points, faces, normals, form.degree):
-        noise = draw.normal(size=(*block.neighbours.shape, SAMPLES))
+        noise = draw.normal(size=(*block.neighbours.shape, NOISE_SAMPLES))
         np.add.at(right, block.neighbours, np.sqrt(fitted.weight) * (block.rows.transpose(0, 2, 1) @ noise))
     moves = np.zeros_like(right)
     matrix = csc_array(form.matrix[free][:, free])

@@ -7,7 +7,7 @@ import numpy as np
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ties import MARGIN, nearest_whole
 from lamella.base.vectors import lengths
-from lamella.surface.remesh.draft import GOOD, LONGEST, SHORTEST, Draft, edge_lengths, narrow
+from lamella.surface.remesh.draft import COLLAPSE_LENGTH, DRAFT_SHAPE, SPLIT_LENGTH, Draft, edge_lengths, narrow
 from lamella.surface.remesh.topology import Topology, area_vectors, ragged, shape
 
 
@@ -17,7 +17,7 @@ def collapse_short(draft: Draft) -> int:
     ends, boundary, valence = topology.ends, draft.boundary, topology.valence
     ratio = edge_lengths(draft.points, ends) / draft.size[ends].mean(axis=1)
     three = (valence == 3) & ~boundary
-    edges = np.flatnonzero(topology.inner & ((ratio < SHORTEST) | three[ends].any(axis=1)))
+    edges = np.flatnonzero(topology.inner & ((ratio < COLLAPSE_LENGTH) | three[ends].any(axis=1)))
     edges = edges[~boundary[ends[edges]].all(axis=1)]
     # The end that goes is inside; of two inner ones the one with three neighbours goes, and none of these moves the
     # other end.
@@ -28,7 +28,7 @@ def collapse_short(draft: Draft) -> int:
     allowed = link_condition(draft, topology, edges, removed, kept)
     edges, removed, kept, target = edges[allowed], removed[allowed], kept[allowed], target[allowed]
     new, old, longest = star_after(draft, topology, removed, kept, target)
-    allowed = (new >= np.minimum(GOOD, old) - MARGIN) & (new > 0) & (longest <= LONGEST)
+    allowed = (new >= np.minimum(DRAFT_SHAPE, old) - MARGIN) & (new > 0) & (longest <= SPLIT_LENGTH)
     edges, removed, kept, target = edges[allowed], removed[allowed], kept[allowed], target[allowed]
     # Ranks in steps, or only a few of the many short edges of a graded mesh would be local extremes.
     rank = nearest_whole(4 * np.log2(np.maximum(ratio[edges], 1e-9)))
@@ -71,7 +71,7 @@ def collapse_thin(draft: Draft, limit: float) -> int:
     allowed = ~boundary[removed] & link_condition(draft, topology, edges, removed, kept)
     removed, kept = removed[allowed], kept[allowed]
     new, old, longest = star_after(draft, topology, removed, kept, draft.points[kept])
-    allowed = (new > np.maximum(old, 0.0) + 0.02) & (longest <= 1.1 * LONGEST)
+    allowed = (new > np.maximum(old, 0.0) + 0.02) & (longest <= 1.1 * SPLIT_LENGTH)
     removed, kept, new = removed[allowed], kept[allowed], new[allowed]
     chosen = apart(draft, topology, removed, kept, -nearest_whole(new / MARGIN))
     if chosen.any():

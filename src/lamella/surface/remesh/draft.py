@@ -12,8 +12,11 @@ from lamella.base.ties import rounded
 from lamella.base.vectors import dots, lengths
 from lamella.surface.remesh.topology import Topology, area_vectors, connect, unit
 
-LONGEST, SHORTEST = 4.0 / 3.0, 4.0 / 5.0  # in units of the wanted length; the half of a split edge is not collapsed
-GOOD = 0.35  # shape above which an operation may make a triangle worse
+SPLIT_LENGTH, COLLAPSE_LENGTH = (
+    4.0 / 3.0,
+    4.0 / 5.0,
+)  # in units of the wanted length; the half of a split edge is not collapsed
+DRAFT_SHAPE = 0.35  # shape above which an operation may make a triangle worse
 BEND = 0.5  # cosine of the angle between two faces above which they count as one piece of surface
 EAR = np.deg2rad(75.01)  # a corner sharper than this, which no design draws, is one triangle with two boundary edges
 BRIDGE = 0.7  # an inner edge between boundary vertices longer than this many sizes gets a vertex in its middle

@@ -6,7 +6,7 @@ import numpy as np
 
 from lamella.base.ties import MARGIN, nearest_whole
 from lamella.base.vectors import dots
-from lamella.surface.remesh.draft import BEND, EAR, GOOD, Draft, narrow
+from lamella.surface.remesh.draft import BEND, DRAFT_SHAPE, EAR, Draft, narrow
 from lamella.surface.remesh.topology import area_vectors, corner_angles, disjoint, shape, unit
 
 
@@ -59,7 +59,7 @@ def flip(draft: Draft, by_valence: bool, bridges: bool = False) -> int:
         corners = draft.points[np.column_stack([v[some] for v in triangle])]
         after = np.minimum(after, shape(corners, area_vectors(corners), normal))
     if by_valence:
-        keep = after > np.minimum(GOOD, before[some]) + MARGIN
+        keep = after > np.minimum(DRAFT_SHAPE, before[some]) + MARGIN
     else:
         keep = (after > 0.05 * np.maximum(before[some], 0)) & ((gain[some] > MARGIN) | (after > before[some] + MARGIN))
         keep = np.where(before[some] < 0.05, after > before[some] + MARGIN, keep)

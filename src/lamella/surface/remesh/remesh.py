@@ -30,7 +30,7 @@ __all__ = ["Rim", "TriangleMesh", "remesh"]
 REFINE, COARSEN = 12, 40  # passes in a round; each is a set of operations that do not touch
 FOLDED = 0.05  # shape of faces below which an edge is collapsed in a round
 THIN, ROUND = 0.72, 0.8  # the same after the last round, and below which vertices are moved
-FLAT = 0.01  # shape of a result that is no mesh of the surface
+BROKEN_SHAPE = 0.01  # shape of a result that is no mesh of the surface
 RUNAWAY = 10.0  # times as many triangles as the sizes ask for
 EXTRA = 40  # further passes a boundary gets to come to its final vertices
 TOO_LONG = 1.45  # in units of the wanted length, of the result's edges: smoothing and flips stretch some beyond LONGEST
@@ -140,7 +140,7 @@ def remesh(
         draft.size = np.array(size(draft.points))
         split_long(draft, look_inside=False, longest=TOO_LONG)
     area, normals = draft.face_normals()
-    folded = int(np.sum(shape(draft.points[draft.faces], area, normals) < FLAT))
+    folded = int(np.sum(shape(draft.points[draft.faces], area, normals) < BROKEN_SHAPE))
     if folded:
         raise ValueError(
             f"{folded} triangles are folded over or flat after remeshing: the start is folded, or too coarse "
@@ -197,7 +197,7 @@ def _start(
         if mine.size == 0:
             raise ValueError(f"no vertex of the mesh lies on boundary loop {which}")
         # rounded, 0 and a last bit less than 1 are the same place
-        first = (rounded(mesh.parameter[mine], rim.SAME) % 1.0).argmin()
+        first = (rounded(mesh.parameter[mine], rim.CORNER_PARAMETER) % 1.0).argmin()
         one = rim.plan(curve, float(mesh.parameter[mine][first]), size)
         station[mine] = one.station(mesh.parameter[mine])
         points[mine] = curve.at(mesh.parameter[mine])

@@ -16,8 +16,8 @@ from lamella.surface.remesh.draft import Draft
 from lamella.surface.remesh.split import apply_splits
 from lamella.surface.remesh.topology import Topology, area_vectors, disjoint, shape
 
-SAME = 1e-9  # difference of boundary parameters below which a vertex sits in a corner
-LEAST = 3  # edges of a loop
+CORNER_PARAMETER = 1e-9  # difference of boundary parameters below which a vertex sits in a corner
+LOOP_EDGES_MIN = 3  # edges of a loop
 STATIONS = grid_of(1.0)  # to which stations are rounded, in edges
 
 
@@ -81,7 +81,7 @@ class Plan:
         near = gap.argmin(axis=1)
         # a vertex half-way between two stations goes to the same one on every machine
         station = rounded(station, STATIONS)
-        exact: Floats = np.mod(np.where(gap.min(axis=1) < SAME, whole[near], station), self.total)
+        exact: Floats = np.mod(np.where(gap.min(axis=1) < CORNER_PARAMETER, whole[near], station), self.total)
         return exact
 
     def parameter(self, station: Floats) -> Floats:
@@ -124,7 +124,7 @@ def plan(rim: Rim, start: float, size: Callable[[Floats], Floats]) -> Plan:
         spans.append(np.concatenate([[0.0], np.cumsum(steps)]))
     ideal = np.array([span[-1] for span in spans])
     counts = np.maximum(nearest_whole(ideal), 1).astype(np.int64)
-    while counts.sum() < LEAST:
+    while counts.sum() < LOOP_EDGES_MIN:
         counts[np.argmax(nearest_whole(ideal / counts / MARGIN))] += 1
     first = np.cumsum(counts) - counts
     fine = np.concatenate([t[:-1] for t in pieces] + [stops[-1:]])

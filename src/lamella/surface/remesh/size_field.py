@@ -14,7 +14,7 @@ from lamella.base.vectors import diagonal
 # growth of the wanted size with the distance; steeper grading costs the elements' shape
 GRADING = 0.3
 # neighbours that a size is handed on to
-NEIGHBOURS = 12
+SIZE_NEIGHBOURS = 12
 
 
 class SizeField:
@@ -35,7 +35,7 @@ class SizeField:
         points, sizes = rounded(points, self._grid), shortened(sizes, SIZE_BITS)
         self._tree = cKDTree(points)
         n = len(points)
-        distance, near = self._tree.query(points, k=min(NEIGHBOURS, n))
+        distance, near = self._tree.query(points, k=min(SIZE_NEIGHBOURS, n))
         distance, near = distance.reshape(n, -1), near.reshape(n, -1)
         # the least of size_j + grading distance(i, j) is a shortest path from one node tied to all points
         rows = np.concatenate([np.full(n, n), np.repeat(np.arange(n), near.shape[1])])

@@ -7,7 +7,7 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.base.ties import MARGIN
 from lamella.base.vectors import crosses, dots, lengths
-from lamella.surface.remesh.draft import GOOD, Draft
+from lamella.surface.remesh.draft import DRAFT_SHAPE, Draft
 from lamella.surface.remesh.topology import area_vectors, shape
 
 
@@ -18,7 +18,7 @@ def smooth(draft: Draft, step: float = 0.8) -> None:
     # Area over size cubed: in balance the spacing of a row of points is then proportional to the size.
     weight = lengths(area) / draft.size[draft.faces].mean(axis=1) ** 3
     goals = np.repeat(corners.mean(axis=1)[:, None], 3, axis=1)
-    _move(draft, goals, weight, area, normals, step, GOOD)
+    _move(draft, goals, weight, area, normals, step, DRAFT_SHAPE)
 
 
 def round_off(draft: Draft, limit: float, step: float = 0.5) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Integers
 from lamella.base.ties import nearest_whole
-from lamella.surface.remesh.draft import BRIDGE, EAR, LONGEST, Draft, edge_lengths
+from lamella.surface.remesh.draft import BRIDGE, EAR, SPLIT_LENGTH, Draft, edge_lengths
 from lamella.surface.remesh.topology import Topology, corner_angles, disjoint
 
 
@@ -25,7 +25,7 @@ def apply_splits(draft: Draft, topology: Topology, edges: Integers, first_new: i
     draft.faces = np.concatenate([faces, tail])
 
 
-def split_long(draft: Draft, look_inside: bool, longest: float = LONGEST) -> int:
+def split_long(draft: Draft, look_inside: bool, longest: float = SPLIT_LENGTH) -> int:
     """Halve inner edges that are longer than allowed and the longest of both their faces.
 
     Parameters

@@ -13,7 +13,7 @@ from lamella.surface.element.geometry import normal_and_area, tangents
 from lamella.surface.element.lagrange import subdivision
 
 # samples along an element's edge that the remesher's vertices are brought back to
-SAMPLES = 8
+PLANE_SAMPLES = 8
 # flat triangles along the edge of a curved one that new elements start from
 FACETS = 2
 
@@ -30,7 +30,7 @@ class TangentPlanes:
 
     def __init__(self, connectivity: Connectivity, nodes: Floats) -> None:
         basis = connectivity.basis
-        local, _ = subdivision(SAMPLES)
+        local, _ = subdivision(PLANE_SAMPLES)
         corners = nodes[connectivity.elements]
         self._grid = grid_of(diagonal(nodes))
         self._points = np.matmul(basis.basis(local), corners).reshape(-1, 3)
