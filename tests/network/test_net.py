@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -70,3 +71,26 @@ def test_what_is_no_surface_or_has_no_net() -> None:
     with pytest.raises(InputError) as refused:
         lamella.net(film([{"points": WAVED}]), cells=8, spacing=0.3)
     assert refused.value.where == "spacing"
+
+
+def test_every_surface_gives_one_type() -> None:
+    """Closed forms, films and lines from seeds: a network with its surface, further figures and warnings."""
+    disc = film([{"points": WAVED}])
+    asked: list[tuple[Any, dict[str, Any]]] = [
+        (lamella.Catenoid(2.0, (-1.0, 1.5)), {}),
+        (lamella.Catenoid(2.0, (-1.0, 1.5)), {"kind": "principal"}),
+        (lamella.Unduloid(1.0, 2.0, (-2.0, 3.0)), {"normal_curvature": 0.3}),
+        (lamella.Enneper(3, 0.9, 2.0), {"normal_curvature": 0.05}),
+        (disc, {}),
+        (disc, {"closing": "round"}),
+        (disc, {"normal_curvature": 0.05}),
+    ]
+    for surface, options in asked:
+        net = lamella.net(surface, cells=8, **options)
+        assert type(net) is lamella.Network
+        assert net.surface is surface
+        assert isinstance(net.describe(), dict)
+        assert all(isinstance(note, str) for note in net.warnings())
+        assert net.allclose(pickle.loads(pickle.dumps(net)), 0.0)
+    figures = lamella.net(disc, cells=8).describe()
+    assert {"umbilics", "joints", "closed", "node_angle_deviation_max_deg"} <= set(figures)
