@@ -16,6 +16,7 @@ from typing import Any
 from lamella import __version__, compute, read_project, write
 from lamella.base.material import MATERIALS
 from lamella.command.examples import list_examples
+from lamella.files.write.lamellas_json import COLUMNS, lamellas_schema
 from lamella.files.write.network_json import network_schema
 from lamella.files.write.optimise_json import optimise_schema
 from lamella.project.tables import (
@@ -33,7 +34,10 @@ from lamella.project.tables import (
     Table,
     project_schema,
 )
-from lamella.stages.pipeline import Results
+from lamella.stages.all_stages import STAGES, TO_COME
+from lamella.stages.results import Results
+from lamella.stages.schema import summary_schema
+from lamella.stages.write import WRITES
 from lamella.view.drawing_picture import draw_part, draw_sheets
 from lamella.view.picture import draw
 from lamella.view.surface_picture import Panel, draw_surface
@@ -220,6 +224,48 @@ def _materials() -> str:
     return "\n".join(rows) + "\n"
 
 
+def files_page() -> str:
+    """docs/files.md with the tables of stages and figures that the stages themselves declare."""
+    page = (DOCS / "files.md").read_text(encoding="utf-8")
+    tables = {"stages": _stages_table(), "figures": _figures_table(), "along lamellas": _columns_table()}
+    for name, table in tables.items():
+        before, rest = page.split(f"<!-- {name}: made by docs/build.py -->\n")
+        _, after = rest.split(f"<!-- end of {name} -->\n")
+        page = f"{before}<!-- {name}: made by docs/build.py -->\n{table}<!-- end of {name} -->\n{after}"
+    return page
+
+
+def _stages_table() -> str:
+    rows = ["| stage | needs | files |", "|---|---|---|"]
+    every = "; ".join(f"{_names(names)} ({meaning})" for names, meaning in WRITES)
+    rows.append(f"| every run | | {every} |")
+    for stage in STAGES:
+        files = "; ".join(f"{_names(names)} ({meaning})" for names, meaning in stage.writes)
+        rows.append(f"| {stage.name} | {', '.join(stage.needs)} | {files} |")
+    return "\n".join(rows) + "\n"
+
+
+def _names(names: str) -> str:
+    return ", ".join(f"`{name}`" for name in names.split(", "))
+
+
+def _figures_table() -> str:
+    rows = ["| key | unit | meaning |", "|---|---|---|", "| `version`, `name` | | of the program, of the project |"]
+    for stage in STAGES:
+        for figure in stage.figures:
+            rows.append(f"| `{stage.name}.{figure.key}` | {figure.unit} | {figure.meaning} |")
+    further = summary_schema()["properties"]
+    for key in (*TO_COME, "warnings", "seconds", "files", "seal"):
+        rows.append(f"| `{key}` | | {further[key]['description']} |")
+    return "\n".join(rows) + "\n"
+
+
+def _columns_table() -> str:
+    rows = ["| key | unit | meaning |", "|---|---|---|"]
+    rows += [f"| `{column.key}` | {column.unit} | {column.meaning} |" for column in COLUMNS]
+    return "\n".join(rows) + "\n"
+
+
 def examples_page(results: dict[str, Results]) -> str:
     """docs/examples.md from runs of all examples."""
     parts = [
@@ -308,8 +354,11 @@ def pages(results: dict[str, Results]) -> dict[str, str]:
     """Generated text files by their path below docs/."""
     return {
         "project-file.md": project_file_page(),
+        "files.md": files_page(),
         "examples.md": examples_page(results),
         "schema/project.schema.json": json.dumps(project_schema(), indent=2) + "\n",
+        "schema/summary.schema.json": json.dumps(summary_schema(), indent=2) + "\n",
+        "schema/lamellas.schema.json": json.dumps(lamellas_schema(), indent=2) + "\n",
         "schema/network.schema.json": json.dumps(network_schema(), indent=2) + "\n",
         "schema/optimise.schema.json": json.dumps(optimise_schema(), indent=2) + "\n",
     }

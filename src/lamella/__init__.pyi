@@ -31,11 +31,12 @@ from lamella.projection.problems.sphere_stars import sphere_stars as sphere_star
 from lamella.projection.problems.straighten import straighten as straighten
 from lamella.projection.quad_mesh import QuadMesh as QuadMesh
 from lamella.projection.quad_mesh import quad_mesh as quad_mesh
-from lamella.stages.pipeline import Results as Results
-from lamella.stages.pipeline import compute as compute
-from lamella.stages.pipeline import run as run
-from lamella.stages.pipeline import write as write
-from lamella.stages.surface_of_table import make_surface as make_surface
+from lamella.stages.computation import compute as compute
+from lamella.stages.memory import Memory as Memory
+from lamella.stages.results import Results as Results
+from lamella.stages.surface.surface_of_table import make_surface as make_surface
+from lamella.stages.write import run as run
+from lamella.stages.write import write as write
 from lamella.strip.lamellas import Lamellas as Lamellas
 from lamella.strip.lamellas import Section as Section
 from lamella.surface.boundary import Loop as Loop

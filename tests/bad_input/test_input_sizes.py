@@ -20,7 +20,7 @@ from lamella.files.read.mesh_obj import read_obj
 from lamella.files.read.mesh_ply import read_ply
 from lamella.files.read.mesh_stl import read_stl
 from lamella.project.read import parse_project, read_project
-from lamella.stages.boundary_of_tables import boundary_loops
+from lamella.stages.surface.boundary_of_tables import boundary_loops
 
 UNDULOID = '[surface]\nkind = "unduloid"\nneck_radius = 1.6\nbulge_radius = 2.8\nheight = [-1.0, 1.0]\n'
 SECONDS = 15

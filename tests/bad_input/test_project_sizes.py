@@ -10,10 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from lamella import InputError, read_project
+from lamella import InputError, make_surface, read_project
 from lamella.command.main import main
 from lamella.network.density_request import BYTES_FIXED, BYTES_PER_NODE
-from lamella.stages.pipeline import plan
+from lamella.network.lattice.density import choose_density
+from lamella.surface.closed_forms.closed_form import ClosedForm
 
 from .projects import UNDULOID, surface
 
@@ -83,7 +84,9 @@ def test_spacing_on_long_and_narrow_surfaces(tmp_path: Path, capsys: pytest.Capt
     tracemalloc.start()
     # the density alone
     with contextlib.suppress(InputError):
-        plan(project)
+        closed, table = make_surface(project), project.network
+        assert isinstance(closed, ClosedForm)
+        choose_density(closed, cells=table.cells, spacing=table.spacing, pattern=table.pattern)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 20e6

@@ -47,7 +47,7 @@ def test_a_full_disk_leaves_nothing_where_nothing_was(here: Path) -> None:
 def kill_half_way(here: Path, number: signal.Signals) -> tuple[int, str]:
     """Kill a run once it has begun to write; it stops there, so that the moment is always the same."""
     code = (
-        "import signal, sys, time, lamella.stages.output as output\n"
+        "import signal, sys, time, lamella.stages.network.stage as output\n"
         # a suite in the background of a shell has it ignored, and its processes inherit that
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "write = output.write_network\n"
@@ -93,7 +93,7 @@ def test_no_memory_is_told(here: Path, monkeypatch: pytest.MonkeyPatch, capsys: 
     def exhausted(*arguments: object, **more: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("lamella.stages.output.write_network", exhausted)
+    monkeypatch.setattr("lamella.stages.network.stage.write_network", exhausted)
     assert main(["run", "p.toml", "--quiet"]) == 2
     told = capsys.readouterr().err
     assert told == "lamella: not enough memory; what was there before is unchanged\n  remedy: choose fewer cells\n"

@@ -20,7 +20,7 @@ from lamella.network.isothermic.integration_mesh import make_integration_mesh
 from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.network import SINGULAR
 from lamella.project.tables import FURTHER_TABLES
-from lamella.stages.boundary_of_tables import boundary_loops
+from lamella.stages.surface.boundary_of_tables import boundary_loops
 from lamella.surface.element.geometry import normal_and_area, tangents
 from lamella.surface.element.quadrature import triangle_rule
 from test_docs import DOCS, builder

@@ -29,8 +29,8 @@ from lamella.files.read.mesh import READERS as MESHES
 from lamella.files.read.mesh import read_mesh
 from lamella.project.read import parse_project, read_project
 from lamella.project.tables import SURFACE_TABLES, FormFoundTable, MeshTable
-from lamella.stages.boundary_of_tables import boundary_loops
 from lamella.stages.check import check_project
+from lamella.stages.surface.boundary_of_tables import boundary_loops
 from lamella.surface.from_mesh.clean import clean
 
 from . import seed_files

@@ -25,8 +25,10 @@ from lamella.network.elements.element_network import ElementNetwork, element_net
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
 from lamella.network.pattern import Pattern, fitting_cells
 from lamella.project.tables import project_schema
+from lamella.stages.figure import evaluate
+from lamella.stages.network.output import NetworkOutput
+from lamella.stages.network.stage import NetworkStage
 from lamella.stages.pattern_of_table import pattern_of
-from lamella.stages.summary import network_summary, principal_summary
 from lamella.strip.lamellas import Section, make_lamellas
 from lamella.surface.closed_forms.outline import Ring
 from lamella.surface.form_finding.find import find_film
@@ -248,7 +250,7 @@ def test_principal_lines_of_the_catenoid() -> None:
         assert len(stops) == cells + 1
     assert np.abs(np.linalg.norm(network.sample_points[0, :2]) - c * np.cosh(network.sample_points[0, 2] / c)) < 1e-12
     # trapezia between two meridians and two parallels are planar
-    assert principal_summary(network)["panel_planarity"]["max"] < 1e-13
+    assert summary_of(network)["panel_planarity"]["max"] < 1e-13
 
 
 def test_a_parallel_on_the_rim_is_the_rim() -> None:
@@ -287,7 +289,7 @@ def test_principal_panels_are_planar_to_a_higher_order(surface: Any) -> None:
 
     def rate(kind: Any) -> float:
         missed = [
-            principal_summary(lamella.net(surface, cells=int(c), kind=kind, minimum_length=0))["panel_planarity"]
+            summary_of(lamella.net(surface, cells=int(c), kind=kind, minimum_length=0))["panel_planarity"]
             for c in sizes
         ]
         return -float(np.polyfit(np.log(sizes), np.log([m["median"] for m in missed]), 1)[0])
@@ -421,7 +423,11 @@ def test_adjust_is_not_for_lines_of_other_normal_curvature() -> None:
         parse_project({"surface": ENNEPER, "network": {"closing": "adjust"} | more})
 
 
+def summary_of(network: Network) -> dict[str, Any]:
+    return evaluate(NetworkStage.figures, NetworkOutput(network, "", None, {}))
+
+
 def test_summary_of_lamellas_has_no_panels() -> None:
-    told = network_summary(lamella.net(Enneper(3, 0.9), cells=8), "cells = 8")
+    told = summary_of(lamella.net(Enneper(3, 0.9), cells=8))
     assert (told["kind"], told["every"]) == ("lamellas", [1, 1])
     assert "panel_planarity" not in told

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from lamella import InputError, parse_project, read_project
 from lamella.project.starter import starter
 from lamella.project.tables import FormFoundTable, MeshTable, project_schema
-from lamella.stages.boundary_of_tables import boundary_loops
+from lamella.stages.surface.boundary_of_tables import boundary_loops
 from lamella.surface.boundary import Loop
 
 HEAD = '[surface]\nkind = "form-found"\n'

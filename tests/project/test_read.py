@@ -13,9 +13,13 @@ import tomli_w
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from lamella import InputError, parse_project, read_project
+from lamella import InputError, Project, parse_project, read_project
+from lamella.base.progress import silent
 from lamella.project.tables import FURTHER_TABLES, MATERIALS, SURFACE_TABLES, project_schema
-from lamella.stages.pipeline import plan
+from lamella.stages.clock import Clock
+from lamella.stages.computation import Computation
+from lamella.stages.memory import Memory
+from lamella.stages.wanted import wanted_stages
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 
@@ -74,9 +78,15 @@ def projects(draw: st.DrawFn) -> dict[str, Any]:
     return project
 
 
+def _refuse_at_no_cost(project: Project) -> None:
+    """Whatever a run refuses before there is a net."""
+    stages, _ = wanted_stages(project, None)
+    Computation(project, stages, Path(), Memory(), Clock(silent)).run(stages[0])
+
+
 def _read_or_refused(project: dict[str, Any]) -> None:
     try:
-        plan(parse_project(project, source="p.toml"))
+        _refuse_at_no_cost(parse_project(project, source="p.toml"))
     except InputError as error:
         refusal = error
     else:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -16,8 +15,10 @@ from lamella.base.progress import Progress, Report
 from lamella.command.main import main
 from lamella.project.read import moved
 from lamella.project.tables import FormFoundTable, MeshTable, Project
-from lamella.stages.output import report_data
-from lamella.stages.pipeline import STAGES
+from lamella.stages.all_stages import STAGES, TO_COME
+from lamella.stages.computation import Computation
+from lamella.stages.report import report_data
+from lamella.stages.stage import Estimate
 from lamella.surface.surface import Surface
 from stages.test_pipeline import KEYS, PROJECT
 
@@ -53,12 +54,12 @@ def found(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> tu
         "form-found": ("film_of_table", FormFoundTable),
         "mesh": ("surface_of_mesh_table", MeshTable),
     }[request.param]
-    monkeypatch.setattr(f"lamella.stages.surface_of_table.{found}", surface_of_table)
+    monkeypatch.setattr(f"lamella.stages.surface.surface_of_table.{found}", surface_of_table)
     table = kind.model_construct(
         kind=request.param, order=4, tolerance=2e-2, most_nodes=100_000, file="a.obj", boundary=()
     )
     project = parse_project(PROJECT).model_copy(update={"surface": table})
-    monkeypatch.setattr("lamella.stages.pipeline.read_project", lambda path: project)
+    monkeypatch.setattr("lamella.stages.write.read_project", lambda path: project)
     monkeypatch.setattr("lamella.project.read.read_project", lambda path: project)
     monkeypatch.setattr(Project, "to_toml", lambda self: "")
     return project, asked
@@ -129,7 +130,7 @@ def test_without_until_spheres_and_planes_end_with_the_surface_and_say_why(
     monkeypatch.chdir(tmp_path)
     results = compute(project)
     assert results.network is None
-    assert [results.summary[stage] for stage in STAGES[1:]] == [None] * 4
+    assert all(results.summary[name] is None for name in (*(stage.name for stage in STAGES[1:]), *TO_COME))
     (warning,) = results.summary["warnings"]
     assert warning.startswith(f"the run ends with the surface: it is {what}")
     assert warning.endswith("and has no net of lamellas")
@@ -179,10 +180,9 @@ def test_found_surfaces_on_the_command_line(
     assert files == {"summary.json", "project.toml", "surface.obj", "surface.ply", "report.html"}
     assert main(["run", "films/film.toml", "-v", "--until", "surface"]) == 0
     assert "\n    Newton step 1\n" in capsys.readouterr().err
-    laid = SimpleNamespace(lattice=SimpleNamespace(cells=10, estimated_nodes=1234))
-    monkeypatch.setattr("lamella.stages.weaving.lay", lambda *_: laid)
-    warned = SimpleNamespace(summary={"warnings": []}, network=None)
-    monkeypatch.setattr("lamella.stages.check.complete", lambda *_, **__: warned)
+    estimate = Estimate({"cells": 10, "nodes": 1234})
+    monkeypatch.setattr("lamella.stages.network.stage.NetworkStage.estimate", lambda *_: estimate)
+    monkeypatch.setattr(Computation, "run_all", lambda *_: None)
     assert main(["check", "films/film.toml"]) == 0
     told = capsys.readouterr()
     kind = found[0].surface.kind

@@ -228,7 +228,7 @@ def test_a_failing_writer_leaves_nothing(
     def fail(*arguments: object, **more: object) -> None:
         raise RuntimeError("a bug")
 
-    monkeypatch.setattr("lamella.stages.output.write_report", fail)
+    monkeypatch.setattr("lamella.stages.write.write_report", fail)
     with pytest.raises(RuntimeError):
         run(surface=PROJECT["surface"], network=PROJECT["network"])
     assert list(tmp_path.iterdir()) == []

@@ -25,9 +25,9 @@ from lamella.files.write.rhino_file import Frame
 from lamella.files.write.surface_3dm import surface_3dm_bytes
 from lamella.project.read import read_project
 from lamella.project.tables import FormFoundTable
-from lamella.stages.boundary_of_tables import boundary_loops, with_origin
 from lamella.stages.check import check_project
-from lamella.stages.pipeline import Results
+from lamella.stages.results import Results
+from lamella.stages.surface.boundary_of_tables import boundary_loops, with_origin
 
 FAR = np.array([4_500_013.0, 5_300_027.0, 503.0])
 SAME = 1e-6

@@ -12,7 +12,9 @@ import pytest
 from lamella import InputError, compute, make_surface, parse_project
 from lamella.base.material import MATERIALS
 from lamella.network.cell_sizes import small_cells
-from lamella.stages.warnings import lamella_cautions, network_cautions, surface_file_cautions
+from lamella.stages.lamellas.warnings import lamella_warnings
+from lamella.stages.network.warnings import network_warnings
+from lamella.stages.surface.warnings import surface_file_warnings
 from surface.element.exact_elements import sphere_cap
 
 
@@ -84,13 +86,13 @@ def test_small_cells_are_reported_by_place() -> None:
     ).network
     assert network
     edges = np.sort(network.cell_edges)
-    assert not any("tenth of the strip" in reported for reported in network_cautions(network, 9.9 * edges[0]))
+    assert not any("tenth of the strip" in reported for reported in network_warnings(network, 9.9 * edges[0]))
     # a little above the third one, so that rounding decides nothing
     height = 10 * float(np.sqrt(edges[2] * edges[edges > 1.01 * edges[2]][0]))
     count, places = small_cells(network, height / 10)
     assert count == (edges < height / 10).sum()
     assert places[0].edge == edges[0]
-    (reported,) = (reported for reported in network_cautions(network, height) if "tenth of the strip" in reported)
+    (reported,) = (reported for reported in network_warnings(network, height) if "tenth of the strip" in reported)
     assert reported.startswith(f"{count} cell edges are shorter")
     for place in places:
         assert f"({', '.join(f'{x:.3g}' for x in place.point)}) m" in reported
@@ -102,7 +104,7 @@ def test_small_cells_are_reported_by_place() -> None:
 def test_one_is_and_several_are() -> None:
     network = compute(parse_project({"surface": {"kind": "scherk", "extent": 1.2, "scale": 3.0}})).network
     assert network
-    one, two = (list(network_cautions(replace(network, left_out=n), 0.1)) for n in (1, 2))
+    one, two = (list(network_warnings(replace(network, left_out=n), 0.1)) for n in (1, 2))
     assert one == ["1 lamella shorter than network.minimum_length is left out"]
     assert two == ["2 lamellas shorter than network.minimum_length are left out"]
     results = compute(
@@ -116,7 +118,7 @@ def test_one_is_and_several_are() -> None:
         utilisation[results.network.sample_offsets[:count]] = 2.5
         lamellas = replace(results.lamellas, utilisation=utilisation)
         reported = next(
-            lamella_cautions(
+            lamella_warnings(
                 results.mesh,
                 results.network,
                 lamellas,
@@ -212,10 +214,10 @@ def test_nodes_of_order_two_grow_as_told() -> None:
 @pytest.mark.parametrize("order", [3, 4])
 def test_a_surface_file_without_nurbs_is_told(monkeypatch: pytest.MonkeyPatch, order: int) -> None:
     surface = sphere_cap(order)
-    assert list(surface_file_cautions(surface)) == []
+    assert list(surface_file_warnings(surface)) == []
     count = 3 * len(surface.connectivity.elements)
     monkeypatch.setattr("lamella.files.write.surface_3dm.MOST_PATCHES", count - 1)
-    (reported,) = surface_file_cautions(surface)
+    (reported,) = surface_file_warnings(surface)
     assert f"NURBS would be {count:,} patches (limit {count - 1:,})" in reported
     # no order is higher than 4
     assert ("a higher surface.order" in reported) == (order < 4)
@@ -231,7 +233,7 @@ def test_cells_that_make_large_ones_smaller(order: int, cells: int) -> None:
         )
         network = compute(project, until="network").network
         assert network is not None
-        return network, [reported for reported in network_cautions(network, 0.01) if "over 4 x the median" in reported]
+        return network, [reported for reported in network_warnings(network, 0.01) if "over 4 x the median" in reported]
 
     before, (reported,) = net(cells)
     number = re.search(r"(\d+) cells make them about 4 x the median of now", reported)

@@ -10,9 +10,11 @@ import orjson
 import pytest
 
 from conftest import KINDS, draw_surface
-from lamella import Catenoid, Cylinder, Enneper, InputError, Scherk, Unduloid
+from lamella import Catenoid, Cylinder, Enneper, InputError, Scherk, Unduloid, parse_project
 from lamella.base.arrays import Floats
-from lamella.stages.summary import surface_summary
+from lamella.stages.figure import evaluate
+from lamella.stages.surface.output import SurfaceOutput
+from lamella.stages.surface.stage import SurfaceStage
 from lamella.surface.closed_forms.kinds import CLOSED_FORMS
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.points import SurfacePoints
@@ -103,6 +105,9 @@ class Cap:
         k1, k2 = at.principal_curvatures
         return SurfaceMesh(at.position, at.normal, faces, at.mean_curvature, k1 * k2, k1, k2)
 
+    def has_lattice(self, normal_curvature: float | None = None) -> bool:
+        return True
+
     def area(self) -> float:
         return 2 * np.pi * self.radius**2 * (1 - np.cos(1.0))
 
@@ -119,15 +124,20 @@ class Cap:
         return ()
 
     def describe(self) -> dict[str, Any]:
-        return {"stability": self.stability, "radius": self.radius} if self.stability else {}
+        return {"stability": self.stability, "period": self.radius} if self.stability else {}
 
     def warnings(self) -> tuple[str, ...]:
         return ("it is round",)
 
 
+def summary_of(surface: Surface[Any]) -> dict[str, Any]:
+    project = parse_project({"surface": {"kind": "cylinder", "radius": 1.0, "height": [0, 1]}})
+    return evaluate(SurfaceStage.figures, SurfaceOutput(project, surface, surface.mesh(), None, ""))
+
+
 def test_the_summary_asks_the_surface_alone() -> None:
     cap = is_surface(Cap(2.0))
-    summary = surface_summary(cap, cap.mesh())
+    summary = summary_of(cap)
     assert summary == {
         "kind": "cap",
         "mean_curvature": 0.5,
@@ -138,9 +148,9 @@ def test_the_summary_asks_the_surface_alone() -> None:
         "k2_min": 0.5,
         "stability": None,
     }
-    told = surface_summary(Cap(2.0, "stable"), cap.mesh())
+    told = summary_of(is_surface(Cap(2.0, "stable")))
     assert told["stability"] == "stable"
-    assert told["radius"] == 2.0
+    assert told["period"] == 2.0
     assert list(told)[:-1] == list(summary)
 
 

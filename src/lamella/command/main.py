@@ -40,10 +40,40 @@ _BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", 
 
 
 class _Parser(argparse.ArgumentParser):
-    """Mistakes in the arguments read like all others: what, and the remedy."""
+    """Mistakes in the arguments read like all others: what, and the remedy.
+
+    Attributes
+    ----------
+    describe : callable or None
+        Makes the description when help is asked for: it may need heavy parts.
+    """
+
+    describe: Callable[[], str] | None = None
+
+    def format_help(self) -> str:
+        if self.describe:
+            self.description = self.describe()
+        return super().format_help()
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {message}\n  remedy: see {self.prog} --help\n")
+
+
+def _run_description() -> str:
+    from lamella.stages import all_stages
+    from lamella.stages.write import WRITES
+
+    def files(writes: tuple[tuple[str, str], ...]) -> str:
+        return "".join(f"    {names:40s} {meaning}\n" for names, meaning in writes)
+
+    stages = "".join(
+        f"  {stage.name}{', after ' + stage.needs[-1] if stage.needs else ''}\n{files(stage.writes)}"
+        for stage in all_stages.STAGES
+    )
+    return (
+        "Compute a project and write its folder, whole or not at all.\n\n"
+        f"every run writes\n{files(WRITES)}\nstages, and what each adds:\n{stages}"
+    )
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -56,14 +86,8 @@ def _parser() -> argparse.ArgumentParser:
         "run",
         help="compute a project and write its folder",
         formatter_class=plain,
-        description="Compute a project and write its folder, whole or not at all.\n\n"
-        "stages and what they write:\n"
-        "  surface      summary.json, project.toml, surface.obj, surface.ply, report.html,\n"
-        "               surface.3dm of surfaces that are found\n"
-        "  network      + network.json, network.obj, nodes.csv, model.3dm\n"
-        "  lamellas     + lamellas.json, strips in model.3dm\n"
-        "  fabrication  + fabrication/*.dxf, fabrication/schedule.csv",
     )
+    run.describe = _run_description
     run.add_argument("project", type=Path, help="project file (.toml); see `lamella new`")
     run.add_argument("--out", type=Path, metavar="DIR", help="folder to write (default: out/<project file's stem>)")
     run.add_argument("--until", metavar="STAGE", help="last stage (default: as far as this kind of surface goes)")
@@ -100,9 +124,10 @@ def _parser() -> argparse.ArgumentParser:
     examples.add_argument("--copy", type=Path, metavar="DIR", help="folder to copy them into")
 
     schema = commands.add_parser(
-        "schema", help="print the JSON schema of a project, network.json, or figures of optimise"
+        "schema",
+        help="print the JSON schema of a project or a file: summary.json, network.json, ...",
     )
-    schema.add_argument("which", choices=["project", "network", "optimise"])
+    schema.add_argument("which", choices=["project", "summary", "network", "lamellas", "optimise"])
     return parser
 
 
@@ -121,7 +146,7 @@ def _say(message: str) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    from lamella.stages.pipeline import run
+    from lamella.stages.write import run
 
     quiet, screen = arguments.quiet, Screen(verbose=arguments.verbose)
     try:
@@ -202,6 +227,10 @@ def _schema(arguments: argparse.Namespace) -> None:
         from lamella.project.tables import project_schema as schema
     elif arguments.which == "optimise":
         from lamella.files.write.optimise_json import optimise_schema as schema
+    elif arguments.which == "summary":
+        from lamella.stages.schema import summary_schema as schema
+    elif arguments.which == "lamellas":
+        from lamella.files.write.lamellas_json import lamellas_schema as schema
     else:
         from lamella.files.write.network_json import network_schema as schema
     print(json.dumps(schema(), indent=2))

@@ -262,7 +262,7 @@ def _require_near(mesh: QuadMesh, surface: Surface[Any], options: Options) -> No
 def _surface(given: QuadFile, options: Options, progress: Progress) -> Surface[Any]:
     """That of a project, or the surface of constant mean curvature the mesh itself means."""
     from lamella.project.read import located, read_project
-    from lamella.stages.surface_of_table import make_surface
+    from lamella.stages.surface.surface_of_table import make_surface
     from lamella.surface.from_mesh.fit_cmc import fit_cmc
 
     if options.surface is not None:

@@ -8,22 +8,22 @@ but for what `Checked.left` names.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lamella.base.drawing_origin import drawing_origin, reported_from
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
 from lamella.base.wording import counted
-from lamella.network.streamlines.applicability import is_traced
 from lamella.project.tables import FormFoundTable, MeshTable, Project
 from lamella.stages.clock import Clock
-from lamella.stages.pattern_of_table import pattern_of
-from lamella.stages.pipeline import Planned, Results, complete, plan
-from lamella.stages.unit_first import unit_first
-from lamella.stages.warnings import order_caution
+from lamella.stages.computation import Computation
+from lamella.stages.memory import Memory
+from lamella.stages.stage import Stage
+from lamella.stages.surface.warnings import order_warning
+from lamella.stages.wanted import wanted_stages
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
 
@@ -85,53 +85,62 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
     InputError
         What a run would refuse.
     """
+    stages, messages = wanted_stages(project, None)
     left: list[str] = []
     coarse = _coarse(project, left)
+    begun = None
     try:
-        surface, density = plan(coarse, folder=folder, progress=progress)
+        begun = _begun(project, coarse, stages, folder, progress)
     except InputError as error:
         if coarse is project or error.where != "surface.tolerance":
             raise
+    if begun and coarse is not project and umbilic_reason(begun.upstream().surface.check_points(), COARSE):
+        # the elements' own errors would decide
+        progress(Report.step("nearly a sphere or a plane: found anew as finely as the run does"))
+        begun = None
+    if begun is None:
         # in the project's own numbers
         coarse = project
         left.clear()
-        surface, density = plan(project, folder=folder, progress=progress)
-    if coarse is not project and umbilic_reason(surface.check_points(), COARSE):
-        # the elements' own errors would decide
-        progress(Report.step("nearly a sphere or a plane: found anew as finely as the run does"))
-        coarse = project
-        left.clear()
-        surface, density = plan(project, folder=folder, progress=progress)
-    sizes = None
-    if density:
-        sizes = density.cells, density.estimated_nodes
-    elif not umbilic_reason(surface.check_points()):
-        progress(Report.step("laying the net"))
-        sizes = _laid(coarse, surface, progress)
-    cells, nodes = sizes or (None, None)
-    until = None
+        begun = _begun(project, coarse, stages, folder, progress)
+    up = begun.upstream()
+    estimates = [stage.estimate(up, progress) for stage in stages[1:]]
+    sizes = {key: value for estimate in estimates for key, value in estimate.figures.items()}
+    left += [unknown for estimate in estimates for unknown in estimate.unknown]
+    nodes = sizes.get("nodes")
     if nodes is not None and nodes > MOST_TRACED:
-        until = "surface"
         left.append(f"whether all lamellas can be traced, and their strips (checked up to {MOST_TRACED:,} nodes)")
-    elif nodes is not None and project.network.closing == "adjust" and not density:
-        until = "surface"
+    elif nodes is not None and _adjusts(project):
         left.append("whether the boundary can be adjusted so that the net closes, and what its strips are")
-    results = _computed(coarse, (surface, density, None), until, folder, _finer(project, coarse))
-    if results.network:
-        nodes = len(results.network.node_points)
-    return Checked(surface, cells, nodes, tuple(results.summary["warnings"]), coarse is not project, tuple(left))
+    else:
+        begun.warnings[:0] = messages
+        begun.run_all(stages[1:])
+        if "network" in begun.outputs:
+            nodes = len(begun.outputs["network"].network.node_points)
+    warnings = tuple(begun.results().summary["warnings"])
+    return Checked(up.surface, sizes.get("cells"), nodes, warnings, coarse is not project, tuple(left))
 
 
-def _laid(project: Project, surface: Surface[Any], progress: Progress) -> tuple[int, int]:
-    """Cells and nodes of a net, about, without tracing it."""
-    from lamella.stages.weaving import lay, lay_traced
+def _adjusts(project: Project) -> bool:
+    """Whether a run changes the boundary, which takes longer than a check may."""
+    return project.network.closing == "adjust" and project.surface.kind == "form-found"
 
-    with unit_first(surface), reported_from(drawing_origin(surface)):
-        if is_traced(surface, pattern_of(project.network)):
-            lines = lay_traced(surface, project)
-            return lines.cells, lines.estimated_nodes
-        lattice = lay(surface, project, None, progress).lattice
-    return lattice.cells, lattice.estimated_nodes
+
+def _begun(
+    project: Project, coarse: Project, stages: Sequence[Stage[Any]], folder: Path, progress: Progress
+) -> Computation:
+    """A computation of the stages whose surface is there; what can be refused without a net has been."""
+    files = coarse.files.model_copy(update={"mesh_tolerance": max(COARSE_MESH, coarse.files.mesh_tolerance)})
+    light = coarse.model_copy(update={"files": files})
+    for stage in stages:
+        stage.check(light, None)
+    # a computation of the surface alone leaves the boundary as it is
+    wanted = stages[:1] if _adjusts(project) else stages
+    begun = Computation(light, wanted, folder, Memory(), Clock(silent), finer=_finer(project, coarse))
+    begun.run(stages[0], progress)
+    for stage in stages:
+        stage.check(light, begun.upstream().surface)
+    return begun
 
 
 def _finer(project: Project, coarse: Project) -> float:
@@ -142,19 +151,12 @@ def _finer(project: Project, coarse: Project) -> float:
     return other.tolerance / one.tolerance
 
 
-def _computed(project: Project, planned: Planned, until: str | None, folder: Path, finer: float) -> Results:
-    """What the stages of a run make of a surface."""
-    files = project.files.model_copy(update={"mesh_tolerance": max(COARSE_MESH, project.files.mesh_tolerance)})
-    light = project.model_copy(update={"files": files})
-    return complete(light, planned, Clock(silent), until=until, folder=folder, finer=finer)
-
-
 def _coarse(project: Project, left: list[str]) -> Project:
     """The project on coarse elements, where its surface has elements; what that leaves open is added to `left`."""
     table = project.surface
     if not isinstance(table, FormFoundTable | MeshTable) or table.tolerance >= COARSE:
         return project
     open_ = f"whether {table.most_nodes:,} nodes keep tolerance = {table.tolerance:g} (checked: {COARSE:g})"
-    too_low = order_caution(table.order, table.tolerance, table.most_nodes)
+    too_low = order_warning(table.order, table.tolerance, table.most_nodes)
     left.append(f"{open_}: {too_low}" if too_low else open_)
     return project.model_copy(update={"surface": table.model_copy(update={"tolerance": COARSE})})

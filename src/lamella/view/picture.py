@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from lamella.stages.pipeline import Results
+    from lamella.stages.results import Results
     from lamella.strip.lamellas import Lamellas
 
 Colour = Literal["utilisation", "torsion", "curvature", "planarity", "family", "none"]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from lamella.stages.pipeline import Results
+    from lamella.stages.results import Results
 
 Panel = Literal["shade", "deviation", "K", "ratio", "k1", "k2"]
 

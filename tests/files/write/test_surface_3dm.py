@@ -20,7 +20,7 @@ import lamella
 from lamella.base.arrays import Floats
 from lamella.files.write import surface_3dm
 from lamella.files.write.surface_3dm import sag, surface_3dm_bytes, write_surface_3dm
-from lamella.stages.output import write_files
+from lamella.stages.write import write_files
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
 from surface.element.exact_elements import catenoid_patch, sphere_cap, whole_catenoid

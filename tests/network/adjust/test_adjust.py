@@ -20,9 +20,9 @@ from lamella.network.network import SEAM, SINGULAR
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.project.read import read_project
 from lamella.project.tables import FormFoundTable
-from lamella.stages.adjusted_table import AdjustedTable, adjust_table
-from lamella.stages.boundary_of_tables import adjustable_film, boundary_loops
-from lamella.stages.pipeline import write
+from lamella.stages.surface.adjusted_table import AdjustedTable, adjust_table
+from lamella.stages.surface.boundary_of_tables import adjustable_film, boundary_loops
+from lamella.stages.write import write
 from lamella.surface.boundary.freedom import Freedom
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.find import find_film

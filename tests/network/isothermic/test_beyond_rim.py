@@ -14,7 +14,9 @@ from lamella.network.elements.element_network import element_network
 from lamella.network.isothermic.beyond_rim import zeros_beyond_rim
 from lamella.network.isothermic.umbilic_depth import UmbilicDepths, depth_errors
 from lamella.network.network import SINGULAR
-from lamella.stages.summary import network_summary
+from lamella.stages.figure import evaluate
+from lamella.stages.network.output import NetworkOutput
+from lamella.stages.network.stage import NetworkStage
 from surface.element.weierstrass import weierstrass
 from validation.measure_network import measure
 
@@ -35,7 +37,7 @@ def test_angles_next_to_a_zero_beyond_the_rim(distance) -> None:
     """The net's own angles are right and are those that the ruler finds."""
     net = lamella.net(weierstrass([distance * np.exp(0.4j)], rings=10), cells=20)
     ruler = measure(json.loads(network_bytes(net, name="x", version="0")))
-    figures = network_summary(net, "")
+    figures = evaluate(NetworkStage.figures, NetworkOutput(net, "", None, {}))
     assert ruler["node_angle_deviation_max_deg"] < 0.1
     assert figures["node_angle_deviation_max_deg"] == pytest.approx(ruler["node_angle_deviation_max_deg"], abs=0.05)
 

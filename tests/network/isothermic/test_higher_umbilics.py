@@ -14,7 +14,7 @@ import pytest
 from lamella import compute, parse_project
 from lamella.files.write.network_json import network_bytes
 from lamella.network.network import SINGULAR
-from lamella.stages.pipeline import Results
+from lamella.stages.results import Results
 from validation.measure_network import measure
 
 # of films, by default

@@ -24,7 +24,7 @@ from lamella.network.isothermic.match_transitions import TransitionMatcher
 from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.network import SEAM, SINGULAR
 from lamella.network.pattern import LAMELLAS
-from lamella.stages.boundary_of_tables import boundary_loops
+from lamella.stages.surface.boundary_of_tables import boundary_loops
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.find import find_film
 from network.adjust.test_adjust import HERE, sketch, table_of

@@ -13,7 +13,7 @@ from scipy.integrate import cumulative_simpson
 
 from lamella import InputError, compute, parse_project
 from lamella.network.network import BOUNDARY, REGULAR
-from lamella.stages.pipeline import Results
+from lamella.stages.results import Results
 from network.streamlines.test_streamline_network import is_sound, lamellas, ruled
 
 Map = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, ...]]

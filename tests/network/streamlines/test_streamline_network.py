@@ -24,7 +24,7 @@ from lamella.network.pattern import Pattern
 from lamella.network.streamlines.direction_field import CROSSING_ANGLE_MIN, LineField
 from lamella.network.streamlines.streamline_network import TracedNetwork, traced_network
 from lamella.network.streamlines.streamlines import finished, trace
-from lamella.stages.pipeline import compute
+from lamella.stages.computation import compute
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
 from network.elements.test_element_network import shaken_grid

@@ -12,8 +12,8 @@ import pytest
 from lamella import InputError, compute, make_surface, parse_project
 from lamella.base.progress import Report
 from lamella.project.tables import FormFoundTable
-from lamella.stages.boundary_of_tables import boundary_loops
 from lamella.stages.check import check_project
+from lamella.stages.surface.boundary_of_tables import boundary_loops
 from lamella.surface.boundary.curve import Loop
 
 

@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from lamella import InputError, parse_project
 from lamella.files.read import curves_json
-from lamella.stages.boundary_of_tables import boundary_loops
+from lamella.stages.surface.boundary_of_tables import boundary_loops
 from lamella.surface.boundary import CORNER_ANGLE, Loop
 
 T = np.random.default_rng(4).uniform(0, 1, 300)

@@ -12,7 +12,7 @@ import pytest
 
 from lamella import InputError, parse_project
 from lamella.project.tables import FormFoundTable
-from lamella.stages.boundary_of_tables import boundary_loops
+from lamella.stages.surface.boundary_of_tables import boundary_loops
 from lamella.surface.boundary import Loop, Sliding, make_loop
 from lamella.surface.boundary.arcs import arc_through
 from lamella.surface.boundary.fillets import rounded_loop, tangent_length

@@ -14,7 +14,7 @@ import pytest
 import rhino3dm
 
 from lamella import InputError, parse_project
-from lamella.stages.boundary_of_tables import boundary_loops
+from lamella.stages.surface.boundary_of_tables import boundary_loops
 from lamella.surface.boundary import CORNER_ANGLE, Loop
 from lamella.surface.boundary.smooth_polyline import LITTLE
 

@@ -12,7 +12,7 @@ from lamella.base.units import METRES
 from lamella.files.write.curves_3dm import write_curves_3dm
 from lamella.files.write.rhino_file import Frame
 from lamella.project.tables import FormFoundTable
-from lamella.stages.boundary_of_tables import adjustable_film, boundary_loops, drawing_unit
+from lamella.stages.surface.boundary_of_tables import adjustable_film, boundary_loops, drawing_unit
 from lamella.surface.boundary.arcs import circle
 from lamella.surface.boundary.curve import Loop, make_loop
 from lamella.surface.boundary.freedom import Freedom

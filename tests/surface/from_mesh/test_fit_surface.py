@@ -12,7 +12,7 @@ from scipy.spatial import Delaunay
 
 from lamella import parse_project
 from lamella.base.arrays import Floats
-from lamella.stages.surface_of_table import surface_of_mesh_table
+from lamella.stages.surface.surface_of_table import surface_of_mesh_table
 from lamella.surface.element.varying import VaryingSurface
 
 Graph = Callable[[Floats, Floats], Floats]

@@ -12,7 +12,7 @@ from scipy.spatial import Delaunay
 
 from lamella import InputError, compute, parse_project
 from lamella.base.arrays import Floats, Integers
-from lamella.stages.surface_of_table import surface_of_mesh_table
+from lamella.stages.surface.surface_of_table import surface_of_mesh_table
 from lamella.surface.element.varying import VaryingSurface
 from lamella.surface.from_mesh.edges import find_edges
 from lamella.surface.from_mesh.vertex_fits import fit_vertices

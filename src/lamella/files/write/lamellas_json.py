@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import orjson
 
+from lamella.base.arrays import Floats
 from lamella.base.wording import one_line
 from lamella.files.whole import write_whole
 from lamella.files.write.text import require_finite
@@ -16,6 +18,52 @@ from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 
 SCHEMA = "lamella/lamellas/1"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A list along a lamella, one number a sample of network.json.
+
+    Attributes
+    ----------
+    key, unit, meaning : str
+    values : callable
+        Those of all samples, (k,), of a network and its lamellas.
+    """
+
+    key: str
+    unit: str
+    meaning: str
+    values: Callable[[Network, Lamellas], Floats]
+
+
+COLUMNS = (
+    Column("arclength", "m", "from the lamella's start", lambda net, strips: net.sample_arclengths),
+    Column("normal_curvature", "1/m", "kn, with sign", lambda net, strips: net.sample_darboux.kn),
+    Column("geodesic_curvature", "1/m", "kg, with sign", lambda net, strips: net.sample_darboux.kg),
+    Column("geodesic_torsion", "1/m", "tg, with sign", lambda net, strips: net.sample_darboux.tg),
+    Column("stress_bending", "Pa", "magnitude, about the weak axis", lambda net, strips: strips.bending),
+    Column("stress_torsion", "Pa", "magnitude", lambda net, strips: strips.torsion),
+    Column("stress_helix_edge", "Pa", "at the edges, tension > 0", lambda net, strips: strips.helix_edge),
+    Column("stress_helix_centre", "Pa", "on the centre line, tension > 0", lambda net, strips: strips.helix_centre),
+    Column("stress_restraint", "Pa", "tension from marks at the arc length", lambda net, strips: strips.restraint),
+    Column("stress_layer", "Pa", "strong-axis bending of the outermost layers", lambda net, strips: strips.layer),
+    Column("von_mises", "Pa", "all stresses together", lambda net, strips: strips.von_mises),
+    Column("utilisation", "", "that over the strength", lambda net, strips: strips.utilisation),
+    Column(
+        "sideways_curvature_slope",
+        "1/m2",
+        "how the normal curvature changes to the left (u = n x t): a layer at d has kn + d times this",
+        lambda net, strips: net.sample_slopes,
+    ),
+    Column(
+        "planarity",
+        "",
+        "of the strip's quad from this sample to the next; 0 at the end",
+        lambda net, strips: strips.planarity,
+    ),
+)
+"""What lamellas.json holds along every lamella; its schema is made from this too."""
 
 
 def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: str, version: str) -> None:
@@ -29,22 +77,7 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
     name, version : str
         Of the project and of the program.
     """
-    along = {
-        "arclength": network.sample_arclengths,
-        "normal_curvature": network.sample_darboux.kn,
-        "geodesic_curvature": network.sample_darboux.kg,
-        "geodesic_torsion": network.sample_darboux.tg,
-        "stress_bending": lamellas.bending,
-        "stress_torsion": lamellas.torsion,
-        "stress_helix_edge": lamellas.helix_edge,
-        "stress_helix_centre": lamellas.helix_centre,
-        "stress_restraint": lamellas.restraint,
-        "stress_layer": lamellas.layer,
-        "von_mises": lamellas.von_mises,
-        "utilisation": lamellas.utilisation,
-        "sideways_curvature_slope": network.sample_slopes,
-        "planarity": lamellas.planarity,
-    }
+    along = {column.key: column.values(network, lamellas) for column in COLUMNS}
     require_finite(*along.values(), lamellas.stop_stations, lamellas.layers.distances, lamellas.layers.bow)
     samples, stops = network.sample_offsets.tolist(), network.stop_offsets.tolist()
     content = {
@@ -70,6 +103,64 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
         ],
     }
     write_whole(path, orjson.dumps(content, option=orjson.OPT_SERIALIZE_NUMPY))
+
+
+def lamellas_schema() -> dict[str, Any]:
+    """JSON schema (draft 2020-12) of lamellas.json."""
+    number, text = {"type": "number"}, {"type": "string"}
+    numbers = {"type": "array", "items": number}
+    along = {
+        column.key: numbers | {"description": f"{column.meaning} [{column.unit}]" if column.unit else column.meaning}
+        for column in COLUMNS
+    }
+    layer = {
+        "type": "object",
+        "properties": {"offset": number, "distance": numbers, "flat_curvature": numbers},
+        "required": ["offset"],
+        "additionalProperties": False,
+    }
+    lamella = {
+        "id": text,
+        "family": {"enum": ["A", "B"]},
+        "developed_length": number | {"description": "of the flat centre line, first to last node [m]"},
+        "nodes": {"type": "array", "items": {"type": "integer"}},
+        "node_stations": numbers | {"description": "where nodes are marked on the flat strip, from its first one [m]"},
+        "node_utilisation_net_section": numbers
+        | {"description": "of the half height left at the node's slots; 0 where there is none"},
+        "layer_node_stations": {"type": "array", "items": numbers, "description": "node marks of each layer [m]"},
+        "layers": {"type": "array", "items": layer, "description": "from the right layer to the left one"},
+        **along,
+    }
+    properties = {
+        "schema": {"const": SCHEMA},
+        "version": text,
+        "name": text,
+        "units": {"type": "object", "additionalProperties": text},
+        "section": {"type": "object"},
+        "development": {
+            "type": "object",
+            "properties": {"curvature": number | {"description": "of the flat strips [1/m]"}},
+            "required": ["curvature"],
+        },
+        "lamellas": {
+            "type": "array",
+            "items": {
+                "type": "object",
+                "properties": lamella,
+                "required": list(lamella),
+                "additionalProperties": False,
+            },
+        },
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$id": SCHEMA,
+        "title": "lamella lamellas.json",
+        "type": "object",
+        "properties": properties,
+        "required": list(properties),
+        "additionalProperties": False,
+    }
 
 
 def _layers(lamellas: Lamellas, samples: slice) -> list[dict[str, Any]]:

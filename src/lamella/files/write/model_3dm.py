@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import rhino3dm
 
 from lamella.base.arrays import Floats
+from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile, nurbs_curve
 from lamella.files.write.splines import SPLINE_TOLERANCE, fit_spline
 from lamella.files.write.text import require_finite
@@ -42,6 +45,7 @@ def model_bytes(
     surface: SurfaceMesh,
     network: Network,
     lamellas: Lamellas | None = None,
+    further: Sequence[DrawnLayer] = (),
     frame: Frame = IN_METRES,
 ) -> bytes:
     """Return the Rhino model.
@@ -60,6 +64,8 @@ def model_bytes(
         Twisted strips go to "strips A" and "strips B" as surfaces of degree 3 x 1, ruled along the normals; where a
         lamella has several layers, each of these to "layers A" and "layers B", named A1-1, A1-2, ... from the right one
         (u = n x t is left) to the left one.
+    further : sequence of DrawnLayer
+        What later stages add.
     frame : Frame
         The file's unit, and where in the drawing points are measured from. Lengths in user text are in metres, as
         their keys say.
@@ -71,7 +77,10 @@ def model_bytes(
     """
     require_finite(network.sample_points, network.sample_normals, network.sample_tangents)
     require_finite(network.sample_arclengths, network.node_points, surface.points, surface.normals)
-    return _Model(name, version, frame).filled(surface, network, lamellas).encoded()
+    model = _Model(name, version, frame).filled(surface, network, lamellas)
+    for layer in further:
+        model.add_further(layer)
+    return model.encoded()
 
 
 class _Model:
@@ -101,6 +110,19 @@ class _Model:
                 self._add_layers(network, lamellas)
         self._add_nodes(network)
         return self
+
+    def add_further(self, layer: DrawnLayer) -> None:
+        """Polylines and points of a later stage, named by their number."""
+        self.rhino.add_layers({layer.name: layer.colour})
+        for k, curve in enumerate(layer.curves):
+            require_finite(curve)
+            knots = np.arange(len(curve), dtype=float)
+            attributes = self.rhino.attributes(layer.name, f"curve {k}", version=self.version)
+            self.rhino.add_curve(1, knots, curve, attributes)
+        for k, point in enumerate(layer.points):
+            require_finite(point)
+            attributes = self.rhino.attributes(layer.name, f"point {k}", version=self.version)
+            self.file.Objects.AddPoint(rhino3dm.Point3d(*self.rhino.placed(point).tolist()), attributes)
 
     def encoded(self) -> bytes:
         return self.rhino.encoded()

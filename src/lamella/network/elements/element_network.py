@@ -13,27 +13,26 @@ from lamella.base.arrays import Booleans, Floats
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.base.message import Message
-from lamella.base.progress import Progress, Report, silent
+from lamella.base.progress import Progress, silent
 from lamella.base.vectors import diagonal
 from lamella.base.wording import counted
 from lamella.network.density_request import DensityRequest
 from lamella.network.elements.closing_steps import CLOSES
 from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.elements.lattice import Lattice, choose_lattice
+from lamella.network.elements.net_coordinates import NetCoordinates, net_coordinates
 from lamella.network.elements.rim_corners import RimCorners
 from lamella.network.elements.rounding import largest_part, rounded_coordinates, stubs, turned
 from lamella.network.elements.trace import trace_elements
 from lamella.network.isothermic.holonomy import Holonomy, holonomies
-from lamella.network.isothermic.integration_mesh import IntegrationMesh, make_integration_mesh, onto_surface
+from lamella.network.isothermic.integration_mesh import IntegrationMesh, onto_surface
 from lamella.network.isothermic.isothermic import Isothermic, Transition
-from lamella.network.isothermic.recut import straightened
-from lamella.network.isothermic.seamless_transitions import FoldedError, integrate, with_shifts
+from lamella.network.isothermic.seamless_transitions import FoldedError, with_shifts
 from lamella.network.network import REGULAR, SINGULAR, Network, Period
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.network.written_lines import WrittenLines, angle_figures
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
-from lamella.surface.umbilic import refuse_umbilic
 
 Closing = Literal["open", "round"]
 
@@ -233,7 +232,7 @@ class ElementNetwork:
     def at_corner(self, point: Floats, utilisation: Floats, searched: Callable[[int, tuple[float, float]], str]) -> str:
         """What helps at a point (3,) if a corner is why so much is used there and not farther away; else empty.
 
-        `searched` tells what a radius does: see `lamella.stages.corner_search.radius_that_does`.
+        `searched` tells what a radius does: see `lamella.stages.lamellas.corner_search.radius_that_does`.
         """
         reach = CORNER_EDGES * float(np.median(self.network.cell_edges))
         corner = self.corners.nearest(point, reach)
@@ -372,6 +371,7 @@ def plan_net(
     loop_names: tuple[str, ...] = (),
     seams: bool = True,
     minimum_length: float = 0.5,
+    coordinates: NetCoordinates | None = None,
     progress: Progress = silent,
 ) -> NetPlan:
     """Umbilics, isothermic coordinates and lattice of a surface: how many cells its net has, and about how many nodes.
@@ -382,33 +382,20 @@ def plan_net(
         See `element_network`.
     seams : bool
         Whether the net is left open where it does not meet itself.
+    coordinates : NetCoordinates, optional
+        Of the surface and `seams`, where they are known.
 
     Raises
     ------
     InputError
     """
     request = DensityRequest.of(cells, spacing)
-    refuse_umbilic(surface)
     assert surface.has_lattice(pattern.normal_curvature)
-    umbilics = surface.umbilics
-    mesh = make_integration_mesh(surface, umbilics)
-    inner = umbilics.orders[mesh.umbilics >= 0].tolist()
-    reported = ", ".join(f"order {m}" for m in inner)
-    progress(Report.step(f"{len(inner)} umbilics" + (f" ({reported})" if reported else "")))
-    iso = integrate(mesh, mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)])
-    if seams:
-        iso = straightened(iso, surface)
-        mesh = iso.mesh
-    progress(
-        Report.step(
-            f"isothermic coordinates on {mesh.connectivity.node_count:,} nodes: off by {iso.residual:.1e} of their "
-            "slope"
-        )
-    )
-    names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(mesh.loop.max()) + 1))
-    around = holonomies(iso)
+    known = coordinates or net_coordinates(surface, seams=seams, progress=progress)
+    iso, around = known.iso, known.around
+    names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(iso.mesh.loop.max()) + 1))
     choose = partial(choose_lattice, iso, around, request, step=step, pattern=pattern, names=names, seams=seams)
-    laid = NetPlan(surface, umbilics, mesh, iso, around, choose(), pattern, names)
+    laid = NetPlan(surface, known.umbilics, iso.mesh, iso, around, choose(), pattern, names)
     if spacing is None or step is not None:
         return laid
     return _tried_out(laid, spacing, choose, "open" if seams else "round", minimum_length)

@@ -18,7 +18,7 @@ from lamella.base.wording import rounded
 from lamella.network.elements.element_network import ElementNetwork
 from lamella.network.streamlines.streamline_network import TracedNetwork
 from lamella.project.tables import FormFoundTable, Project
-from lamella.stages.weaving import lay, weave
+from lamella.stages.network.make import lay, net_on
 from lamella.strip.lamellas import Section, make_lamellas
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
@@ -106,7 +106,7 @@ def _utilisation(project: Project, surface_of: SurfaceOf) -> float:
     """The largest one of the project's strips."""
     surface = surface_of(project)
     assert isinstance(surface, ElementSurface)
-    network = weave(lay(surface, project, None, silent), project).network
+    network = net_on(lay(surface, project, None, silent), project).network
     section = Section(**project.lamella.model_dump(exclude={"material"}))
     lamellas = make_lamellas(network, section, project.material(), surface=surface)
     return float(np.max(lamellas.utilisation))

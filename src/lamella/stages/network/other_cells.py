@@ -91,8 +91,8 @@ class OtherCells:
             density = choose_density(self.surface, cells=cells, pattern=pattern_of(table))
             return trace_closed_form(self.surface, density, minimum_length=table.minimum_length)
         # heavy, and closed forms do without
-        from lamella.stages.weaving import lay, weave
+        from lamella.stages.network.make import lay, net_on
 
         project = self.project.model_copy(update={"network": table})
-        woven = weave(lay(self.surface, project, None, silent), project)
+        woven = net_on(lay(self.surface, project, None, silent), project)
         return woven.network if len(list(woven.warnings())) <= self.warned else None

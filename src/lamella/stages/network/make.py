@@ -7,6 +7,7 @@ from typing import Any
 from lamella.base.progress import Progress
 from lamella.network.charts.charts_of import charts_of
 from lamella.network.elements.element_network import Closing, ElementNetwork, NetPlan, plan_net
+from lamella.network.elements.net_coordinates import NetCoordinates
 from lamella.network.streamlines.applicability import reported_mean_curvature
 from lamella.network.streamlines.streamline_network import TracedNetwork, traced_network
 from lamella.network.streamlines.streamline_plan import StreamlinePlan, plan_streamlines
@@ -17,17 +18,21 @@ from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import refuse_umbilic
 
-# how nets are made: on a lattice, or traced
-MANNERS = ("umbilics, isothermic coordinates, lamellas", "lines from even seeds")
-
 
 @keys("network", surface="surface")
-def lay(surface: Surface[Any], project: Project, step: float | None, progress: Progress) -> NetPlan:
+def lay(
+    surface: Surface[Any],
+    project: Project,
+    step: float | None,
+    progress: Progress,
+    coordinates: NetCoordinates | None = None,
+) -> NetPlan:
     """The lattice of a surface of elements; of a given spacing l0 (sqrt(m)) where it was adjusted."""
     assert isinstance(surface, ElementSurface)
     table = project.network
     return plan_net(
         surface,
+        coordinates=coordinates,
         cells=table.cells,
         spacing=table.spacing,
         step=step,
@@ -40,7 +45,7 @@ def lay(surface: Surface[Any], project: Project, step: float | None, progress: P
 
 
 @keys("network", surface="surface")
-def weave(laid: NetPlan, project: Project) -> ElementNetwork:
+def net_on(laid: NetPlan, project: Project) -> ElementNetwork:
     """The network of that lattice."""
     table = project.network
     # what is left of an adjusted net's misses is below what counts as closed

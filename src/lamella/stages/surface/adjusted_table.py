@@ -11,8 +11,8 @@ from lamella.base.progress import Progress, Report, silent
 from lamella.network.adjust.adjust import adjust_boundary
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.project.tables import FormFoundTable
-from lamella.stages.boundary_of_tables import adjustable_film, changed_table, with_origin
 from lamella.stages.keys import keys
+from lamella.stages.surface.boundary_of_tables import adjustable_film, changed_table, with_origin
 from lamella.surface.boundary.freedom import Freedom, refuse_fixed
 from lamella.surface.element.surface import ElementSurface
 

@@ -12,7 +12,7 @@ from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
 from lamella.project.tables import FormFoundTable, MeshTable, Project
 from lamella.stages.keys import keys
-from lamella.stages.warnings import order_caution
+from lamella.stages.surface.warnings import order_warning
 from lamella.surface.closed_forms.kinds import CLOSED_FORMS
 from lamella.surface.surface import Surface
 
@@ -55,7 +55,7 @@ def make_surface(project: Project, folder: str | Path = Path(), progress: Progre
     if not isinstance(table, FormFoundTable | MeshTable):
         with keys("surface"):
             return CLOSED_FORMS[table.kind](**table.model_dump(exclude={"kind"}))
-    too_low = order_caution(table.order, table.tolerance, table.most_nodes)
+    too_low = order_warning(table.order, table.tolerance, table.most_nodes)
     if too_low:
         progress(Report.step(too_low))
     try:
@@ -73,7 +73,7 @@ def make_surface(project: Project, folder: str | Path = Path(), progress: Progre
 def film_of_table(table: FormFoundTable, folder: Path, progress: Progress = silent) -> ElementSurface:
     """The film in the boundary of a table, see `make_surface`."""
     # heavy, and closed forms do without
-    from lamella.stages.boundary_of_tables import boundary_loops, with_origin
+    from lamella.stages.surface.boundary_of_tables import boundary_loops, with_origin
     from lamella.surface.boundary.corner_cost import corner_cost
     from lamella.surface.form_finding.find import find_film, notes_on, remarks_on
 

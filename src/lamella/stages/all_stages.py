@@ -1,0 +1,16 @@
+"""The stages of a run, each before those that need it. A new stage is a line here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lamella.stages.fabrication.stage import FabricationStage
+from lamella.stages.lamellas.stage import LamellasStage
+from lamella.stages.network.stage import NetworkStage
+from lamella.stages.stage import Stage
+from lamella.stages.surface.stage import SurfaceStage
+
+STAGES: tuple[Stage[Any], ...] = (SurfaceStage(), NetworkStage(), LamellasStage(), FabricationStage())
+
+TO_COME = ("structure",)
+"""Announced in the file interface: null in summary.json."""

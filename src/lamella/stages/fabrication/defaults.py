@@ -1,0 +1,60 @@
+"""Measures of fabrication that follow from other values of a project, and what no part can be made with."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lamella.base.drawing_origin import drawing_origin
+from lamella.fabrication.defaults import default_end_distance, default_hub_radius, default_slot_width
+from lamella.fabrication.rules import Rules, clear_hub
+from lamella.project.tables import Project
+from lamella.stages.keys import keys
+from lamella.surface.surface import Surface
+
+
+def fill_in(project: Project, surface: Surface[Any]) -> Project:
+    """The project with those defaults filled in that follow from its other values."""
+    cut, strip = project.fabrication, project.lamella
+    slot_width = default_slot_width(strip.thickness) if cut.slot_width is None else cut.slot_width
+    end_distance = cut.end_distance
+    if end_distance is None:
+        end_distance = default_end_distance(slot_width, _normal_curvature(project, surface), strip.height)
+    hub_radius = cut.hub_radius
+    # how far apart layers on lamella curves are next to a singular node, the net decides
+    if hub_radius is None and (strip.layers == 1 or strip.layer_curves != "lamella"):
+        rays = max((2 * (order + 2) for order in surface.singular_orders()), default=0)
+        hub_radius = default_hub_radius(clear_hub(rays, strip.layers, strip.offset, strip.thickness))
+    measures = {"slot_width": slot_width, "end_distance": float(end_distance), "hub_radius": hub_radius}
+    filled = cut.model_copy(update=measures)
+    update: dict[str, Any] = {"fabrication": filled}
+    if any(drawing_origin(surface)):
+        update["surface"] = project.surface.model_copy(update={"origin": drawing_origin(surface)})
+    return project.model_copy(update=update)
+
+
+@keys("fabrication", height="lamella.height")
+def check_fabrication(project: Project, surface: Surface[Any]) -> None:
+    """Refuse measures that no part can be made with, by the key in the project.
+
+    Raises
+    ------
+    InputError
+    """
+    filled = fill_in(project, surface)
+    strip, cut = filled.lamella, filled.fabrication
+    rules = Rules(
+        layers=strip.layers,
+        offset=strip.offset,
+        height=strip.height,
+        thickness=strip.thickness,
+        curvature=float(_normal_curvature(filled, surface)),
+        density=filled.material().density,
+        **cut.model_copy(update={"hub_radius": cut.hub_radius or 0.0}).model_dump(),
+    )
+    rules.check()
+
+
+def _normal_curvature(project: Project, surface: Surface[Any]) -> float:
+    """Of the lamellas, 1/m."""
+    given = project.network.normal_curvature
+    return surface.mean_curvature if given is None else given

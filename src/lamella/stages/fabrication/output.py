@@ -1,0 +1,24 @@
+"""What the stage "fabrication" computes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from lamella.fabrication import Nesting, Parts
+
+
+@dataclass(frozen=True)
+class FabricationOutput:
+    """Parts and where they lie on sheets.
+
+    Attributes
+    ----------
+    parts : Parts
+    nesting : Nesting
+    surface_area : float
+        m2.
+    """
+
+    parts: Parts
+    nesting: Nesting
+    surface_area: float

@@ -1,0 +1,37 @@
+"""What the stage "lamellas" computes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from lamella.base.material import Material
+from lamella.network.network import Network
+from lamella.strip.lamellas import Lamellas
+
+
+@dataclass(frozen=True)
+class LamellasOutput:
+    """The strips of a net.
+
+    Attributes
+    ----------
+    network : Network
+    lamellas : Lamellas
+    material_name : str
+    material : Material
+    made : object or None
+        What made the net, as `lamella.stages.network.stage.NetworkOutput.made`.
+    """
+
+    network: Network
+    lamellas: Lamellas
+    material_name: str
+    material: Material
+    made: Any
+
+    @cached_property
+    def corner_stresses(self) -> dict[str, Any]:
+        """Utilisation next to the boundary's corners, by key of the summary."""
+        return self.made.corner_stresses(self.lamellas.utilisation) if self.made else {}

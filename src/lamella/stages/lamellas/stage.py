@@ -1,0 +1,99 @@
+"""The stage "lamellas": strips, their stresses, and the node marks on the flat strips."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import partial
+from typing import Any
+
+from lamella import __version__
+from lamella.base.drawing_origin import drawing_origin
+from lamella.base.message import Message
+from lamella.base.progress import Progress
+from lamella.files.write.lamellas_json import write_lamellas
+from lamella.project.tables import Project
+from lamella.stages.drawn import in_drawing
+from lamella.stages.keys import keys
+from lamella.stages.lamellas.figures import FIGURES, REPORT
+from lamella.stages.lamellas.output import LamellasOutput
+from lamella.stages.lamellas.warnings import lamella_warnings, layer_warnings
+from lamella.stages.pattern_of_table import pattern_of
+from lamella.stages.stage import File, Missing, Stage, Upstream
+from lamella.stages.surface.surface_of_table import make_surface
+from lamella.strip.lamellas import Lamellas, Section, make_lamellas
+from lamella.strip.layer_curves import check_layer_curves
+from lamella.surface.surface import Surface
+
+
+class LamellasStage(Stage[LamellasOutput]):
+    """See `lamella.stages.stage.Stage`."""
+
+    name = "lamellas"
+    needs = ("surface", "network")
+    writes = (("lamellas.json", "curvatures and stresses along every lamella, node marks of the flat strips"),)
+    figures = FIGURES
+    report = ("Lamellas", REPORT)
+
+    def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
+        return ("lamella", "materials")
+
+    def warned_by(self, project: Project) -> tuple[str, ...]:
+        # what a corner's radius changes is tried on the project's own surface and net
+        return ("fabrication", "surface", "network")
+
+    def missing(self, project: Project) -> Missing | None:
+        reason = pattern_of(project.network).no_strips
+        if not reason:
+            return None
+        return Missing("a net of lamellas", reason, 'write --until network, or kind = "lamellas"', "network.kind")
+
+    def check(self, project: Project, surface: Surface[Any] | None) -> None:
+        strip = project.lamella
+        if surface is not None and strip.layers > 1 and strip.layer_curves == "lamella":
+            with keys("lamella", section="lamella"):
+                check_layer_curves(surface, pattern_of(project.network))
+
+    def heading(self, up: Upstream) -> str:
+        strip = up.project.lamella
+        return f"{strip.height * 1000:g} x {strip.thickness * 1000:g} mm, {strip.material}"
+
+    def run(self, up: Upstream, progress: Progress) -> LamellasOutput:
+        net = up.outputs["network"]
+        with keys("lamella", section="lamella", network="network"):
+            lamellas = strips_of(up.project, up.surface)(net.network)
+        return LamellasOutput(net.network, lamellas, up.project.lamella.material, up.project.material(), net.made)
+
+    def result(self, figures: Mapping[str, Any], out: LamellasOutput) -> str:
+        return f"{figures['total_length']:.4g} m of lamella, utilisation up to {figures['utilisation_max']:.2f}"
+
+    def warnings(self, out: LamellasOutput, up: Upstream, progress: Progress) -> Iterator[Message]:
+        project, network = up.project, out.network
+        strips = strips_of(project, up.surface)
+        advice = None
+        if out.made:
+            from lamella.stages.lamellas.corner_search import corner_help
+
+            make = partial(make_surface, folder=up.folder)
+            advice = corner_help(out.made, out.lamellas.utilisation, project, make, progress)
+        yield from lamella_warnings(
+            up.outputs["surface"].mesh,
+            network,
+            out.lamellas,
+            project.fabrication.slot_width or 0.0,
+            out.material,
+            project.known_materials(),
+            lambda other, of: float(strips(network, section=other, material=of).utilisation.max()),
+            advice,
+        )
+        yield from layer_warnings(network, out.lamellas, out.material)
+
+    def files(self, out: LamellasOutput, up: Upstream) -> Iterator[File]:
+        network = in_drawing(out.network, drawing_origin(up.surface))
+        signed: Any = {"name": up.project.name, "version": __version__}
+        yield File("lamellas.json", lambda path: write_lamellas(path, network, out.lamellas, **signed))
+
+
+def strips_of(project: Project, surface: Surface[Any]) -> partial[Lamellas]:
+    """How a project makes strips of a net on a surface; section and material can be replaced."""
+    section = Section(**project.lamella.model_dump(exclude={"material"}))
+    return partial(make_lamellas, section=section, material=project.material(), surface=surface)

@@ -1,0 +1,82 @@
+"""What the report shows of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from lamella import __version__
+from lamella.stages import all_stages
+from lamella.stages.figure import Row, report_rows
+from lamella.stages.results import Results
+from lamella.stages.surface.figures import loop_rows
+from lamella.surface.element.surface import ElementSurface
+from lamella.surface.mesh import SurfaceMesh
+from lamella.view.report import ReportData
+
+COARSE_MESH_POINTS = 7_500
+"""Vertices below which the report's mesh of a surface of curved elements is made anew, with `REPORT_SAG`."""
+
+REPORT_SAG = 2.5e-4
+"""A quarter of what the files' mesh has, over the diagonal of the bounding box: four times the vertices."""
+
+
+def report_data(results: Results) -> ReportData:
+    """What the report shows of a run."""
+    return ReportData(
+        name=results.project.name,
+        version=__version__,
+        kind=results.surface.kind,
+        figures=tuple(_figures(results.summary)),
+        corners=tuple(_corners(results.summary)),
+        warnings=tuple(results.summary["warnings"]),
+        surface=_report_mesh(results),
+        mean_curvature=results.surface.mean_curvature,
+        network=results.network,
+        lamellas=results.lamellas,
+        material=results.project.lamella.material,
+    )
+
+
+def _report_mesh(results: Results) -> SurfaceMesh:
+    """The mesh of the report: finer than the files' where that is coarse, so that curved rims look curved."""
+    if isinstance(results.surface, ElementSurface) and len(results.mesh.points) < COARSE_MESH_POINTS:
+        return results.surface.mesh(REPORT_SAG)
+    return results.mesh
+
+
+def _figures(summary: dict[str, Any]) -> Iterator[Row]:
+    """Key figures of the summary as (section, label, value, unit)."""
+    for stage in all_stages.STAGES:
+        if not summary.get(stage.name):
+            continue
+        section, order = stage.report
+        for row in report_rows(stage.figures, order, stage.name, summary):
+            yield section, *row
+        if stage.name == "surface":
+            for row in loop_rows(summary["surface"].get("loops", [])):
+                yield "Boundary", *row
+
+
+def _corners(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:
+    """Place, angle between the sides, worst node angle and utilisation next to each corner of the boundary."""
+    rows = (summary["network"] or {}).get("corners", [])
+    stress = (summary["lamellas"] or {}).get("utilisation_at_corners", [None] * len(rows))
+
+    decimals = int(np.clip(1 - np.floor(np.log10(max(summary["surface"]["size"]))), 0, 3))
+
+    def told(value: float | None, form: str) -> str:
+        # nothing of the net is there
+        return "–" if value is None else format(value, form)
+
+    return [
+        (
+            ", ".join(f"{x:.{decimals}f}" for x in row["point"]),
+            f"{row['angle_deg']:.1f}",
+            told(row["node_angle_deviation_max_deg"], ".2g"),
+            told(use, ".2f"),
+        )
+        for row, use in zip(rows, stress, strict=True)
+    ]
