@@ -6,14 +6,16 @@ import ast
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
 import lamella
 from lamella import InputError, parse_project
 from lamella.base.message import Message
+from lamella.base.units import METRES, PROJECT_UNITS
 from lamella.project.tables import FURTHER_TABLES, SURFACE_TABLES
+from lamella.project.values import Unit
 from lamella.stages.keys import key_of, keys, with_keys
 
 PACKAGE = Path(lamella.__file__).parent
@@ -104,3 +106,8 @@ def test_keys_in_warnings() -> None:
     assert with_keys("a material as stiff, or material = 2", "lamella.material =") == (
         "a material as stiff, or lamella.material = 2"
     )
+
+
+def test_units_of_a_project_are_those_that_readers_know() -> None:
+    assert get_args(Unit) == PROJECT_UNITS
+    assert set(PROJECT_UNITS) <= set(METRES)
