@@ -1,4 +1,4 @@
-"""Closing a net by rounding: whole shifts by the smallest change of the isothermic coordinates."""
+"""Closing a net by rounding: integer transitions by the smallest change of the isothermic coordinates."""
 
 from __future__ import annotations
 

@@ -4,6 +4,11 @@ A net closes where w goes over into +-w + whole cells on every loop of the surfa
 around them is a half turn about a lattice point: shifts even. Neither depends on how the surface was cut; nor does the
 least energy of a correction with given shifts, by which one set of whole numbers is nearer than another. Rounding the
 pieces one by one would depend on the cut: they are sums of each other's.
+
+Which whole numbers are nearest in that energy is the closest vector problem of a lattice (U. Fincke, M. Pohst, Improved
+methods for calculating vectors of short length in a lattice, Mathematics of Computation 44 (1985) 463-471); D. Bommer,
+H. Zimmer, L. Kobbelt (Mixed-integer quadrangulation, ACM Transactions on Graphics 28 (2009) 77) round greedily, one
+number after the other.
 """
 
 from __future__ import annotations

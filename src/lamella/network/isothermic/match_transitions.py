@@ -1,4 +1,4 @@
-"""Whole shifts carried from one surface to a near one, which may be cut in another way.
+"""Integer transitions matched from one surface to a near one, which may be cut in another way.
 
 A correction of the coordinates with given shifts is a field on the surface, and its derivatives by u and v depend
 neither on the cut nor on the signs of w. So the shifts to be put right on the near surface are those whose field is

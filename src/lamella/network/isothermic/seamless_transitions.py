@@ -2,6 +2,10 @@
 
 One factorisation serves all: the coordinates are affine in the shifts c, and which shifts are best is a small problem
 of its own.
+
+With transitions of that kind a parametrisation is called seamless (F. Kaelberer, M. Nieser, K. Polthier, QuadCover -
+surface parameterization using branched coverings, Computer Graphics Forum 26 (2007) 375-384). There the direction field
+is given and the coordinates are fitted to it; here both follow from the surface's Hopf differential.
 """
 
 from __future__ import annotations
