@@ -2,9 +2,9 @@
 
 A lamellas are Im chi = whole, B lamellas Re chi = whole (`lamella.network.lattice.domain`); nodes are the whole
 numbers. Each element has its own sheet; through a cut chi goes over into sign chi + shift. For principal lines, and
-where curves are left out, chi is that of `lamella.network.pattern`. Where all shifts are whole the level curves of whole
-numbers close to a net (D. Bommer, H. Zimmer, L. Kobbelt, Mixed-integer quadrangulation, ACM Transactions on Graphics 28
-(2009) 77).
+where curves are left out, chi is that of `lamella.network.pattern`. Where all shifts are whole the level curves of
+whole numbers close to a net (D. Bommer, H. Zimmer, L. Kobbelt, Mixed-integer quadrangulation, ACM Transactions on
+Graphics 28 (2009) 77).
 """
 
 from __future__ import annotations
