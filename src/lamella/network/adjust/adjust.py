@@ -55,7 +55,7 @@ MOST_LOOKED_AT, INTEGERS_TRIED_MAX = 60, 4
 LEAST_GAIN = 0.1
 # of an umbilic's distance from the rim: what a step leaves of it at least, to first order. Where umbilics come or go
 # there are other whole numbers to be reached
-KEPT = 0.3
+RIM_DISTANCE_KEPT = 0.3
 # limits this many times as large are looked for, at most, where the given ones do not do; in so many halvings, from so
 # many of the places reached, and tried with more than what suffices to first order: steps are few where room is left
 REACHED_LIMITS_MAX, REACH_HALVINGS, MOST_WIDER, WIDER = 8.0, 6, 2, 1.5
@@ -421,7 +421,7 @@ class _Search:
         cell_sensitivities: Complexes,
         residuals: Complexes,
         near: Floats | None = None,
-        kept: float = KEPT,
+        kept: float = RIM_DISTANCE_KEPT,
     ) -> tuple[Floats, float]:
         """Change of the shares and of the logarithm of the spacing that undoes misses, to first order; what it costs.
 
