@@ -19,6 +19,7 @@ from messages import faults
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:,\d{3})*(?:\.\d+)?(?:e[+-]?\d+)?(?!\.?\d)")
 # a name is no word of the sentence: it is in quotes, or is written as no word is
 QUOTES = "'\"`"
+VALUES = {"true", "false", "nan", "inf", "-inf"}
 UNLIKE_WORDS = re.compile(r"[^\w\s]|[\d_]|[A-Z]{2}|^[A-Z]\d*$")
 
 
@@ -45,9 +46,13 @@ def check_stated(text: str, numbers: Iterable[float] = (), names: Iterable[str] 
     for value in numbers:
         assert any(is_printed(value, one) for one in written), f"no {value!r} among {written} in: {text}"
     for name in names:
-        assert re.search(rf"(?<![\w]){re.escape(name)}(?![\w])", text), f"no {name!r} in: {text}"
-        quoted = any(f"{quote}{name}{quote}" in text for quote in QUOTES)
-        assert quoted or UNLIKE_WORDS.search(name), f"{name!r} is prose: state a key, number, file or quoted name"
+        assert re.search(rf"(?<!\w){re.escape(name.strip())}(?!\w)", text), f"no {name!r} in: {text}"
+        quoted = any(f"{quote}{name}{quote}" in text for quote in QUOTES) or re.search(
+            rf"\b{re.escape(name)}(?:: | = )", text
+        )
+        assert quoted or name in VALUES or UNLIKE_WORDS.search(name), (
+            f"{name!r} is prose: state a key, number, file or quoted name"
+        )
 
 
 def check_refusal(

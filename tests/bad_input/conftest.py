@@ -12,6 +12,8 @@ import pytest
 
 from lamella.command.main import main
 from lamella.files.own import write_summary
+from messages import text_faults
+from refusals import check_stated
 
 
 def fingerprint(folder: Path) -> dict[str, str]:
@@ -24,14 +26,17 @@ def fingerprint(folder: Path) -> dict[str, str]:
 
 @pytest.fixture
 def refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
-    """Run a project that has to be refused over an earlier run's folder; returns the message."""
+    """Run a project that has to be refused over an earlier run's folder; returns the message.
+
+    What it has to state are numbers and names as of `refusals.check_stated`; a key that comes first is the message's.
+    """
     monkeypatch.chdir(tmp_path)
     earlier = tmp_path / "out" / "p"
     earlier.mkdir(parents=True)
     write_summary(earlier, {"name": "an earlier run"})
     before = fingerprint(tmp_path)
 
-    def refused(project: str | bytes, *words: str, at: str = "", lines: int = 2) -> str:
+    def refused(project: str | bytes, *stated: str | float, at: str = "", lines: int = 2) -> str:
         content = project if isinstance(project, bytes) else project.encode()
         (tmp_path / "p.toml").write_bytes(content)
         start = time.perf_counter()
@@ -49,9 +54,12 @@ def refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capt
             assert leaf in line or f"{leaf} = " not in content.decode(), errors
         assert "Traceback" not in told.err
         assert told.out == ""
-        for word in words:
-            assert word in errors, f"{word!r} not in {errors}"
+        numbers = [one for one in stated if not isinstance(one, str)]
+        check_stated(errors, numbers, [one for one in stated if isinstance(one, str)])
+        if stated and isinstance(stated[0], str) and re.fullmatch(r"\w+(\.[\w-]+)+", stated[0]):
+            assert f": {stated[0]}: " in errors, errors
         assert errors.count("remedy: ") >= 1, errors
+        assert not text_faults(errors), (text_faults(errors), errors)
         assert errors.count("\n") <= lines, errors
         assert max(map(len, errors.splitlines())) <= 300, errors
         (tmp_path / "p.toml").unlink()

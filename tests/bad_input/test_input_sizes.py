@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import time
 import tracemalloc
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import ezdxf
 import numpy as np
 import pytest
 
-from lamella.base.errors import InputError
 from lamella.files.quad_mesh_files import read_quad_mesh
 from lamella.files.read import file_mesh
 from lamella.files.read.file_mesh import TEXT_BLOCK, blocks
@@ -21,41 +20,43 @@ from lamella.files.read.mesh_ply import read_ply
 from lamella.files.read.mesh_stl import read_stl
 from lamella.project.read import parse_project, read_project
 from lamella.stages.surface.boundary_of_tables import boundary_loops
+from refusals import refused
 
 UNDULOID = '[surface]\nkind = "unduloid"\nneck_radius = 1.6\nbulge_radius = 2.8\nheight = [-1.0, 1.0]\n'
 SECONDS = 15
 """Of computing: each of these took minutes, or for ever; a few seconds are needed on a slow machine."""
 
 
-def refusal(read: Callable[[], object]) -> InputError:
-    """The error with which something is refused, within time."""
+def check_refused(
+    read: Callable[[], object], where: str | None = None, numbers: Sequence[float] = (), names: Sequence[str] = ()
+) -> None:
+    """Fail unless something is refused within time, and the error states where, numbers and names."""
     start = time.process_time()
-    with pytest.raises(InputError) as refused:
+    with refused(where, numbers, names):
         read()
     assert time.process_time() - start < SECONDS
-    return refused.value
 
 
 @pytest.mark.parametrize(
-    ("text", "words"),
+    ("text", "numbers"),
     [
-        ("a." * 100_000 + "b = 1\n", "key of more than 32 parts: a.a.a"),
-        (UNDULOID + "[" + '"a b" . ' * 50_000 + "b]\n", "key of more than 32 parts"),
-        (UNDULOID + "".join(f"a{k} = 1\n" for k in range(60_000)), "unknown key"),
-        (UNDULOID + "".join(f"[a{k}]\n" for k in range(30_000)), "unknown key"),
-        (UNDULOID + "a = " + "[" * 400_000, "nested too deep"),
-        (UNDULOID + "a = " + "9" * 1_000_000, "number of thousands of digits"),
+        ("a." * 100_000 + "b = 1\n", [32]),
+        (UNDULOID + "[" + '"a b".' * 50_000 + "b]\n", [32]),
+        (UNDULOID + "".join(f"a{k} = 1\n" for k in range(60_000)), [60_000 - 6]),
+        (UNDULOID + "".join(f"[a{k}]\n" for k in range(30_000)), [30_000 - 6]),
+        (UNDULOID + "a = " + "[" * 400_000, []),
+        (UNDULOID + "a = " + "9" * 1_000_000, []),
     ],
     ids=["dotted", "header", "keys", "tables", "nested", "digits"],
 )
-def test_projects(tmp_path: Path, text: str, words: str) -> None:
+def test_projects(tmp_path: Path, text: str, numbers: list[float]) -> None:
     (tmp_path / "p.toml").write_text(text)
-    assert words in str(refusal(lambda: read_project(tmp_path / "p.toml")))
+    check_refused(lambda: read_project(tmp_path / "p.toml"), numbers=numbers)
 
 
 def test_keys_of_many_errors_are_counted(tmp_path: Path) -> None:
     (tmp_path / "p.toml").write_text(UNDULOID + "".join(f"a{k} = 1\n" for k in range(1000)))
-    assert "and 994 more errors" in str(refusal(lambda: read_project(tmp_path / "p.toml")))
+    check_refused(lambda: read_project(tmp_path / "p.toml"), numbers=[994], names=["surface.a0"])
 
 
 @pytest.mark.parametrize("text", ["name = '" + "a." * 100 + "'\n", "# " + "a." * 100 + "\n" + 'name = "x"\n'])
@@ -67,9 +68,9 @@ def test_dots_in_texts_are_no_keys(tmp_path: Path, text: str) -> None:
 
 def test_lines_without_end() -> None:
     for data in (b"f " + b"1 " * 2_000_000, b"v 0 0 0\n# " + b"a" * (2 * TEXT_BLOCK)):
-        assert "line of more than" in refusal(lambda data=data: read_obj(data)).message  # type: ignore[misc]
+        check_refused(lambda data=data: read_obj(data), "path")  # type: ignore[misc]
     text = b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n" + b"1" * (2 * TEXT_BLOCK)
-    assert "line of more than" in refusal(lambda: read_ply(text)).message
+    check_refused(lambda: read_ply(text), "path")
 
 
 def test_blocks_cover_a_text_and_end_where_lines_do() -> None:
@@ -96,7 +97,7 @@ def test_a_mesh_of_several_blocks_is_read_as_one() -> None:
     k = np.arange(1, count)
     assert (found.corners.reshape(-1, 4) == np.stack([2 * k + 1, 2 * k, 2 * k - 2, 2 * k - 2], 1)).all()
     broken = text + b"v 1 x 0\n"
-    assert f"vertex {2 * count + 1} is not three numbers" in refusal(lambda: read_obj(broken)).message
+    check_refused(lambda: read_obj(broken), "path", [2 * count + 1], ["v 1 x 0"])
 
 
 def test_a_text_takes_little_more_than_its_own_memory(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -114,31 +115,31 @@ def test_a_text_takes_little_more_than_its_own_memory(monkeypatch: pytest.Monkey
 def test_ply_headers_that_claim() -> None:
     head = "ply\nformat binary_little_endian 1.0\n"
     triangle = "property double x\nproperty double y\nproperty double z\n"
-    for rows, words in (
-        (f"element vertex {10**12}\n{triangle}", "ends before its 1000000000000 rows"),
-        (f"element vertex {10**12}\n", "1000000000000 rows of the element vertex"),
-        (f"element material {10**15}\nelement vertex 3\n{triangle}", "rows of the element material"),
-        (f"element face {10**9}\nproperty list uchar int vertex_indices\n", "ends before its"),
-        (f"element vertex {'9' * 5000}\n{triangle}", "line that is not known"),
+    for rows, numbers in (
+        (f"element vertex {10**12}\n{triangle}", [10**12]),
+        (f"element vertex {10**12}\n", [10**12]),
+        (f"element material {10**15}\nelement vertex 3\n{triangle}", [10**15]),
+        (f"element face {10**9}\nproperty list uchar int vertex_indices\n", [10**9]),
+        (f"element vertex {'9' * 5000}\n{triangle}", []),
     ):
         data = f"{head}{rows}end_header\n".encode() + bytes(100)
-        assert words in refusal(lambda data=data: read_ply(data)).message  # type: ignore[misc]
+        check_refused(lambda data=data: read_ply(data), "path", numbers)  # type: ignore[misc]
 
 
 def test_an_stl_that_ends_in_spaces() -> None:
     data = b"solid a\nfacet normal 0 0 1\nendfacet\n" + (b"endsolid" + b" " * 300_000 + b"x\n") * 2 + b"facet"
-    assert "breaks off" in refusal(lambda: read_stl(data)).message
+    check_refused(lambda: read_stl(data), "path", [1])
 
 
 def test_files_beyond_the_limit_are_not_read(tmp_path: Path) -> None:
     for name, size in (("a.obj", 260_000_000), ("a.json", 70_000_000)):
         with (tmp_path / name).open("wb") as file:
             file.truncate(size)  # takes no room on the disk
-        assert "MB" in refusal(lambda name=name: read_quad_mesh(tmp_path / name)).message  # type: ignore[misc]
-    assert "260 MB" in refusal(lambda: read_mesh(tmp_path / "a.obj")).message
+        check_refused(lambda name=name: read_quad_mesh(tmp_path / name), names=["MB"])  # type: ignore[misc]
+    check_refused(lambda: read_mesh(tmp_path / "a.obj"), "path", [260])
     with (tmp_path / "a.dxf").open("wb") as file:
         file.truncate(70_000_000)
-    assert "70 MB" in refusal(lambda: loops(tmp_path / "a.dxf")).message
+    check_refused(lambda: loops(tmp_path / "a.dxf"), "surface.boundary[0].file", [70])
 
 
 def loops(path: Path) -> object:
@@ -166,7 +167,7 @@ def test_blocks_without_end(tmp_path: Path, fill: Callable[[ezdxf.document.Drawi
     drawing = ezdxf.new()
     fill(drawing)
     drawing.saveas(tmp_path / "a.dxf")
-    assert "more than 20,000 block instances" in refusal(lambda: loops(tmp_path / "a.dxf")).message
+    check_refused(lambda: loops(tmp_path / "a.dxf"), "surface.boundary[0].file", [20_000])
 
 
 @pytest.mark.parametrize(
@@ -181,11 +182,11 @@ def test_curves_of_impossible_numbers(tmp_path: Path, add: Callable[[object], ob
     drawing = ezdxf.new()
     add(drawing.modelspace())
     drawing.saveas(tmp_path / "a.dxf")
-    assert "1 curve with impossible numbers" in refusal(lambda: loops(tmp_path / "a.dxf")).message
+    check_refused(lambda: loops(tmp_path / "a.dxf"), "surface.boundary[0].file", [1])
 
 
 @pytest.mark.parametrize("attributes", ["7", '"x"', "[1]", "true"])
 def test_a_compas_vertex_without_attributes(tmp_path: Path, attributes: str) -> None:
     mesh = '{"data": {"vertex": {"v": ATTRIBUTES}, "face": {"0": ["v", "v", "v", "v"]}}}'
     (tmp_path / "a.json").write_text(mesh.replace("ATTRIBUTES", attributes))
-    assert "vertex v has no table of attributes" in refusal(lambda: read_quad_mesh(tmp_path / "a.json")).message
+    check_refused(lambda: read_quad_mesh(tmp_path / "a.json"))

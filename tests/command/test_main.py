@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import re
@@ -17,9 +18,18 @@ from lamella import __version__
 from lamella.command.main import main
 from lamella.project.read import parse_project
 from lamella.project.tables import FURTHER_TABLES, SURFACE_TABLES, BoundaryTable
+from messages import text_faults
 
 COMMANDS = ("run", "new", "check", "optimise", "examples", "schema")
 EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def check_told(err: str, *names: str) -> None:
+    """Fail unless a refusal was printed that gives names, with its remedy and nothing of Python."""
+    assert err.startswith("lamella: "), err
+    assert "\n  remedy: " in err
+    assert not text_faults(err), text_faults(err)
+    assert all(name in err for name in names), err
 
 
 # --- help, version, commands ------------------------------------------------------------------------------------
@@ -62,26 +72,26 @@ def test_no_arguments_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None
     assert main([]) == 2
     told = capsys.readouterr()
     assert told.out == ""
-    assert "lamella new unduloid" in told.err
+    assert told.err.startswith("usage: lamella")
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("arguments", "name"),
     [
-        (["rnu"], "invalid choice: 'rnu'"),
-        (["run"], "required: project"),
-        (["new"], "required: kind"),
-        (["run", "p.toml", "--bogus"], "unrecognized arguments: --bogus"),
-        (["schema", "mesh"], "invalid choice: 'mesh'"),
-        (["examples", "--copy"], "--copy: expected one argument"),
+        (["rnu"], "'rnu'"),
+        (["run"], "project"),
+        (["new"], "kind"),
+        (["run", "p.toml", "--bogus"], "--bogus"),
+        (["schema", "mesh"], "'mesh'"),
+        (["examples", "--copy"], "--copy"),
     ],
 )
-def test_wrong_arguments(here: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str) -> None:
+def test_wrong_arguments(here: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], name: str) -> None:
     with pytest.raises(SystemExit) as end:
         main(arguments)
     assert end.value.code == 2
     told = capsys.readouterr().err
-    assert words in told
+    assert name in told
     assert told.endswith("--help\n")
     assert told.count("\n") == 2
 
@@ -123,10 +133,13 @@ def test_a_new_project_is_good_and_mentions_every_key(
     assert keys - wanted == OTHER_KEYS[kind == "form-found"]
     assert "[m]" in text
     assert main(["check", f"{kind}.toml"]) == 0
-    assert f"{kind}.toml: a good project. {kind}, H = " in capsys.readouterr().out
-    found = kind in ("form-found", "mesh")
-    assert main(["run", f"{kind}.toml", "--until", "surface" if found else "network", "--quiet"]) == 0
-    assert (here / "out" / kind / ("surface.3dm" if found else "network.json")).is_file()
+    checked = capsys.readouterr()
+    assert checked.out.startswith(f"{kind}.toml: ")
+    assert "warning" not in checked.err
+    # those of surfaces that have to be found are run by tests/project/test_starter.py
+    if kind not in ("form-found", "mesh"):
+        assert main(["run", f"{kind}.toml", "--until", "network", "--quiet"]) == 0
+        assert (here / "out" / kind / "network.json").is_file()
 
 
 _OTHERS = {".name", *(f"materials.{key}" for key in ("density", "youngs_modulus", "shear_modulus", "strength"))}
@@ -163,29 +176,25 @@ def test_new_to_the_screen_and_to_other_places(here: Path, capsys: pytest.Captur
     assert main(["new", "scherk", "--out", "mine.toml"]) == 0
     assert 'name = "mine"' in (here / "mine.toml").read_text()
     capsys.readouterr()
-    for target, words in (
-        ("p.toml", "p.toml is there already\n  remedy: name another file with --out, or move it away"),
-        ("none/p.toml", "none: no such folder\n  remedy: make it first"),
-        ("p.toml/x.toml", "p.toml: no such folder"),
-    ):
+    for target, names in (("p.toml", ["p.toml", "--out"]), ("none/p.toml", ["none"]), ("p.toml/x.toml", ["p.toml"])):
         assert main(["new", "scherk", "--out", target]) == 2
-        assert words in capsys.readouterr().err
+        check_told(capsys.readouterr().err, *names)
     assert (here / "p.toml").read_bytes() == before["p.toml"]
 
 
 @pytest.mark.parametrize(
-    ("kind", "words"),
+    ("kind", "names"),
     [
-        ("undoloid", "unknown kind 'undoloid', did you mean 'unduloid'?"),
-        ("sphere", "every point is umbilic"),
-        ("form_found", "unknown kind 'form_found', did you mean 'form-found'?"),
+        ("undoloid", ["'undoloid'", "'unduloid'"]),
+        ("sphere", ["'sphere'"]),
+        ("form_found", ["'form_found'", "'form-found'"]),
     ],
 )
-def test_new_of_an_unknown_kind(here: Path, capsys: pytest.CaptureFixture[str], kind: str, words: str) -> None:
+def test_new_of_an_unknown_kind(here: Path, capsys: pytest.CaptureFixture[str], kind: str, names: list[str]) -> None:
     assert main(["new", kind]) == 2
     told = capsys.readouterr().err
-    assert words in told
-    assert "remedy: choose one of unduloid" in told
+    check_told(told, *names)
+    assert all(kind in told.partition("remedy: ")[2] for kind in SURFACE_TABLES)
     assert not (here / f"{kind}.toml").exists()
 
 
@@ -201,15 +210,15 @@ def test_examples(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     }
     capsys.readouterr()
     before = contents(here)
-    for arguments, words in (
-        (["01_undoloid", "--copy", "other"], "no example '01_undoloid.toml', did you mean '01_unduloid.toml'?"),
-        (["../p", "--copy", "other"], "no example '../p.toml'\n  remedy: there are 01_"),
-        (["--copy", "deep/mine"], "01_unduloid.toml is there already\n  remedy: name another folder"),
-        (["--copy", "p.toml"], "p.toml is a file\n  remedy: name a folder with --copy"),
-        (["--copy", "p.toml/deep"], "Not a directory"),
+    for arguments, wanted in (
+        (["01_undoloid", "--copy", "other"], ["01_undoloid.toml", "01_unduloid.toml"]),
+        (["../p", "--copy", "other"], ["../p.toml", "01_unduloid.toml"]),
+        (["--copy", "deep/mine"], ["01_unduloid.toml"]),
+        (["--copy", "p.toml"], ["p.toml", "--copy"]),
+        (["--copy", "p.toml/deep"], [os.strerror(errno.ENOTDIR)]),
     ):
         assert main(["examples", *arguments]) == 2
-        assert words in capsys.readouterr().err
+        check_told(capsys.readouterr().err, *wanted)
     assert contents(here) == before
     # with the files they name
     assert main(["examples", "--copy", "one", "16_hall"]) == 0
@@ -233,10 +242,10 @@ def test_examples_are_good(path: Path, capsys: pytest.CaptureFixture[str]) -> No
         pytest.skip("found by test_examples.py")
     assert main(["check", str(path)]) == 0
     told = capsys.readouterr()
-    more = r"  only a run can tell whether [\d,]+ nodes keep tolerance = \S+ \(checked: 0\.02\)\n" if found else ""
-    head = r"(a good project|it runs, with \d warnings?)"
-    assert re.search(rf"{head}\. \S+, H = \S+ 1/m, \d+ cells, about [\d,]+ nodes\n{more}$", told.out)
-    assert ("nodes: |H - H0| up to" in told.err) == found
+    # one line for all, and one for what coarse elements leave to the run
+    first, *left = told.out.removeprefix(f"{path}: ").splitlines()
+    assert re.search(r"H = \S+ 1/m, \d+ cells, \D*[\d,]+ nodes$", first)
+    assert len(left) == found
     assert found or all(line.startswith("warning: ") for line in told.err.splitlines())
 
 
@@ -286,7 +295,7 @@ def test_progress_quiet_and_warnings(here: Path, capsys: pytest.CaptureFixture[s
     told = capsys.readouterr()
     assert told.out == ""
     assert all(line.startswith("warning: ") for line in told.err.splitlines())
-    assert "were millimetres meant?" in told.err
+    assert len(told.err.splitlines()) == 1
 
 
 def test_details_are_told_only_when_asked(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -301,23 +310,18 @@ def test_details_are_told_only_when_asked(here: Path, capsys: pytest.CaptureFixt
     with pytest.raises(SystemExit) as end:
         main(["run", "p.toml", "--quiet", "-v"])
     assert end.value.code == 2
-    assert "not allowed with argument --quiet" in capsys.readouterr().err
+    assert "--quiet" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
-    ("until", "words"),
-    [
-        (
-            "netwrk",
-            "--until: unknown stage 'netwrk', did you mean 'network'?\n  remedy: choose one of surface, network",
-        ),
-        ("", "--until: unknown stage ''\n  remedy: choose one of surface"),
-        ("structure", f"--until: stage 'structure' is not part of version {__version__} yet\n  remedy: leave --until"),
-    ],
+    ("until", "names"),
+    [("netwrk", ["'netwrk'", "'network'"]), ("", ["''"]), ("structure", ["'structure'", __version__])],
 )
-def test_stages_that_are_not_there(here: Path, capsys: pytest.CaptureFixture[str], until: str, words: str) -> None:
+def test_stages_that_are_not_there(
+    here: Path, capsys: pytest.CaptureFixture[str], until: str, names: list[str]
+) -> None:
     assert main(["run", "p.toml", "--until", until]) == 2
-    assert words in capsys.readouterr().err
+    check_told(capsys.readouterr().err, "--until", *names)
     assert sorted(p.name for p in here.iterdir()) == ["p.toml"]
 
 
@@ -325,18 +329,18 @@ def test_places_that_cannot_be_written(here: Path, capsys: pytest.CaptureFixture
     (here / "mine").mkdir()
     (here / "mine" / "thesis.txt").write_text("years of work")
     before = contents(here)
-    for out, words in (
-        ("p.toml", "p.toml is a file\n  remedy: choose another folder with --out"),
-        ("p.toml/o", "p.toml is a file\n  remedy: choose another folder with --out"),
-        ("p.toml/o/o", "p.toml is a file"),
-        ("mine", "is not empty and is no earlier run's: it holds thesis.txt\n  remedy: choose another folder"),
-        (".", "is not empty and is no earlier run's: it holds mine/, p.toml"),
-        ("/", "cannot be replaced as a whole\n  remedy: name a folder inside it"),
-        ("x" * 300, "x cannot be used: "),
+    for out, names in (
+        ("p.toml", ["p.toml", "--out"]),
+        ("p.toml/o", ["p.toml", "--out"]),
+        ("p.toml/o/o", ["p.toml"]),
+        ("mine", ["thesis.txt"]),
+        (".", ["mine/", "p.toml"]),
+        ("/", []),
+        ("x" * 300, [os.strerror(errno.ENAMETOOLONG)]),
     ):
         assert main(["run", "p.toml", "--out", out]) == 2
         told = capsys.readouterr().err
-        assert words in told or (out == "x" * 300 and "File name too long" in told), told
+        check_told(told.replace("x" * 300, "x"), *names)
         assert "area" not in told  # refused before any work
     assert contents(here) == before
 
@@ -345,7 +349,7 @@ def test_places_that_cannot_be_written(here: Path, capsys: pytest.CaptureFixture
 def test_a_folder_without_the_right_to_write(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (here / "locked").mkdir(mode=0o500)
     assert main(["run", "p.toml", "--out", "locked/o"]) == 2
-    assert "no right to write in" in capsys.readouterr().err
+    check_told(capsys.readouterr().err, "locked")
 
 
 def test_an_empty_folder_and_missing_parents_are_filled(here: Path) -> None:

@@ -5,9 +5,10 @@ import itertools
 import numpy as np
 import pytest
 
-from lamella import InputError, Unduloid, quad_mesh
+from lamella import Unduloid, quad_mesh
 from lamella.projection.polylines import diagonal_ring, polylines
 from projection.nets import grid_faces, lamella_patch, rotational_net, spider
+from refusals import refused
 
 UNDULOID = Unduloid(0.6, 1.4, (-6.0, 6.0))
 
@@ -56,16 +57,16 @@ def test_ring_of_a_rotational_net_is_a_parallel_circle() -> None:
 
 def test_ring_refused() -> None:
     mesh = lamella_patch(UNDULOID, 6, 1.0)
-    with pytest.raises(InputError, match=r"no diagonal .* vertex 14 .* closes"):
+    with refused(numbers=(14,)):
         diagonal_ring(mesh, 14)
-    with pytest.raises(InputError, match="no diagonal"):
+    with refused(numbers=(0,)):
         diagonal_ring(mesh, 0)
-    with pytest.raises(InputError, match="no vertex 36"):
+    with refused(numbers=(36, 35)):
         diagonal_ring(mesh, 36)
     n = np.arange(8)
     u, v = (x.ravel() for x in np.meshgrid(2 * np.pi * n / 8, 2 * np.pi * n / 8, indexing="ij"))
     torus = np.column_stack([(3 + np.cos(v)) * np.cos(u), (3 + np.cos(v)) * np.sin(u), np.sin(v)])
     i, j = (x.ravel() for x in np.meshgrid(n, n, indexing="ij"))
     a, b = (i + 1) % 8, (j + 1) % 8
-    with pytest.raises(InputError, match="both diagonals"):
+    with refused(numbers=(9,)):
         diagonal_ring(quad_mesh(torus, np.column_stack([8 * i + j, 8 * a + j, 8 * a + b, 8 * i + b])), 9)

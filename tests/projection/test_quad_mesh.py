@@ -7,9 +7,9 @@ by walking on a grid, each once. 3. Vertices of valence 3, 5 and 6 are found and
 import numpy as np
 import pytest
 
-from lamella import InputError
 from lamella.projection.quad_mesh import quad_mesh
 from projection.nets import grid_faces, spider
+from refusals import refused
 
 
 def grid(rows: int, columns: int, closed: bool = False):
@@ -99,41 +99,41 @@ def test_order_of_faces_and_start_of_quads_do_not_matter() -> None:
 
 class TestRefused:
     def test_nothing(self) -> None:
-        with pytest.raises(InputError, match="at least one quad"):
+        with refused(numbers=(0, 4)):
             quad_mesh(np.zeros((4, 3)), np.zeros((0, 4), int))
 
     def test_triangles(self) -> None:
-        with pytest.raises(InputError, match="at least one quad"):
+        with refused(numbers=(1, 3)):
             quad_mesh(np.zeros((3, 3)), np.array([[0, 1, 2]]))
-        with pytest.raises(InputError, match="a vertex comes twice"):
+        with refused(numbers=(0, 1, 2)):
             quad_mesh(np.eye(3), np.array([[0, 1, 2, 2]]))
 
     def test_numbers_that_are_none(self) -> None:
         points = np.array([[0.0, 0, 0], [1, 0, 0], [1, np.nan, 0], [0, 1, 0]])
-        with pytest.raises(InputError, match="vertex 2"):
+        with refused(numbers=(2,)):
             quad_mesh(points, np.array([[0, 1, 2, 3]]))
 
     def test_index_outside(self) -> None:
-        with pytest.raises(InputError, match="names vertex 4"):
+        with refused(numbers=(4, 3)):
             quad_mesh(np.zeros((4, 3)), np.array([[0, 1, 2, 4]]))
 
     def test_opposite_sense(self) -> None:
         mesh = grid(2, 3)
         faces = mesh.faces.copy()
         faces[1] = faces[1, ::-1]
-        with pytest.raises(InputError, match="faces 0 and 1 both run"):
+        with refused(numbers=(0, 1)):
             quad_mesh(mesh.vertices, faces)
 
     def test_fans_that_touch(self) -> None:
         faces = np.array([[0, 1, 2, 3], [2, 4, 5, 6]])
-        with pytest.raises(InputError, match="at vertex 2"):
+        with refused(numbers=(2,)):
             quad_mesh(np.random.default_rng(0).normal(size=(7, 3)), faces)
 
     def test_closed_surfaces_that_touch(self) -> None:
         cube = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
         other = cube + 8
         other[other == 8] = 0
-        with pytest.raises(InputError, match="at vertex 0"):
+        with refused(numbers=(0,)):
             quad_mesh(np.random.default_rng(0).normal(size=(16, 3)), np.vstack([cube, other]))
 
 
@@ -150,5 +150,5 @@ def test_families_of_polylines() -> None:
 
 @pytest.mark.parametrize("valence", [3, 5])
 def test_families_swap_around_odd_valences(valence: int) -> None:
-    with pytest.raises(InputError, match=f"has {valence} neighbours"):
+    with refused(numbers=(valence, 90)):
         _ = quad_mesh(*spider(valence)).families

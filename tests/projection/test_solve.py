@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from lamella import Catenoid, InputError
+from lamella import Catenoid
 from lamella.projection.constraint import Constraint
 from lamella.projection.constraints.edge_length import EdgeLength
 from lamella.projection.constraints.fairness import SECOND, Fairness
@@ -27,6 +27,7 @@ from lamella.projection.problems.asymptotic import asymptotic
 from lamella.projection.solve import solve
 from lamella.projection.unknowns import Block, Layout, Slot
 from projection.nets import lamella_patch, noisy
+from refusals import refused
 
 EDGES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
 
@@ -235,36 +236,36 @@ class TestUncertainty:
 
 class TestRefused:
     def test_names_given_twice(self) -> None:
-        with pytest.raises(InputError, match="several constraints are called 'lengths'"):
+        with refused(names=("lengths",)):
             solve([square()], [lengths(), lengths()])
-        with pytest.raises(InputError, match="two blocks are called 'vertices'"):
+        with refused(names=("vertices",)):
             solve([square(), square()], [lengths()])
 
     def test_nothing_hard(self) -> None:
-        with pytest.raises(InputError, match="no constraint is hard"):
+        with refused(names=("hard=True",)):
             solve([square()], [lengths(hard=False)])
 
     def test_hard_that_fades(self) -> None:
-        with pytest.raises(InputError, match="hard and fades"):
+        with refused(names=("lengths", "hard=False")):
             solve([square()], [lengths(fade=0.5)])
 
     @pytest.mark.parametrize("bad", [-1.0, np.nan, np.inf])
     def test_weight(self, bad: float) -> None:
-        with pytest.raises(InputError, match="weight"):
+        with refused(names=("lengths",), numbers=(bad,) if np.isfinite(bad) else ()):
             solve([square()], [lengths(weight=bad)])
 
     def test_unknown_block_and_index(self) -> None:
-        with pytest.raises(InputError, match="there is no block 'vertices'"):
+        with refused(names=("vertices",)):
             solve([Block("points", square().values)], [lengths()])
-        with pytest.raises(InputError, match="index 3 is outside"):
+        with refused(numbers=(3, 2), names=("vertices",)):
             solve([Block("vertices", square().values[:3])], [lengths()])
 
     def test_values_that_are_no_numbers(self) -> None:
-        with pytest.raises(InputError, match="no numbers"):
+        with refused(numbers=(12,), names=("vertices",)):
             solve([Block("vertices", np.full((4, 3), np.nan))], [lengths()])
-        with pytest.raises(InputError, match="scale"):
+        with refused(numbers=(0.0,), names=("vertices",)):
             solve([Block("vertices", square().values, 0.0)], [lengths()])
 
     def test_limits(self) -> None:
-        with pytest.raises(InputError, match="tolerance"):
+        with refused(names=("tolerance",), numbers=(0.0,)):
             solve([square()], [lengths()], tolerance=0.0)

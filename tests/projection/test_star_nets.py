@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lamella import Catenoid, Enneper, InputError, Unduloid
+from lamella import Catenoid, Enneper, Unduloid
 from lamella.projection.constraints.curved_star import CurvedStar
 from lamella.projection.constraints.leg_directions import LegDirections
 from lamella.projection.constraints.right_angle import RightAngle
@@ -29,6 +29,7 @@ from lamella.projection.unknowns import Block
 from lamella.projection.vertex_normals import smoothed_normals
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from projection.nets import hexagonal_net, lamella_patch, noisy, rotational_net, spider, weingarten_patch
+from refusals import refused
 
 NOISE = 0.02
 CATENOID = Catenoid(1.0, (-1.5, 1.5))
@@ -256,38 +257,38 @@ class TestGivenAngle:
 
 class TestRefused:
     def test_no_inner_vertices(self) -> None:
-        with pytest.raises(InputError, match="no inner vertex"):
+        with refused():
             asymptotic(lamella_patch(CATENOID, 2, 0.5))
 
     def test_radius_in_another_unit(self) -> None:
         mesh = lamella_patch(UNDULOID, 8, 1.0)
-        with pytest.raises(InputError, match="mean edges"):
+        with refused(names=("radius",), numbers=(2,)):
             sphere_stars(mesh.at(1000 * mesh.vertices), radius=2.0)
 
     @pytest.mark.parametrize("bad", [0.0, -1.0, np.nan])
     def test_radius_that_is_none(self, bad: float) -> None:
-        with pytest.raises(InputError, match="radius"):
+        with refused(names=("radius",)):
             sphere_stars(lamella_patch(UNDULOID, 8, 1.0), radius=bad)
 
     def test_form_and_angle(self) -> None:
         mesh = lamella_patch(UNDULOID, 8, 1.0)
-        with pytest.raises(InputError, match="circles, chords, faces"):
+        with refused(names=("form", "edges")):
             asymptotic(mesh, form="edges")  # type: ignore[arg-type]
-        with pytest.raises(InputError, match="right angles only"):
+        with refused(names=("form", "angle"), numbers=(80,)):
             asymptotic(mesh, angle=80.0, form="faces")
-        with pytest.raises(InputError, match="170"):
+        with refused(names=("angle",), numbers=(200, 170)):
             asymptotic(mesh, angle=200.0)
 
     def test_edge_without_length(self) -> None:
         mesh = lamella_patch(UNDULOID, 8, 1.0)
         points = mesh.vertices.copy()
         points[9] = points[10]
-        with pytest.raises(InputError, match="in one place"):
+        with refused(numbers=(9, 10)):
             asymptotic(mesh.at(points))
 
     def test_families_that_swap(self) -> None:
         points, faces = spider(5)
-        with pytest.raises(InputError, match="has 5 neighbours"):
+        with refused(numbers=(5, 90)):
             asymptotic(quad_mesh(points, faces), angle=80.0)
 
 
@@ -329,5 +330,5 @@ def test_sums_of_opposite_angles() -> None:
 
 def test_loose_vertex_is_refused() -> None:
     mesh = lamella_patch(CATENOID, 8, 1.0)
-    with pytest.raises(InputError, match="vertex 64 has no normal"):
+    with refused(numbers=(64,)):
         asymptotic(quad_mesh(np.vstack([mesh.vertices, [[9.0, 9, 9]]]), mesh.faces))

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from lamella import InputError, compute, parse_project
+from lamella import compute, parse_project
 from lamella.stages.check import COARSE, MOST_TRACED, check_project
 from network.adjust.test_adjust import sketch
 from network.streamlines.test_kept_lines import hypar, write_grid
+from refusals import check_stated, keys, refused
 
 TURNS = 2 * np.pi * np.arange(12) / 12
 SADDLE = np.stack([5 * np.cos(TURNS), 4 * np.sin(TURNS), 0.8 * np.cos(2 * TURNS)], 1).tolist()
@@ -25,9 +25,13 @@ def film(tables: dict[str, Any] | None = None, **surface: Any) -> dict[str, Any]
     }
 
 
+# strips for which no other number of cells is searched: low, and with ends too short to meet beyond the rim
+SMALL = {"lamella": {"height": 1e-3, "thickness": 1e-4}, "fabrication": {"end_distance": 1e-3, "rim_overhang": 0.0}}
+
+
 def annulus(**network: Any) -> dict[str, Any]:
     tables = sketch(3)
-    return {"surface": tables["surface"] | {"tolerance": 5e-3}, "network": network}
+    return {"surface": tables["surface"] | {"tolerance": 5e-3}, "network": network} | SMALL
 
 
 @pytest.mark.parametrize(
@@ -37,7 +41,8 @@ def annulus(**network: Any) -> dict[str, Any]:
         film({"network": {"spacing": 0.4, "every": [2, 1]}}),
         film({"network": {"cells": 16, "normal_curvature": 0.01}}),
         film({"network": {"cells": 12, "kind": "principal"}}),
-        annulus(cells=24),
+        # closed, so that no strips end within
+        annulus(cells=24, closing="round"),
     ],
     ids=["cells", "spacing", "lines", "principal", "annulus"],
 )
@@ -61,29 +66,24 @@ def rings(distance: float) -> list[dict[str, Any]]:
 
 
 @pytest.mark.parametrize(
-    ("tables", "words", "key"),
+    ("tables", "key", "numbers"),
     [
-        (film({"network": {"cells": 2000}}), "would make about", "network.cells"),
-        (film({"network": {"spacing": 1e-3}}), "would make about", "network.spacing"),
-        (film({"network": {"spacing": 5.0}}), "cells across the surface, at least 3", "network.spacing"),
-        (film({"network": {"cells": 8, "minimum_length": 100.0}}), "no two lamellas cross", "network.minimum_length"),
-        (
-            film({"network": {"normal_curvature": 9.0}}),
-            "no direction of the surface has it",
-            "network.normal_curvature",
-        ),
-        (annulus(cells=25, every=2), "is no multiple of 2", "network.cells"),
-        (film(boundary=rings(1.001 * FOLD * 3.0)), "rings are", "surface.boundary"),
-        (film(boundary=rings(3.9), most_nodes=500), "more than tolerance = 0.002", "surface.tolerance"),
-        (film(mean_curvature=2.0), "no surface in this boundary bends that much", "surface.mean_curvature"),
+        (film({"network": {"cells": 2000}}), "network.cells", [2000, 500_000]),
+        (film({"network": {"spacing": 1e-3}}), "network.spacing", [1e-3, 500_000]),
+        (film({"network": {"spacing": 5.0}}), "network.spacing", [5, 3]),
+        (film({"network": {"cells": 8, "minimum_length": 100.0}}), "network.minimum_length", [100]),
+        (film({"network": {"normal_curvature": 9.0}}), "network.normal_curvature", [9]),
+        (annulus(cells=25, every=2), "network.cells", [25, 2]),
+        (film(boundary=rings(1.001 * FOLD * 3.0)), "surface.boundary", [1.001 * FOLD * 3.0]),
+        (film(boundary=rings(3.9), most_nodes=500), "surface.tolerance", [0.002, 500]),
+        (film(mean_curvature=2.0), "surface.mean_curvature", [2]),
     ],
 )
-def test_what_a_run_refuses(tables: dict[str, Any], words: str, key: str) -> None:
+def test_what_a_run_refuses(tables: dict[str, Any], key: str, numbers: list[float]) -> None:
     project = parse_project(tables)
-    for look in (check_project, compute):
-        with pytest.raises(InputError, match=words) as refused:
-            look(project)
-        assert refused.value.where == key
+    for compute_or_check in (check_project, compute):
+        with refused(key, numbers):
+            compute_or_check(project)
 
 
 def test_what_is_left_to_the_run() -> None:
@@ -91,13 +91,16 @@ def test_what_is_left_to_the_run() -> None:
     checked = check_project(project)
     assert checked.nodes is not None
     assert checked.nodes > MOST_TRACED
-    assert checked.left == ("whether all lamellas can be traced, and their strips (checked up to 5,000 nodes)",)
-    assert str(checked).endswith("\n  only a run can tell " + checked.left[0])
-    adjusted = annulus(cells=24, closing="adjust")
-    assert "whether the boundary can be adjusted" in check_project(parse_project(adjusted)).left[-1]
-    low = check_project(parse_project(film(order=2)))
-    assert "order = 2 takes about 500,000 nodes" in low.left[0]
-    assert check_project(parse_project(film(tolerance=COARSE))).left == ()
+    (left,) = checked.left
+    check_stated(left, [MOST_TRACED])
+    assert str(checked).endswith(left)
+    # of a net that is adjusted it is one thing more
+    rim = {"name": "rim", "points": SADDLE, "adjust": {"points": 0.1}}
+    adjusted = film({"network": {"cells": 10, "closing": "adjust"}}, boundary=[rim], tolerance=5e-3)
+    assert len(check_project(parse_project(adjusted)).left) == 2
+    low = check_project(parse_project(film(SMALL, order=2)))
+    check_stated(low.left[0], [2, 500_000], ["order"])
+    assert check_project(parse_project(film(SMALL, tolerance=COARSE))).left == ()
 
 
 @pytest.mark.parametrize("height", [0.0, 1.0, 3.0])
@@ -107,42 +110,35 @@ def test_spheres_and_planes_have_no_net(height: float) -> None:
     project = parse_project(film(boundary=[circle], mean_curvature=-2 * height / (height**2 + 16)))
     checked = check_project(project)
     assert checked.nodes is None
-    assert "no net" in str(checked)
     results = compute(project)
     assert results.network is None
     assert checked.warnings == tuple(results.summary["warnings"])
-    assert "ends with the surface" in checked.warnings[-1]
+    assert keys(checked.warnings)[-1] == "ends_with_surface"
 
 
 UNDULOID = {"kind": "unduloid", "neck_radius": 1.6, "bulge_radius": 2.8, "height": [-1.0, 1.0]}
 
 
-def words(message: str) -> str:
-    """A warning without its figures, lamellas and places."""
-    return re.sub(r"\b[AB]?[-\d.,]+", "#", re.sub(r"\(.*?\)", "()", message))
-
-
 @pytest.mark.parametrize(
     ("tables", "of"),
     [
-        ({"surface": UNDULOID, "lamella": {"height": 1.8, "layers": 1}}, ["cell edges", "smallest radius"]),
-        ({"surface": UNDULOID, "lamella": {"material": "S235", "thickness": 0.01, "layers": 1}}, ["utilisation"]),
-        ({"surface": UNDULOID, "lamella": {"layers": 1}, "fabrication": {"sheet": [1.5, 1.0]}}, ["split"]),
-        ({"surface": UNDULOID | {"neck_radius": 1600, "bulge_radius": 2800, "height": [-1e3, 1e3]}}, ["millimetres"]),
-        ({"surface": UNDULOID, "network": {"closing": "round"}, "lamella": {"layers": 1}}, ["nothing to do"]),
-        (film({"lamella": {"layers": 1}}, boundary=rings(3.5), branch="unstable"), ["unstable"]),
-        (film({"network": {"cells": 8}, "lamella": {"height": 2.0, "layers": 1}}), ["cell edges"]),
-        (film({"network": {"kind": "principal", "cells": 12}}), ["ends with the network"]),
+        ({"surface": UNDULOID, "lamella": {"height": 1.8, "layers": 1}}, ["cells_narrow", "strip_high"]),
+        ({"surface": UNDULOID, "lamella": {"material": "S235", "thickness": 0.01, "layers": 1}}, ["overstressed"]),
+        ({"surface": UNDULOID, "lamella": {"layers": 1}, "fabrication": {"sheet": [1.5, 1.0]}}, ["lamellas_split"]),
+        ({"surface": UNDULOID | {"neck_radius": 1600, "bulge_radius": 2800, "height": [-1e3, 1e3]}}, ["unit_large"]),
+        ({"surface": UNDULOID, "network": {"closing": "round"}, "lamella": {"layers": 1}}, ["closing_idle"]),
+        (film({"lamella": {"layers": 1}}, boundary=rings(3.5), branch="unstable"), ["film_unstable"]),
+        (film({"network": {"cells": 8}, "lamella": {"height": 2.0, "layers": 1}}), ["cells_narrow"]),
+        (film({"network": {"kind": "principal", "cells": 12}}), ["ends_with_network"]),
     ],
     ids=["high", "weak", "sheet", "millimetres", "closing", "unstable", "film", "principal"],
 )
 def test_what_a_run_warns_of(tables: dict[str, Any], of: list[str]) -> None:
-    """All of it, from closed forms to the letter, from coarse elements but for the figures."""
+    """All of it: from closed forms to the letter, from coarse elements the same but for the figures."""
     project = parse_project(tables)
     checked, run = check_project(project), compute(project).summary["warnings"]
-    for word in of:
-        assert any(word in message for message in checked.warnings)
-    assert set(map(words, checked.warnings)) == set(map(words, run))
+    assert set(of) <= set(keys(checked.warnings))
+    assert keys(checked.warnings) == keys(run)
     if not checked.coarse:
         assert list(checked.warnings) == run
     assert f"{len(run)} warning" in str(checked)
@@ -155,9 +151,8 @@ def test_adjusting_what_may_not_change() -> None:
     for boundary in ([sliding[0], held], [held]):
         project = parse_project(film({"network": {"closing": "adjust"}}, boundary=boundary))
         for look in (check_project, compute):
-            with pytest.raises(InputError) as refused:
+            with refused("surface.boundary"):
                 look(project)
-            assert refused.value.where == "surface.boundary"
 
 
 def test_a_mesh_kept_as_it_is(tmp_path: Path) -> None:
@@ -168,5 +163,5 @@ def test_a_mesh_kept_as_it_is(tmp_path: Path) -> None:
     assert checked.cells == 10
     # ten by ten crossings and the ends of twenty lamellas
     assert checked.nodes == pytest.approx(140, rel=0.1)
-    with pytest.raises(InputError, match="mean curvature varies"):
+    with refused("network.normal_curvature"):
         check_project(parse_project({"surface": table}), folder=tmp_path)

@@ -189,7 +189,9 @@ def test_every_file_and_message_is_in_the_drawings_coordinates(tmp_path: Path) -
     for name, at in (("here", np.zeros(3)), ("there", FAR)):
         folder = tmp_path / name
         folder.mkdir()
-        tables = film(drawn_as_dxf(folder, at)) | {"lamella": {"thickness": 0.004}}
+        tables = film(drawn_as_dxf(folder, at)) | {"lamella": {"thickness": 0.004, "height": 0.02}}
+        # ends too short to meet beyond the rim: no other number of cells is searched
+        tables["fabrication"] = {"end_distance": 0.012, "rim_overhang": 0.0}
         results = compute(parse_project(tables), folder=folder)
         write(results, folder / "out")
         project[name] = results

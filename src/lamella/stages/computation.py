@@ -192,6 +192,8 @@ class Computation:
 
 def _on_one_line(value: Any) -> Any:
     """A table of figures with each text on one line, without control characters: names come from files."""
+    if isinstance(value, Message):
+        return Message(value.key, one_line(value))
     if isinstance(value, str):
         return one_line(value)
     if isinstance(value, Mapping):

@@ -208,7 +208,8 @@ def test_rates_are_those_of_films_found_anew(held: str) -> None:
         assert len(set(order.tolist())) == len(here)
         return shifts[order]
 
-    for number in (3, 10, 27, 30, 32):
+    # a point of the rim, and the ring's place, size and tilt
+    for number in (10, 27, 30, 32):
         ahead = 0.02 * np.eye(freedom.count)[number]
         there = [films.moved(net, sign * ahead) for sign in (1, -1)]
         one, other = (matched(net.cells(step)) for net in there)

@@ -12,6 +12,7 @@ from lamella.surface.from_mesh.clean import CleanMesh, clean
 from lamella.surface.from_mesh.edges import face_normals, find_edges
 from lamella.surface.from_mesh.raw_mesh import RawMesh
 from lamella.surface.from_mesh.slivers import SLIVER_OF_EDGE
+from refusals import keys, refused, warned
 from surface.from_mesh.meshes import disc, grid, irregular, moebius, sphere, stl_bytes, torus, triangles
 
 POINTS, QUADS = grid(9, 9)
@@ -43,19 +44,16 @@ def area(mesh):
     return np.linalg.norm(face_normals(mesh.points, mesh.faces), axis=1).sum() / 2
 
 
-def refused(match, points, faces):
-    with pytest.raises(InputError, match=match) as caught:
+def check_refused(points, faces, numbers=(), names=()):
+    with refused("faces", numbers, names):
         clean(RawMesh(np.asarray(points, dtype=float), np.asarray(faces)))
-    assert caught.value.where == "faces"
-    assert caught.value.remedy
-    return caught.value
 
 
 def test_a_good_mesh_stays_as_it_is():
     mesh = cleaned(POINTS, FACES)
     assert (mesh.points == POINTS).all()
     assert (mesh.faces == FACES).all()
-    assert mesh.notes == ("normals: the file's own orientation",)
+    assert keys(mesh.notes) == ["normals_kept"]
     assert len(mesh.borders) == 1
     assert len(mesh.borders[0]) == 32
 
@@ -116,20 +114,20 @@ def test_orientation_is_the_files_own_or_outwards():
     assert (
         np.einsum("ij,ij->i", face_normals(inwards.points, inwards.faces), inwards.points[inwards.faces[:, 0]]) < 0
     ).all()
-    assert "file's own" in inwards.notes[-1]
+    assert keys(inwards.notes) == ["normals_kept"]
     mixed = faces.copy()
     mixed[1::2] = mixed[1::2, ::-1]
     outwards = cleaned(points, mixed)
     assert (
         np.einsum("ij,ij->i", face_normals(outwards.points, outwards.faces), outwards.points[outwards.faces[:, 0]]) > 0
     ).all()
-    assert "away from the centroid" in outwards.notes[-1]
+    warned(outwards.notes, "normals_outwards", [len(faces)])
     # A plane has no outside: most of the faces decide.
     flat = FACES.copy()
     flat[:20] = flat[:20, ::-1]
     mesh = cleaned(POINTS * [1, 1, 0], flat)
     assert (face_normals(mesh.points, mesh.faces)[:, 2] > 0).all()
-    assert "20 of 128 faces disagreed" in mesh.notes[-1]
+    warned(mesh.notes, "normals_most", [20, 128])
 
 
 def insert_on_edges(points, faces, rng, count, offset):
@@ -159,7 +157,7 @@ def test_slivers_go_and_the_shape_stays(seed):
     mesh = cleaned(needles, broken)
     assert len(mesh.points) == len(points)
     assert area(mesh) == pytest.approx(np.linalg.norm(face_normals(points, faces), axis=1).sum() / 2, rel=1e-3)
-    assert any("slivers removed" in note for note in mesh.notes)
+    warned(mesh.notes, "slivers_removed")
     assert find_edges(mesh.faces).lengths(mesh.points).min() > SLIVER_OF_EDGE / 10
 
 
@@ -170,7 +168,7 @@ def test_flat_triangles_are_flipped_inside_and_dropped_on_the_border():
     mesh = cleaned(points, faces)
     assert len(mesh.faces) == 5
     assert area(mesh) == pytest.approx(1.5, rel=1e-5)
-    assert any("1 sliver removed" in note for note in mesh.notes)
+    warned(mesh.notes, "slivers_removed", [1])
     mesh = cleaned(points[:5], faces[:4])
     assert len(mesh.faces) == 3
     assert len(mesh.borders[0]) == 5
@@ -197,7 +195,7 @@ def test_t_junctions_are_closed():
     mesh = cleaned(lower + upper, faces)
     assert area(mesh) == pytest.approx(4)
     assert len(mesh.borders) == 1
-    assert any("3 T-junctions closed" in note for note in mesh.notes)
+    warned(mesh.notes, "t_junctions_closed", [3])
 
 
 def test_cracks_are_refused():
@@ -206,7 +204,7 @@ def test_cracks_are_refused():
     points += [[-1, -1, 0], [-1, 1, 0], [2, -1, 0], [2, 1, 0]]
     faces = [[0, 4, 2], [4, 3, 2], [4, 1, 3], [5, 6, 1], [5, 1, 0]]
     faces += [[7, 5, 0], [7, 0, 8], [8, 0, 2], [6, 9, 1], [9, 10, 1], [1, 10, 3]]
-    refused(r"crack of 1 m length and 10 mm mean width at \(", points, faces)
+    check_refused(points, faces, [1, 10])
     # A slit that reaches the outer border.
     points, quads = grid(9, 9, lambda x, y: 0 * x)
     faces = triangles(quads)
@@ -215,14 +213,14 @@ def test_cracks_are_refused():
     points = np.vstack((points, points[slit[:-1]] + [1e-3, 0, 0]))
     right = points[faces].mean(axis=1)[:, 0] > 0.5
     faces[right] = np.vectorize(lambda v: copies.get(v, v))(faces[right])
-    refused(r"border comes within (1|0\.\d+) mm of itself", points, faces)
+    check_refused(points, faces)
 
 
 def test_non_manifold_edges_are_refused_with_place():
     points = np.vstack((POINTS, [[0.5, 0.5, 2]]))
     middle = int(np.flatnonzero((POINTS[:, :2] == 0.5).all(axis=1))[0])
     fin = [middle, middle + 1, len(POINTS)]
-    refused(r"1 edge with more than two faces; the first has 3, at \(0.5, 0.5625, 0.0844\) m", points, [*FACES, fin])
+    check_refused(points, [*FACES, fin], [1, 3], ["(0.5, 0.5625, 0.0844) m"])
 
 
 def test_bow_ties_are_refused_with_place():
@@ -231,22 +229,20 @@ def test_bow_ties_are_refused_with_place():
     for x, y in ((0.44, 0.44), (0.56, 0.56)):
         near = (np.abs(middles[:, :2] - [x, y]) < 0.0625).all(axis=1)
         keep &= ~near
-    refused(r"at 1 vertex the mesh touches itself .* at \(0.5, 0.5, 0.075\)", POINTS, FACES[keep])
+    check_refused(POINTS, FACES[keep], [1], ["(0.5, 0.5, 0.075)"])
 
 
 def test_several_pieces_are_refused_and_fragments_dropped():
     points, faces = disc()
     two = np.vstack((points, 0.5 * points + [3, 0, 0]))
-    error = refused(r"2 pieces that share no edge: 3.106 m2 with 264 faces; 0.7765 m2 with 264 faces", two,
-                    np.vstack((faces, faces + len(points))))  # fmt: skip
-    assert "keep one" in error.remedy
+    check_refused(two, np.vstack((faces, faces + len(points))), [2, 3.106, 264, 0.7765])
     small = np.vstack((points, 0.01 * points + [3, 0, 0]))
     mesh = cleaned(small, np.vstack((faces, faces + len(points))))
     assert len(mesh.faces) == len(faces)
-    assert any("1 fragment dropped, together 0.0001 of the area" in note for note in mesh.notes)
+    warned(mesh.notes, "fragments_dropped", [1, 0.0001])
     # Pieces that touch at one vertex are pieces.
     touching = np.vstack((points, points + np.array([2, 0, 0])))
-    refused("2 pieces", touching, np.vstack((faces, faces + len(points))))
+    check_refused(touching, np.vstack((faces, faces + len(points))), [2])
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -255,22 +251,21 @@ def test_one_sided_surfaces_are_refused(seed):
     faces = faces.copy()
     flip = np.random.default_rng(seed).random(len(faces)) < 0.5
     faces[flip] = faces[flip][:, ::-1]
-    refused("one side only", points, faces)
+    check_refused(points, faces)
 
 
 def test_closed_surfaces_and_handles_are_refused():
-    refused(r"closed \(like a sphere; 266 vertices - 792 edges \+ 528 faces = 2\).*a sphere.*has no net", *sphere())
-    refused(r"closed \(with 1 handle;", *torus())
+    check_refused(*sphere(), [266, 792, 528, 2])
+    check_refused(*torus(), [1, 288, 864, 576])
     points, faces = torus()
-    count = r"288 vertices - 864 edges \+ 575 faces = -1, with 1 borders; a disc with 0 holes has 1"
-    refused(rf"1 handle \({count}\)", points, faces[1:])
+    check_refused(points, faces[1:], [1, 288, 864, 575, -1])
     hole = sphere()[0], sphere()[1][1:]
     assert len(cleaned(*hole).borders) == 1
 
 
 def test_nothing_left_is_refused():
-    refused("no faces with an area", [[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 0, 1], [1, 2, 2]])
-    refused("no faces with an area", [[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])
+    check_refused([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 0, 1], [1, 2, 2]])
+    check_refused([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])
 
 
 @given(seed=st.integers(0, 2**32 - 1), kind=st.sampled_from(["soup", "moved", "dropped"]))

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.vectors import diagonal
+from lamella.base.wording import shown
 from lamella.surface.boundary.curve import place
 
 _SAME = 1e-6
@@ -40,7 +41,9 @@ def clean_points(points: ArrayLike, *, closed: bool, where: str = "") -> Floats:
         raise InputError(f"the points are an array {given.shape}, not (n, 3)", "give x, y, z of each point", where)
     bad = np.flatnonzero(~np.isfinite(given).all(axis=1))
     if len(bad):
-        raise InputError(f"point {bad[0]} is not finite: {given[bad[0]]}", "give finite numbers in m", where)
+        raise InputError(
+            f"point {bad[0]} is not finite: {shown(given[bad[0]].tolist())}", "give finite numbers in m", where
+        )
     size = diagonal(given) if len(given) else 0.0
     if closed and len(given) > 1 and np.linalg.norm(given[-1] - given[0]) <= _SAME * size:
         given = given[:-1]
