@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lamella.base.errors import InputError
 from lamella.base.limits import CELLS_MIN
@@ -18,6 +18,9 @@ from lamella.stages.pattern_of_table import pattern_of
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
+
+if TYPE_CHECKING:
+    from lamella.network.elements.net_coordinates import NetCoordinates
 
 # cells more or fewer that are tried
 FARTHEST = 4
@@ -37,12 +40,15 @@ class OtherCells:
         The present net.
     warned : int
         Warnings of the present net itself: one of other cells with more of them is no remedy.
+    coordinates : NetCoordinates or None
+        Isothermic coordinates of a surface of elements, where they are known.
     """
 
     project: Project
     surface: Surface[Any]
     network: Network
     warned: int = 0
+    coordinates: NetCoordinates | None = None
     _made: dict[int, Network | None] = field(default_factory=dict)
 
     def without(self, fault: Callable[[Network], bool]) -> str:
@@ -94,5 +100,5 @@ class OtherCells:
         from lamella.stages.network.make import lay, net_on
 
         project = self.project.model_copy(update={"network": table})
-        woven = net_on(lay(self.surface, project, None, silent), project)
+        woven = net_on(lay(self.surface, project, None, silent, self.coordinates), project)
         return woven.network if len(list(woven.warnings())) <= self.warned else None

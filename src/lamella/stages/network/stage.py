@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
-from lamella.base.progress import Progress, Report
+from lamella.base.progress import Progress, Report, silent
 from lamella.files.write.meshes import write_network_obj
 from lamella.files.write.network_json import write_network
 from lamella.files.write.nodes_csv import write_nodes_csv
@@ -34,6 +34,7 @@ from lamella.surface.umbilic import umbilic_reason
 
 if TYPE_CHECKING:
     from lamella.network.elements.element_network import NetPlan
+    from lamella.network.elements.net_coordinates import NetCoordinates
 
 
 class NetworkStage(Stage[NetworkOutput]):
@@ -169,17 +170,23 @@ def _made(up: Upstream, progress: Progress) -> NetworkOutput:
 
 def _laid(up: Upstream, step: float | None, progress: Progress) -> NetPlan:
     """The lattice on a surface of elements; isothermic coordinates are kept, for they are those of all densities."""
-    from lamella.network.elements.net_coordinates import net_coordinates
     from lamella.stages.network.make import lay
+
+    return lay(up.surface, up.project, step, progress, _coordinates(up, progress))
+
+
+def _coordinates(up: Upstream, progress: Progress) -> NetCoordinates:
+    """Isothermic coordinates of a surface of elements."""
+    from lamella.network.elements.net_coordinates import net_coordinates
 
     surface, seams = up.surface, up.project.network.closing == "open"
     assert isinstance(surface, ElementSurface)
-    coordinates = up.remembered(
-        "isothermic coordinates",
-        (up.outputs["surface"].key, seams),
-        lambda: net_coordinates(surface, seams=seams, progress=progress),
-    )
-    return lay(surface, up.project, step, progress, coordinates)
+    with keys("network", surface="surface"):
+        return up.remembered(
+            "isothermic coordinates",
+            (up.outputs["surface"].key, seams),
+            lambda: net_coordinates(surface, seams=seams, progress=progress),
+        )
 
 
 def other_cells(out: NetworkOutput, up: Upstream) -> OtherCells:
@@ -188,6 +195,8 @@ def other_cells(out: NetworkOutput, up: Upstream) -> OtherCells:
 
     def make() -> OtherCells:
         warned = len(list(out.made.warnings(up.finer))) if out.made else 0
-        return OtherCells(up.project, up.surface, out.network, warned)
+        on_lattice = out.made is not None and not is_traced(up.surface, pattern_of(up.project.network))
+        known = _coordinates(up, silent) if on_lattice else None
+        return OtherCells(up.project, up.surface, out.network, warned, known)
 
     return up.remembered("nets of other cells", (key, up.finer), make)
