@@ -16,6 +16,7 @@ from typing import Any
 from lamella import __version__, compute, read_project, write
 from lamella.base.material import MATERIALS
 from lamella.command.examples import list_examples
+from lamella.fabrication.schedule import COLUMNS as PART_LIST
 from lamella.files.write.lamellas_json import COLUMNS, lamellas_schema
 from lamella.files.write.network_json import network_schema
 from lamella.files.write.optimise_json import optimise_schema
@@ -227,7 +228,12 @@ def _materials() -> str:
 def files_page() -> str:
     """docs/files.md with the tables of stages and figures that the stages themselves declare."""
     page = (DOCS / "files.md").read_text(encoding="utf-8")
-    tables = {"stages": _stages_table(), "figures": _figures_table(), "along lamellas": _columns_table()}
+    tables = {
+        "stages": _stages_table(),
+        "figures": _figures_table(),
+        "along lamellas": _columns_table(),
+        "part list": _part_list_table(),
+    }
     for name, table in tables.items():
         before, rest = page.split(f"<!-- {name}: made by docs/build.py -->\n")
         _, after = rest.split(f"<!-- end of {name} -->\n")
@@ -263,6 +269,12 @@ def _figures_table() -> str:
 def _columns_table() -> str:
     rows = ["| key | unit | meaning |", "|---|---|---|"]
     rows += [f"| `{column.key}` | {column.unit} | {column.meaning} |" for column in COLUMNS]
+    return "\n".join(rows) + "\n"
+
+
+def _part_list_table() -> str:
+    rows = ["| column | meaning |", "|---|---|"]
+    rows += [f"| `{column.name}` | {column.meaning} |" for column in PART_LIST]
     return "\n".join(rows) + "\n"
 
 
@@ -391,6 +403,7 @@ def main() -> None:
         (DOCS / path).write_text(text, encoding="utf-8")
     make_pictures(results, DOCS / "pictures")
     runpy.run_path(str(DOCS / "build_projection.py"))["make_pictures"](DOCS / "pictures")
+    runpy.run_path(str(DOCS / "build_architecture.py"))["make_picture"](DOCS / "pictures")
     print(f"docs of lamella {__version__} are up to date")
 
 

@@ -495,5 +495,5 @@ def test_every_key_of_summary_and_schedule_is_described():
             # a stage that has not been run is null
             for key in (key for key in keys if key != "schema" and summary.get(key, 0) is not None):
                 assert f"`{key}`" in text, key
-    for column in COLUMNS:
+    for column in (column.name for column in COLUMNS):
         assert f"`{column}`" in text, column

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -19,32 +21,109 @@ CONGRUENT = 1e-5
 # places along a bowed centre line at which it is compared
 COMPARED = 33
 
+
+@dataclass(frozen=True)
+class Row:
+    """What a row of the part list is made from.
+
+    Attributes
+    ----------
+    part : Part
+    darboux : (3,)
+        Largest magnitudes of kg, tg and kn along the part, 1/m.
+    stresses : (6,)
+        Largest magnitudes along the part: bending, torsion, helix, restraint, layer, von Mises, MPa.
+    utilisation, net_section : float
+        The largest along the part, and at its slots.
+    sheets : tuple of int
+        Numbers of the sheets its pieces lie on, from 1.
+    same_as : str
+        Id of the first part congruent to it; empty where there is none.
+    """
+
+    part: Part
+    darboux: Floats
+    stresses: Floats
+    utilisation: float
+    net_section: float
+    sheets: tuple[int, ...]
+    same_as: str
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the part list; a new one is a line of `COLUMNS`.
+
+    Attributes
+    ----------
+    name : str
+        With its unit.
+    meaning : str
+        For the documentation, Markdown.
+    value : callable
+        What stands in a row.
+    """
+
+    name: str
+    meaning: str
+    value: Callable[[Row], object]
+
+
+def _largest(name: str, meaning: str, value: Callable[[Row], float]) -> Column:
+    """A column of figures with six digits."""
+    return Column(name, meaning, lambda row: f"{value(row):.6g}")
+
+
 COLUMNS = (
-    "id",
-    "family",
-    "quantity",
-    "length_mm",
-    "radius_mm",
-    "node_distances_mm",
-    "slots",
-    "mass_kg",
-    "geodesic_curvature_max_1/m",
-    "geodesic_torsion_max_1/m",
-    "normal_curvature_max_1/m",
-    "bending_MPa",
-    "torsion_MPa",
-    "helix_MPa",
-    "restraint_MPa",
-    "layer_MPa",
-    "von_mises_MPa",
-    "utilisation",
-    "utilisation_net_section",
-    "layer",
-    "side",
-    "distance_mm",
-    "bow_mm",
-    "sheets",
-    "same_as",
+    Column("id", "of the part", lambda row: row.part.id),
+    Column("family", "`A` or `B`", lambda row: row.part.family),
+    Column("quantity", "pieces to cut: one for each layer", lambda row: row.part.quantity),
+    Column("length_mm", "of the centre line, end to end", lambda row: f"{1e3 * row.part.length:.4f}"),
+    Column(
+        "radius_mm",
+        "of the centre line; empty for straight parts",
+        lambda row: f"{1e3 / abs(row.part.curvature):.4f}" if row.part.curvature else "",
+    ),
+    Column(
+        "node_distances_mm",
+        "between the nodes on the part, with `;` between",
+        lambda row: ";".join([f"{distance:.4f}" for distance in (1e3 * np.diff(row.part.nodes)).tolist()]),
+    ),
+    Column("slots", "their number", lambda row: len(row.part.slots)),
+    Column("mass_kg", "of one piece", lambda row: f"{row.part.mass:.6g}"),
+    _largest("geodesic_curvature_max_1/m", "largest magnitude along the part", lambda row: row.darboux[0]),
+    _largest("geodesic_torsion_max_1/m", "largest magnitude along the part", lambda row: row.darboux[1]),
+    _largest("normal_curvature_max_1/m", "largest magnitude along the part", lambda row: row.darboux[2]),
+    _largest("bending_MPa", "largest magnitude along the part, as the following", lambda row: row.stresses[0]),
+    _largest("torsion_MPa", "", lambda row: row.stresses[1]),
+    _largest("helix_MPa", "the larger of edge and centre", lambda row: row.stresses[2]),
+    _largest("restraint_MPa", "", lambda row: row.stresses[3]),
+    _largest("layer_MPa", "", lambda row: row.stresses[4]),
+    _largest("von_mises_MPa", "", lambda row: row.stresses[5]),
+    _largest("utilisation", "", lambda row: row.utilisation),
+    _largest("utilisation_net_section", "at the part's slots", lambda row: row.net_section),
+    Column(
+        "layer",
+        "of a part that is one of several layers: its number from the right one",
+        lambda row: row.part.layer or "",
+    ),
+    Column(
+        "side",
+        "`R`, `L` (`M` the middle one of three, `RR` and `LL` the outer ones of four); else empty",
+        lambda row: row.part.side,
+    ),
+    Column(
+        "distance_mm",
+        "the layer's distance from the centre line, > 0 to the left; else empty",
+        lambda row: f"{1e3 * row.part.distance:.4f}" if row.part.layer else "",
+    ),
+    Column(
+        "bow_mm",
+        "how far its centre line leaves a straight line or `radius_mm`, where it is cut to its own curvature",
+        lambda row: f"{1e3 * row.part.bow:.4f}" if row.part.bow else "",
+    ),
+    Column("sheets", "numbers of the sheets its pieces lie on, from 1", lambda row: ";".join(map(str, row.sheets))),
+    Column("same_as", "first part of the family congruent to it within 0.01 mm, else empty", lambda row: row.same_as),
 )
 
 
@@ -93,33 +172,23 @@ def write_schedule(
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         file.write(f"# lamella {csv_comment(version)} · project {csv_comment(name)}\n")
-        writer.writerow(COLUMNS)
+        writer.writerow([column.name for column in COLUMNS])
         for index, part in enumerate(parts.parts):
             largest = values[:, _samples(part, network, lamellas)].max(axis=1)
-            writer.writerow(
-                (
-                    part.id,
-                    part.family,
-                    part.quantity,
-                    f"{1e3 * part.length:.4f}",
-                    f"{1e3 / abs(part.curvature):.4f}" if part.curvature else "",
-                    ";".join([f"{distance:.4f}" for distance in (1e3 * np.diff(part.nodes)).tolist()]),
-                    len(part.slots),
-                    f"{part.mass:.6g}",
-                    *[f"{value:.6g}" for value in largest.tolist()],
-                    f"{_net_section(part, network, lamellas):.6g}",
-                    part.layer or "",
-                    part.side,
-                    f"{1e3 * part.distance:.4f}" if part.layer else "",
-                    f"{1e3 * part.bow:.4f}" if part.bow else "",
-                    ";".join(map(str, sorted(sheets[index]))),
-                    "" if same[index] == index else parts.parts[same[index]].id,
-                )
+            row = Row(
+                part,
+                largest[:3],
+                largest[3:9],
+                float(largest[9]),
+                _net_section(part, network, lamellas),
+                tuple(sorted(sheets[index])),
+                "" if same[index] == index else parts.parts[same[index]].id,
             )
+            writer.writerow([column.value(row) for column in COLUMNS])
 
 
 def _along_samples(network: Network, lamellas: Lamellas) -> Floats:
-    """Magnitudes along all samples in the columns' order and units, (10, k)."""
+    """Magnitudes along all samples, (10, k): kg, tg, kn (1/m), six stresses (MPa), utilisation."""
     pascals = (
         lamellas.bending,
         lamellas.torsion,

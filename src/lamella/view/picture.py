@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from lamella.stages.results import Results
     from lamella.strip.lamellas import Lamellas
+    from lamella.view.shown_run import ShownRun
 
 Colour = Literal["utilisation", "torsion", "curvature", "planarity", "family", "none"]
 
@@ -41,7 +41,7 @@ QUADS_A_CELL = 4
 
 
 def draw(
-    results: Results,
+    results: ShownRun,
     path: Path,
     *,
     view: tuple[float, float] = (-60.0, 22.0),
@@ -55,7 +55,7 @@ def draw(
 
     Parameters
     ----------
-    results : Results
+    results : ShownRun
         From `lamella.compute`.
     path : Path
         File to write.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from lamella.stages.results import Results
+    from lamella.view.shown_run import ShownRun
 
 Panel = Literal["shade", "deviation", "K", "ratio", "k1", "k2"]
 
@@ -45,7 +45,7 @@ PICTURE_FOOT, GAP = 84, 22
 
 
 def draw_surface(
-    results: Results,
+    results: ShownRun,
     path: Path,
     *,
     view: tuple[float, float] = (-60.0, 24.0),
@@ -58,7 +58,7 @@ def draw_surface(
 
     Parameters
     ----------
-    results : Results
+    results : ShownRun
         From `lamella.compute`; its network is not drawn.
     path : Path
         File to write.
@@ -103,7 +103,7 @@ def draw_surface(
         save(figure, path, shaded=True)
 
 
-def _caption(results: Results) -> str:
+def _caption(results: ShownRun) -> str:
     surface = results.surface
     if not isinstance(surface, ElementSurface):
         return f"Surface, H0 = {surface.mean_curvature:.4g} 1/m".replace("-", "−")
@@ -111,7 +111,7 @@ def _caption(results: Results) -> str:
     return f"{count:,} curved triangles of order {order}"
 
 
-def _sampled(results: Results) -> tuple[SurfaceMesh, Floats, Floats]:
+def _sampled(results: ShownRun) -> tuple[SurfaceMesh, Floats, Floats]:
     """A fine mesh, and segments (s, 2, 3) of its boundary and of the edges of the curved triangles, m."""
     surface = results.surface
     if not isinstance(surface, ElementSurface):
