@@ -14,6 +14,7 @@ from lamella import InputError, make_surface, read_project
 from lamella.command.main import main
 from lamella.network.density_request import BYTES_FIXED, BYTES_PER_NODE
 from lamella.network.lattice.density import choose_density
+from lamella.stages.pattern_of_table import pattern_of
 from lamella.surface.closed_forms.closed_form import ClosedForm
 
 from .projects import UNDULOID, surface
@@ -87,7 +88,7 @@ def test_spacing_on_long_and_narrow_surfaces(tmp_path: Path, capsys: pytest.Capt
     with contextlib.suppress(InputError):
         closed, table = make_surface(project), project.network
         assert isinstance(closed, ClosedForm)
-        choose_density(closed, cells=table.cells, spacing=table.spacing, pattern=table.pattern)
+        choose_density(closed, cells=table.cells, spacing=table.spacing, pattern=pattern_of(table))
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 20e6

@@ -26,6 +26,7 @@ from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
 from lamella.network.pattern import Pattern, fitting_cells
 from lamella.project.tables import project_schema
 from lamella.stages.figure import evaluate
+from lamella.stages.network.figures import panel_planarity
 from lamella.stages.network.output import NetworkOutput
 from lamella.stages.network.stage import NetworkStage
 from lamella.stages.pattern_of_table import pattern_of
@@ -288,10 +289,7 @@ def test_principal_panels_are_planar_to_a_higher_order(surface: Any) -> None:
     sizes = np.array([12, 24, 48])
 
     def rate(kind: Any) -> float:
-        missed = [
-            summary_of(lamella.net(surface, cells=int(c), kind=kind, minimum_length=0))["panel_planarity"]
-            for c in sizes
-        ]
+        missed = [panel_planarity(lamella.net(surface, cells=int(c), kind=kind, minimum_length=0)) for c in sizes]
         return -float(np.polyfit(np.log(sizes), np.log([m["median"] for m in missed]), 1)[0])
 
     assert rate("lamellas") == pytest.approx(1, abs=0.1)

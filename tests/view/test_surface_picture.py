@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +10,7 @@ import pytest
 import lamella
 from lamella.base.errors import InputError
 from lamella.surface.element.surface import ElementSurface
+from stages.other_surface import on_surface
 from surface.element.exact_elements import catenoid_patch, sphere_cap, whole_catenoid
 
 pytest.importorskip("matplotlib")
@@ -30,7 +30,7 @@ def closed_form() -> lamella.Results:
 
 
 def of(surface: ElementSurface, results: lamella.Results) -> lamella.Results:
-    return dataclasses.replace(results, surface=surface, mesh=surface.mesh())
+    return on_surface(results, surface)
 
 
 def pixels(path: Path) -> np.ndarray:

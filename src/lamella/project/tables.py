@@ -335,8 +335,11 @@ class Project(Table):
 
 def project_schema() -> dict[str, Any]:
     """JSON schema (draft 2020-12) of the project file."""
+    schema = Project.model_json_schema()
+    # examples of the class are Python
+    schema["description"] = schema["description"].partition("\n")[0]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "$id": "lamella/project/1",
         "title": "lamella project file",
-    } | Project.model_json_schema()
+    } | schema

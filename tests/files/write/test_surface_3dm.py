@@ -23,6 +23,7 @@ from lamella.files.write.surface_3dm import sag, surface_3dm_bytes, write_surfac
 from lamella.stages.write import write_files
 from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
+from stages.other_surface import on_surface
 from surface.element.exact_elements import catenoid_patch, sphere_cap, whole_catenoid
 
 TESTS = Path(__file__).parents[2]
@@ -246,7 +247,7 @@ def test_a_run_writes_it_where_the_surface_is_of_curved_triangles(
     results = lamella.compute(project, until="surface")
     if make:
         surface = make(3)
-        results = dataclasses.replace(results, surface=surface, mesh=surface.mesh())
+        results = on_surface(results, surface)
     said: list[str] = []
     write_files(results, tmp_path, progress=lambda report: said.append(str(report)))
     assert (tmp_path / "surface.3dm").exists() == (make is not None)

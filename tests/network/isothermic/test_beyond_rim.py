@@ -51,7 +51,7 @@ def test_a_singular_node_next_to_the_rim_has_all_its_rays(inside) -> None:
     assert (a[node], b[node]) == (3, 3)
 
 
-@pytest.mark.parametrize("way", [1.0, 1.0j])
+@pytest.mark.parametrize("direction", [1.0, 1.0j])
 def test_how_an_umbilic_moves_from_the_rim(direction) -> None:
     """To first order, against the zero of a surface that differs a little: towards the middle, and along the rim."""
     zero, off = 0.9 * np.exp(0.4j), 2e-3

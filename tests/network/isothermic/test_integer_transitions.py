@@ -96,10 +96,10 @@ def test_near_whole_shifts_do_not_depend_on_the_cut(
         different += ends[0] != ends[1]
         # the same one, named by the other cut's pieces, and back
         for one, size in zip(near, sizes, strict=True):
-            named = TransitionMatcher(first, other, there).integer_transitions(one - shifts, here)
+            named = TransitionMatcher(first, other, there).match(one - shifts, here)
             assert named is not None
             assert there.size(named - here) == pytest.approx(size, rel=1e-2, abs=1e-4)
-            back = TransitionMatcher(other, first, whole).integer_transitions(named - here, shifts)
+            back = TransitionMatcher(other, first, whole).match(named - here, shifts)
             assert back is not None
             assert np.abs(back - one).max() < 1e-9
     assert different

@@ -20,7 +20,7 @@ class RandomCase:
 
     loops: tuple[Loop, ...]
     mean_curvature: float
-    told: str
+    reported: str
 
 
 def draw_case(seed: int) -> RandomCase:
@@ -61,8 +61,8 @@ def draw_case(seed: int) -> RandomCase:
         enclosed = np.linalg.norm(np.cross(fine - fine.mean(0), np.roll(fine, -1, 0) - fine.mean(0)).sum(0) / 2)
         # up to beyond the bound |H| <= length / (2 vector area)
         curvature = float(rng.uniform(-1.2, 1.2) * min(outer.length / (2 * enclosed), 2 * TAU / outer.length))
-    told = f"{kind}, {len(holes)} holes, length {outer.length:.3g} m, H {curvature:.3g} 1/m"
-    return RandomCase((outer, *holes), curvature, told)
+    reported = f"{kind}, {len(holes)} holes, length {outer.length:.3g} m, H {curvature:.3g} 1/m"
+    return RandomCase((outer, *holes), curvature, reported)
 
 
 def _rotation(rng: np.random.Generator) -> np.ndarray:

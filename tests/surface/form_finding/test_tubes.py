@@ -152,7 +152,7 @@ def test_family_runs_through_a_fold_of_its_volume() -> None:
     told: list[str] = []
     loops = between(1.0, 0.8)
     thick = find_equilibrium(start(loops, 3))
-    reached = to_curvature(thick, 0.0, told.append, unstable=True)
+    reached = to_curvature(thick, 0.0, lambda report: told.append(report.text), unstable=True)
     volumes = [abs(float(line.split("volume ")[1].split()[0])) for line in told if "volume" in line]
     assert min(volumes) < abs(enclosed_volume(reached.equilibrium.film)) - 0.005
     assert reached.equilibrium.negative == 1

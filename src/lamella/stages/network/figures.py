@@ -89,10 +89,8 @@ def _panel_nodes(network: Network) -> np.ndarray[Any, np.dtype[np.int64]]:
     return np.asarray(network.face_nodes[start[:, None] + np.arange(4)])
 
 
-def _panel_planarity(out: NetworkOutput) -> Any:
-    network = out.network
-    if not _is_principal(network):
-        return ABSENT
+def panel_planarity(network: Network) -> dict[str, float | None]:
+    """Planarity score of the faces with four corners: inside, and with a corner on the rim."""
     panels = _panel_nodes(network)
     score = planarity_score(*network.node_points[panels].transpose(1, 0, 2))
     rim = (network.node_kinds[panels] == BOUNDARY).any(1)
@@ -336,7 +334,7 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
         "",
         "principal nets: distance of the panels' diagonals over the diagonals' mean length: `median` and `max` of "
         "those inside, `rim_max` of those with a corner on the rim",
-        _panel_planarity,
+        lambda out: panel_planarity(out.network) if _is_principal(out.network) else ABSENT,
         record(median=nullable(NUMBER), max=nullable(NUMBER), rim_max=nullable(NUMBER)),
         always=False,
         rows=_planarity_rows,
