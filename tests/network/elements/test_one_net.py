@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 
 import lamella
 from lamella import Catenoid, Cylinder, Enneper, Helicoid, Scherk
+from lamella.network.density_request import DensityRequest
 from lamella.network.elements.element_network import element_network, plan_net
 from lamella.network.elements.lattice import choose_lattice
 from lamella.network.network import BOUNDARY, REGULAR, SEAM, SINGULAR, Network
@@ -381,7 +382,8 @@ def test_density_between_several_odd_umbilics_goes_with_the_surface() -> None:
         laid = plan_net(film(Case((rim,), False, 0.05, 12), motion=move), cells=12)
         assert laid.umbilics.orders.tolist() == [1, 1, 1]
         pick = partial(choose_lattice, laid.iso, laid.around, seams=False)
-        lattices = [pick(None, d * scale) for d in (0.3, 0.4, 0.5, 0.62, 0.8)] + [pick(c, None) for c in (9, 12, 16)]
+        requests = [DensityRequest.of(spacing=d * scale) for d in (0.3, 0.4, 0.5, 0.62, 0.8)]
+        lattices = [pick(request) for request in (*requests, *map(DensityRequest.of, (9, 12, 16)))]
         steps = np.array([one.step for one in lattices]) / np.sqrt(scale)
         chosen.append((steps, [(one.cells, one.better_closes) for one in lattices]))
         # all that are asked for are met, within what closing may move them
