@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from lamella import __version__
@@ -100,7 +101,7 @@ class NetworkStage(Stage[NetworkOutput]):
     def run(self, up: Upstream, progress: Progress) -> NetworkOutput:
         out = _made(up, progress)
         require_declared(FIGURES, out.described)
-        return out
+        return replace(out, network=replace(out.network, surface=up.surface, figures=out.described))
 
     def result(self, figures: Mapping[str, Any], out: NetworkOutput) -> str:
         return (
