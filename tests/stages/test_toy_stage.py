@@ -18,6 +18,7 @@ from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.project.tables import Project
 from lamella.stages import all_stages
 from lamella.stages.figure import NUMBER, Figure, line
+from lamella.stages.lamellas.stage import LamellasStage
 from lamella.stages.stage import Estimate, File, Stage, Upstream
 
 PROJECT = {
@@ -101,6 +102,16 @@ def test_it_ends_where_what_it_needs_does() -> None:
     with pytest.raises(InputError) as refused:
         compute(principal, until="paint")
     assert refused.value.where == "network.kind"
+
+
+def test_a_stage_that_cannot_be_leaves_out_those_that_need_it_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    end = Message("ends_here", "no lamellas today")
+    monkeypatch.setattr(LamellasStage, "ends", lambda *_: end)
+    assert list(compute(parse_project(PROJECT)).outputs) == ["surface", "network"]
+    monkeypatch.setattr(PaintStage, "needs", ("network",))
+    results = compute(parse_project(PROJECT))
+    assert list(results.outputs) == ["surface", "network", "paint"]
+    assert results.summary["warnings"].count(end) == 1
 
 
 def test_it_is_remembered_by_what_it_reads(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -103,8 +103,7 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
         coarse = project
         left.clear()
         begun = _begun(project, coarse, stages, folder, progress)
-    up = begun.upstream()
-    estimates = [stage.estimate(up, progress) for stage in stages[1:]]
+    estimates = [begun.estimate(stage, progress) for stage in stages[1:]]
     sizes = {key: value for estimate in estimates for key, value in estimate.figures.items()}
     left += [unknown for estimate in estimates for unknown in estimate.unknown]
     nodes = sizes.get("nodes")
@@ -118,7 +117,7 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
         if "network" in begun.outputs:
             nodes = len(begun.outputs["network"].network.node_points)
     warnings = tuple(begun.results().summary["warnings"])
-    return Checked(up.surface, sizes.get("cells"), nodes, warnings, coarse is not project, tuple(left))
+    return Checked(begun.upstream().surface, sizes.get("cells"), nodes, warnings, coarse is not project, tuple(left))
 
 
 def _adjusts(project: Project) -> bool:
@@ -132,14 +131,10 @@ def _begun(
     """A computation of the stages whose surface is there; what can be refused without a net has been."""
     files = coarse.files.model_copy(update={"mesh_tolerance": max(COARSE_MESH, coarse.files.mesh_tolerance)})
     light = coarse.model_copy(update={"files": files})
-    for stage in stages:
-        stage.check(light, None)
     # a computation of the surface alone leaves the boundary as it is
     wanted = stages[:1] if _adjusts(project) else stages
-    begun = Computation(light, wanted, folder, Memory(), Clock(silent), finer=_finer(project, coarse))
+    begun = Computation(light, wanted, folder, Memory(), Clock(silent), finer=_finer(project, coarse), checked=stages)
     begun.run(stages[0], progress)
-    for stage in stages:
-        stage.check(light, begun.upstream().surface)
     return begun
 
 

@@ -20,7 +20,7 @@ from lamella.stages.fabrication.defaults import fill_in
 from lamella.stages.figure import evaluate
 from lamella.stages.memory import Memory, content_key
 from lamella.stages.results import Results
-from lamella.stages.stage import Stage, Upstream
+from lamella.stages.stage import Estimate, Stage, Upstream
 from lamella.stages.wanted import wanted_stages
 
 
@@ -79,6 +79,8 @@ class Computation:
     clock : Clock
     finer : float
         See `Upstream`.
+    checked : sequence of Stage, optional
+        Stages that are asked what they refuse at no cost, where they are not those that are run.
 
     Attributes
     ----------
@@ -95,6 +97,7 @@ class Computation:
         clock: Clock,
         *,
         finer: float = 1.0,
+        checked: Sequence[Stage[Any]] | None = None,
     ) -> None:
         self.outputs: dict[str, Any] = {}
         self.figures: dict[str, dict[str, Any]] = {}
@@ -103,7 +106,8 @@ class Computation:
         self._wanted, self._folder, self._memory, self._clock = tuple(wanted), folder, memory, clock
         self._keys: dict[str, str] = {}
         self._finer = finer
-        for stage in self._wanted:
+        self._checked = self._wanted if checked is None else tuple(checked)
+        for stage in self._checked:
             stage.check(project, None)
 
     def upstream(self) -> Upstream:
@@ -127,15 +131,18 @@ class Computation:
         ----------
         stages : sequence of Stage
         ends : bool
-            Whether to end, with a warning, before a stage that there cannot be; otherwise it raises its error.
+            Whether to leave out, with a warning, a stage that there cannot be and those that need it; otherwise it
+            raises its error.
         """
         for stage in stages:
+            if not self.outputs.keys() >= set(stage.needs):
+                continue
             with reported_from(self._origin()):
                 end = stage.ends(self.upstream()) if ends and stage.needs else None
             if end:
                 self.warnings.append(end)
-                return
-            self.run(stage)
+            else:
+                self.run(stage)
 
     def run(self, stage: Stage[Any], progress: Progress | None = None) -> None:
         """Compute a stage, its figures and its warnings, or take them from the memory.
@@ -148,6 +155,11 @@ class Computation:
         """
         with reported_from(self._origin()):
             self._run(stage, progress)
+
+    def estimate(self, stage: Stage[Any], progress: Progress) -> Estimate:
+        """What can be said of a stage on the surface that is there."""
+        with reported_from(self._origin()):
+            return stage.estimate(self.upstream(), progress)
 
     def _origin(self) -> Origin:
         """Point of the drawing that places in messages are measured from."""
@@ -165,8 +177,7 @@ class Computation:
             self._surface_known(out.surface)
         self.figures[stage.name] = evaluate(stage.figures, out)
         clock.stop(stage.name, stage.result(self.figures[stage.name], out))
-        warned_by = (*reads, *stage.warned_by(self._given))
-        warned_key = content_key(self._given, warned_by, [key, *needs, repr(self._finer)], self._folder)
+        warned_key = content_key(self._given, stage.warned_by(self._given), [key, repr(self._finer)], self._folder)
         with reported_from(self._origin()):
             self.warnings += self._memory.remembered(
                 f"warnings of {stage.name}",
@@ -177,7 +188,7 @@ class Computation:
     def _surface_known(self, surface: Any) -> None:
         """Fill in the defaults that follow from it; refuse what can be refused without anything else."""
         self._filled = fill_in(self._given, surface)
-        for stage in self._wanted:
+        for stage in self._checked:
             stage.check(self._given, surface)
 
     def results(self) -> Results:

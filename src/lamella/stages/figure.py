@@ -67,6 +67,8 @@ class Figure(Generic[Of]):
         Whether the key is there for every project.
     rows : callable or None
         Lines of the report's table as (label, value, unit), from the value and all figures of the run by stage.
+    section : str
+        Heading of these lines where it is not that of the stage.
     """
 
     key: str
@@ -76,6 +78,7 @@ class Figure(Generic[Of]):
     schema: dict[str, Any]
     always: bool = True
     rows: Callable[[Any, dict[str, Any]], Iterator[tuple[str, str, str]]] | None = None
+    section: str = ""
 
 
 def line(
@@ -118,23 +121,30 @@ def require_declared(figures: Sequence[Figure[Any]], values: dict[str, Any]) -> 
 
 
 def report_rows(
-    figures: Sequence[Figure[Any]], order: Sequence[str], stage: str, summary: dict[str, Any]
-) -> Iterator[tuple[str, str, str]]:
-    """Lines of the report for a stage, in the order of some keys; figures that are absent or null have none.
+    figures: Sequence[Figure[Any]], report: tuple[str, Sequence[str]], stage: str, summary: dict[str, Any]
+) -> Iterator[Row]:
+    """Lines of the report for a stage; figures that are absent or null have none.
 
     Parameters
     ----------
     figures : sequence of Figure
-    order : sequence of str
+    report : (str, sequence of str)
+        Heading, and keys in the order of the lines.
     stage : str
     summary : dict
         Figures by stage.
     """
-    by_key = {figure.key: figure for figure in figures}
-    for key in order:
-        rows, value = by_key[key].rows, summary[stage].get(key)
-        if rows and value is not None:
-            yield from rows(value, summary)
+    by_key, (heading, order) = {figure.key: figure for figure in figures}, report
+    for figure in (by_key[key] for key in order):
+        value = summary[stage].get(figure.key)
+        if figure.rows and value is not None:
+            for row in figure.rows(value, summary):
+                yield figure.section or heading, *row
+
+
+def known(key: str) -> Callable[[Any], Any]:
+    """What an output describes of itself under a key of the summary, where it does."""
+    return lambda out: out.described.get(key, ABSENT)
 
 
 def figures_schema(figures: Sequence[Figure[Any]]) -> dict[str, Any]:

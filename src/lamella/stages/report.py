@@ -11,7 +11,6 @@ from lamella import __version__
 from lamella.stages import all_stages
 from lamella.stages.figure import Row, report_rows
 from lamella.stages.results import Results
-from lamella.stages.surface.figures import loop_rows
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.report import ReportData
@@ -50,14 +49,8 @@ def _report_mesh(results: Results) -> SurfaceMesh:
 def _figures(summary: dict[str, Any]) -> Iterator[Row]:
     """Key figures of the summary as (section, label, value, unit)."""
     for stage in all_stages.STAGES:
-        if not summary.get(stage.name):
-            continue
-        section, order = stage.report
-        for row in report_rows(stage.figures, order, stage.name, summary):
-            yield section, *row
-        if stage.name == "surface":
-            for row in loop_rows(summary["surface"].get("loops", [])):
-                yield "Boundary", *row
+        if summary.get(stage.name):
+            yield from report_rows(stage.figures, stage.report, stage.name, summary)
 
 
 def _corners(summary: dict[str, Any]) -> list[tuple[str, str, str, str]]:

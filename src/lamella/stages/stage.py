@@ -33,10 +33,13 @@ class File:
         Below the run's folder, with "/" between folders.
     write : callable
         Writes it to a path.
+    also : tuple of str
+        Names of further files that the same call writes.
     """
 
     name: str
     write: Callable[[Path], object]
+    also: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

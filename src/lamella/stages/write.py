@@ -14,12 +14,13 @@ from lamella.base.wording import one_line
 from lamella.files.whole import write_whole
 from lamella.files.write.model_3dm import model_bytes
 from lamella.files.write.rhino_file import Frame
+from lamella.network.network import Network
 from lamella.project.read import located, moved, read_project
 from lamella.stages import all_stages
 from lamella.stages.computation import compute
 from lamella.stages.report import report_data
 from lamella.stages.results import Results
-from lamella.stages.stage import File
+from lamella.stages.stage import File, Stage
 from lamella.stages.wanted import check_name
 from lamella.view.report import write_report
 
@@ -137,7 +138,7 @@ def write_files(results: Results, folder: Path, *, progress: Progress = silent) 
     """
     files = list(_files(results))
     for number, file in enumerate(files):
-        progress(Report.step(file.name, number / len(files)))
+        progress(Report.step(", ".join((file.name, *file.also)), number / len(files)))
         path = folder / file.name
         path.parent.mkdir(exist_ok=True)
         file.write(path)
@@ -146,13 +147,17 @@ def write_files(results: Results, folder: Path, *, progress: Progress = silent) 
 def _files(results: Results) -> Iterator[File]:
     """All files but summary.json: the project, those of the stages, the model and the report."""
     yield File("project.toml", lambda path: _write_project(results, path))
-    for stage in all_stages.STAGES:
-        if stage.name not in results.outputs:
-            continue
+    for stage in _run_stages(results):
         yield from stage.files(results.outputs[stage.name], results.upstream)
-        if stage.name == "network":
-            yield File("model.3dm", lambda path: write_whole(path, _model(results)))
+    network = results.network
+    if network is not None:
+        yield File("model.3dm", lambda path: write_whole(path, _model(results, network)))
     yield File("report.html", lambda path: write_report(path, report_data(results)))
+
+
+def _run_stages(results: Results) -> Iterator[Stage[Any]]:
+    """The stages that were run."""
+    return (stage for stage in all_stages.STAGES if stage.name in results.outputs)
 
 
 def _write_project(results: Results, path: Path) -> None:
@@ -160,12 +165,11 @@ def _write_project(results: Results, path: Path) -> None:
     write_whole(path, (heading + moved(results.project, results.folder, path.parent).to_toml()).encode())
 
 
-def _model(results: Results) -> bytes:
+def _model(results: Results, network: Network) -> bytes:
     """The model of all stages for Rhino."""
-    assert results.network is not None
-    content: Any = {"surface": results.mesh, "network": results.network, "lamellas": results.lamellas}
-    ran = [stage for stage in all_stages.STAGES if stage.name in results.outputs]
-    further = [layer for stage in ran for layer in stage.scene(results.outputs[stage.name], results.upstream)]
+    content: Any = {"surface": results.mesh, "network": network, "lamellas": results.lamellas}
+    scenes = (stage.scene(results.outputs[stage.name], results.upstream) for stage in _run_stages(results))
+    further = [layer for scene in scenes for layer in scene]
     frame = Frame(results.project.files.unit, results.origin)
     # rhino3dm's own Write says nothing of a full disk
     return model_bytes(**content, further=further, frame=frame, name=results.project.name, version=__version__)

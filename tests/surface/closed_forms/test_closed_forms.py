@@ -11,6 +11,8 @@ import pytest
 import lamella
 from conftest import KINDS, draw_places, draw_surface
 from lamella import Catenoid, Cylinder, Enneper, Helicoid, InputError, Nodoid, Scherk, Section, Unduloid
+from lamella.project.tables import SURFACE_TABLES
+from lamella.surface.closed_forms.kinds import CLOSED_FORMS
 from lamella.surface.umbilic import refuse_umbilic
 
 
@@ -262,3 +264,7 @@ def test_mean_curvature_from_positions_and_normals(kind):
 
     assert miss(1e-3) < 1e-9
     assert miss(1e-2) < 1e-11 or 12 < miss(2e-2) / miss(1e-2) < 20
+
+
+def test_each_has_a_table_of_its_own_in_the_project_file() -> None:
+    assert set(CLOSED_FORMS) == set(SURFACE_TABLES) - {"form-found", "mesh"}

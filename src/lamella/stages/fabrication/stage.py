@@ -71,8 +71,9 @@ class FabricationStage(Stage[FabricationOutput]):
         network = in_drawing(up.outputs["network"].network, drawing_origin(up.surface))
         lamellas = up.outputs["lamellas"].lamellas
         yield File(
-            "fabrication/A.dxf, B.dxf, sheets.dxf",
+            "fabrication/A.dxf",
             lambda path: write_drawings(path.parent, out.parts, out.nesting, **signed),
+            also=("fabrication/B.dxf", "fabrication/sheets.dxf"),
         )
         yield File(
             "fabrication/schedule.csv",

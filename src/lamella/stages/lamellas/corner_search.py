@@ -18,7 +18,7 @@ from lamella.base.wording import rounded
 from lamella.network.elements.element_network import ElementNetwork
 from lamella.network.streamlines.streamline_network import TracedNetwork
 from lamella.project.tables import FormFoundTable, Project
-from lamella.stages.network.make import lay, net_on
+from lamella.stages.network.net_of_table import net_of_plan, net_plan
 from lamella.strip.lamellas import Section, make_lamellas
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
@@ -37,7 +37,7 @@ SurfaceOf = Callable[[Project], Surface[Any]]
 
 
 def corner_help(
-    woven: ElementNetwork | TracedNetwork,
+    made: ElementNetwork | TracedNetwork,
     utilisation: Floats,
     project: Project,
     surface_of: SurfaceOf,
@@ -45,7 +45,7 @@ def corner_help(
 ) -> Callable[[Floats], str]:
     """What helps at a point (3,) next to a corner of the boundary, in words, for strips with a utilisation (k,)."""
     searched = partial(radius_that_does, project, surface_of, progress=progress)
-    return partial(woven.at_corner, utilisation=utilisation, searched=searched)
+    return partial(made.at_corner, utilisation=utilisation, searched=searched)
 
 
 def radius_that_does(
@@ -106,7 +106,7 @@ def _utilisation(project: Project, surface_of: SurfaceOf) -> float:
     """The largest one of the project's strips."""
     surface = surface_of(project)
     assert isinstance(surface, ElementSurface)
-    network = net_on(lay(surface, project, None, silent), project).network
+    network = net_of_plan(net_plan(surface, project, None, silent), project).network
     section = Section(**project.lamella.model_dump(exclude={"material"}))
     lamellas = make_lamellas(network, section, project.material(), surface=surface)
     return float(np.max(lamellas.utilisation))

@@ -38,8 +38,7 @@ class LamellasStage(Stage[LamellasOutput]):
         return ("lamella", "materials")
 
     def warned_by(self, project: Project) -> tuple[str, ...]:
-        # what a corner's radius changes is tried on the project's own surface and net
-        return ("fabrication", "surface", "network")
+        return ("fabrication",)
 
     def missing(self, project: Project) -> Missing | None:
         reason = pattern_of(project.network).no_strips

@@ -17,6 +17,7 @@ from lamella.stages.figure import (
     POINT,
     TEXT,
     Figure,
+    known,
     line,
     list_of,
     nullable,
@@ -27,11 +28,6 @@ from lamella.strip.planarity import planarity_score
 
 Rows = Iterator[tuple[str, str, str]]
 ORDER_AND_RAYS = {"point": POINT, "order": INTEGER, "rays": INTEGER}
-
-
-def _known(key: str) -> Callable[[NetworkOutput], Any]:
-    """What the algorithm of the net knows besides the net itself, where it does."""
-    return lambda out: out.described.get(key, ABSENT)
 
 
 def _angle(key: str) -> Callable[[NetworkOutput], float]:
@@ -346,7 +342,7 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
         "there, or lamellas pass around). Those on the rim are not listed, no lamella ends in them: nearer to it "
         "than 0.002 of the surface's size, or than their place is sure by the surface's own error estimate, or "
         "within 0.015 of a sharp corner. On straight beams they lie exactly, wherever the twist changes its sign",
-        _known("umbilics"),
+        known("umbilics"),
         list_of(record(**ORDER_AND_RAYS, node=FLAG)),
         always=False,
     ),
@@ -356,7 +352,7 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
         "surfaces of curved triangles: root mean square of dw - sqrt(D) dz over that of sqrt(D) dz "
         "([theory.md](theory.md)); next to 0 where the mean curvature is constant and the principal directions are "
         "resolved",
-        _known("isothermic_residual"),
+        known("isothermic_residual"),
         NUMBER,
         always=False,
     ),
@@ -366,7 +362,7 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
         "surfaces of curved triangles: list of `between` (what a piece of the cut joins: boundary loops, singular "
         "nodes, seams), `off_cells` (how far the net is from meeting itself there, 0 to 0.5; up to 1 where umbilics "
         "were put on nodes) and `closed` (whether it does, by itself or by rounding)",
-        _known("joints"),
+        known("joints"),
         list_of(record(between=TEXT, off_cells=NUMBER, closed=FLAG)),
         always=False,
     ),
@@ -380,7 +376,7 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
         "`normal_curvature_deviation_max`, `geodesic_torsion_max` (1/m), `node_angle_deviation_max_deg`, "
         "`cell_edge_min` (m); null where it has nothing there. `network.node_angle_*` and "
         "`network.normal_curvature_deviation_max` leave out what is within `unresolved_radius`; these rows do not",
-        _known("corners"),
+        known("corners"),
         list_of({"type": "object", "required": ["point", "angle_deg", "radius"]}),
         always=False,
     ),
@@ -388,7 +384,7 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
         "node_angle_mean_deg",
         "deg",
         "lines from seeds: mean angle between the families, at regular nodes",
-        _known("node_angle_mean_deg"),
+        known("node_angle_mean_deg"),
         NUMBER,
         always=False,
         rows=_angle_rows("mean"),
@@ -397,18 +393,18 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
         "normal_curvature_deviation_p95",
         "1/m",
         "lines from seeds: the difference from the normal curvature at 95 % of the samples; null in a principal net",
-        _known("normal_curvature_deviation_p95"),
+        known("normal_curvature_deviation_p95"),
         nullable(NUMBER),
         always=False,
     ),
     Figure(
-        "guides", "", "lines from seeds: guides that seeds were counted along", _known("guides"), INTEGER, always=False
+        "guides", "", "lines from seeds: guides that seeds were counted along", known("guides"), INTEGER, always=False
     ),
     Figure(
         "inner_ends",
         "",
         "lines from seeds: ends of lamellas inside the surface, where directions stop being real",
-        _known("inner_ends"),
+        known("inner_ends"),
         INTEGER,
         always=False,
     ),
@@ -416,7 +412,7 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
         "unreal_area_share",
         "",
         "lines from seeds: share of the area without a direction of that normal curvature",
-        _known("unreal_area_share"),
+        known("unreal_area_share"),
         NUMBER,
         always=False,
         rows=_unreal_rows,
@@ -425,7 +421,7 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
         "flat_area_share",
         "",
         "lines from seeds: share of the area where there are two directions, at less than 20 degrees",
-        _known("flat_area_share"),
+        known("flat_area_share"),
         NUMBER,
         always=False,
     ),

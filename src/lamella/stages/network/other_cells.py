@@ -97,8 +97,8 @@ class OtherCells:
             density = choose_density(self.surface, cells=cells, pattern=pattern_of(table))
             return trace_closed_form(self.surface, density, minimum_length=table.minimum_length)
         # heavy, and closed forms do without
-        from lamella.stages.network.make import lay, net_on
+        from lamella.stages.network.net_of_table import net_of_plan, net_plan
 
         project = self.project.model_copy(update={"network": table})
-        woven = net_on(lay(self.surface, project, None, silent, self.coordinates), project)
-        return woven.network if len(list(woven.warnings())) <= self.warned else None
+        made = net_of_plan(net_plan(self.surface, project, None, silent, self.coordinates), project)
+        return made.network if len(list(made.warnings())) <= self.warned else None

@@ -34,10 +34,10 @@ class NetworkOutput:
     made: ElementNetwork | TracedNetwork | None
     adjustment: dict[str, Any]
 
-    @cached_property
+    @property
     def described(self) -> dict[str, Any]:
         """Further figures by key of the summary."""
-        return self.made.describe() if self.made else {}
+        return self.network.figures
 
     @cached_property
     def angles(self) -> dict[str, float]:

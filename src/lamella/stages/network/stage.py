@@ -34,8 +34,9 @@ from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
 
 if TYPE_CHECKING:
-    from lamella.network.elements.element_network import NetPlan
+    from lamella.network.elements.element_network import ElementNetwork, NetPlan
     from lamella.network.elements.net_coordinates import NetCoordinates
+    from lamella.network.streamlines.streamline_network import TracedNetwork
 
 
 class NetworkStage(Stage[NetworkOutput]):
@@ -81,14 +82,14 @@ class NetworkStage(Stage[NetworkOutput]):
         if umbilic_reason(up.surface.check_points()):
             return Estimate({})
         # heavy, and closed forms do without
-        from lamella.stages.network.make import lay_traced
+        from lamella.stages.network.net_of_table import streamline_plan
 
         progress(Report.step("laying the net"))
         with unit_first(up.surface):
             if is_traced(up.surface, pattern_of(up.project.network)):
-                lines = lay_traced(up.surface, up.project)
+                lines = streamline_plan(up.surface, up.project)
                 return Estimate({"cells": lines.cells, "nodes": lines.estimated_nodes})
-            lattice = _laid(up, None, progress).lattice
+            lattice = _plan(up, None, progress).lattice
         return Estimate({"cells": lattice.cells, "nodes": lattice.estimated_nodes})
 
     def heading(self, up: Upstream) -> str:
@@ -101,7 +102,7 @@ class NetworkStage(Stage[NetworkOutput]):
     def run(self, up: Upstream, progress: Progress) -> NetworkOutput:
         out = _made(up, progress)
         require_declared(FIGURES, out.described)
-        return replace(out, network=replace(out.network, surface=up.surface, figures=out.described))
+        return out
 
     def result(self, figures: Mapping[str, Any], out: NetworkOutput) -> str:
         return (
@@ -156,24 +157,26 @@ def _made(up: Upstream, progress: Progress) -> NetworkOutput:
         assert isinstance(surface, ClosedForm)
         with keys("network", surface="surface"):
             network = trace_closed_form(surface, density, minimum_length=project.network.minimum_length)
-        return NetworkOutput(network, density.requested, None, {})
+        return NetworkOutput(replace(network, surface=surface), density.requested, None, {})
     # heavy, and closed forms do without
-    from lamella.stages.network.make import net_on, trace
+    from lamella.stages.network.net_of_table import net_of_plan, streamline_net
 
     adjusted = up.outputs["surface"].adjusted
+    made: ElementNetwork | TracedNetwork
     with unit_first(surface):
         if is_traced(surface, pattern_of(project.network)):
-            traced = trace(surface, project, progress)
-            return NetworkOutput(traced.network, traced.requested, traced, {})
-        made = net_on(_laid(up, adjusted.step if adjusted else None, progress), project)
-    return NetworkOutput(made.network, made.requested, made, adjusted.figures if adjusted else {})
+            made = streamline_net(surface, project, progress)
+        else:
+            made = net_of_plan(_plan(up, adjusted.step if adjusted else None, progress), project)
+        network = replace(made.network, surface=surface, figures=made.describe())
+    return NetworkOutput(network, made.requested, made, adjusted.figures if adjusted else {})
 
 
-def _laid(up: Upstream, step: float | None, progress: Progress) -> NetPlan:
+def _plan(up: Upstream, step: float | None, progress: Progress) -> NetPlan:
     """The lattice on a surface of elements; isothermic coordinates are kept, for they are those of all densities."""
-    from lamella.stages.network.make import lay
+    from lamella.stages.network.net_of_table import net_plan
 
-    return lay(up.surface, up.project, step, progress, _coordinates(up, progress))
+    return net_plan(up.surface, up.project, step, progress, _coordinates(up, progress))
 
 
 def _coordinates(up: Upstream, progress: Progress) -> NetCoordinates:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from lamella.stages.figure import (
     POINT,
     TEXT,
     Figure,
+    known,
     line,
     list_of,
     nullable,
@@ -28,11 +29,6 @@ from lamella.surface.element.rim import element_rims
 from lamella.surface.element.surface import ElementSurface
 
 Rows = Iterator[tuple[str, str, str]]
-
-
-def _known(key: str) -> Callable[[SurfaceOutput], Any]:
-    """What the surface itself knows, where it does."""
-    return lambda out: out.described.get(key, ABSENT)
 
 
 def _deviation(out: SurfaceOutput) -> float:
@@ -99,9 +95,8 @@ def _element_rows(value: int, summary: dict[str, Any]) -> Rows:
     yield "Curved triangles", f"{value:,} of order {summary['surface']['order']}", ""
 
 
-def loop_rows(loops: list[dict[str, Any]]) -> Rows:
-    """Lines of the report's table of boundary loops."""
-    for loop in loops:
+def _loop_rows(value: list[dict[str, Any]], summary: dict[str, Any]) -> Rows:
+    for loop in value:
         yield loop["name"], f"{loop['length']:.4g} m, {loop['held']}", ""
 
 
@@ -157,37 +152,37 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         nullable({"enum": ["stable", "unstable", "fold"]}),
         rows=_stability_rows,
     ),
-    Figure("period", "m", "unduloid: height of a full period", _known("period"), NUMBER, always=False),
-    Figure("fold", "m", "nodoid: height of the fold", _known("fold"), NUMBER, always=False),
+    Figure("period", "m", "unduloid: height of a full period", known("period"), NUMBER, always=False),
+    Figure("fold", "m", "nodoid: height of the fold", known("fold"), NUMBER, always=False),
     Figure(
         "jacobi_eigenvalue",
         "1/m2",
         "films: lowest eigenvalue of the Jacobi operator, below 0 unstable",
-        _known("jacobi_eigenvalue"),
+        known("jacobi_eigenvalue"),
         nullable(NUMBER),
         always=False,
         rows=line("Lowest Jacobi eigenvalue", "1/m²", form=".3g"),
     ),
-    Figure("negative_eigenvalues", "", "how many are below 0", _known("negative_eigenvalues"), INTEGER, always=False),
-    Figure("order", "", "curved triangles: order of the polynomials", _known("order"), INTEGER, always=False),
-    Figure("surface_nodes", "", "curved triangles: number of nodes", _known("surface_nodes"), INTEGER, always=False),
+    Figure("negative_eigenvalues", "", "how many are below 0", known("negative_eigenvalues"), INTEGER, always=False),
+    Figure("order", "", "curved triangles: order of the polynomials", known("order"), INTEGER, always=False),
+    Figure("surface_nodes", "", "curved triangles: number of nodes", known("surface_nodes"), INTEGER, always=False),
     Figure(
-        "elements", "", "curved triangles: their number", _known("elements"), INTEGER, always=False, rows=_element_rows
+        "elements", "", "curved triangles: their number", known("elements"), INTEGER, always=False, rows=_element_rows
     ),
     Figure(
         "newton_steps",
         "",
         "from the harmonic start (of a mesh, from the mesh); on the whole path where one was followed",
-        _known("newton_steps"),
+        known("newton_steps"),
         INTEGER,
         always=False,
     ),
-    Figure("continuation", "", "whether a path of films was followed", _known("continuation"), FLAG, always=False),
+    Figure("continuation", "", "whether a path of films was followed", known("continuation"), FLAG, always=False),
     Figure(
         "curvature_scale",
         "1/m",
         "root mean square of sqrt((k1^2 + k2^2) / 2)",
-        _known("curvature_scale"),
+        known("curvature_scale"),
         NUMBER,
         always=False,
     ),
@@ -195,7 +190,7 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "mean_curvature_deviation",
         "",
         "largest difference from H over that scale; kept below `surface.tolerance`",
-        _known("mean_curvature_deviation"),
+        known("mean_curvature_deviation"),
         NUMBER,
         always=False,
     ),
@@ -204,7 +199,7 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "m3",
         "between the surface and lids over its loops as they were drawn (cones from their centroids); above 0 where "
         "the normal points out",
-        _known("volume"),
+        known("volume"),
         NUMBER,
         always=False,
         rows=line("Volume, with lids over the loops", "m³"),
@@ -214,7 +209,7 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "",
         "meshes kept as they are: root mean square of the jump of the curvature between elements, over the curvature "
         "scale; what the mesh leaves uncertain",
-        _known("curvature_jump"),
+        known("curvature_jump"),
         NUMBER,
         always=False,
     ),
@@ -223,16 +218,16 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "",
         "meshes kept as they are: root mean square over the area of a bound of the curvature's error, from how far the "
         "surfaces around neighbouring vertices differ, over the curvature scale",
-        _known("curvature_error"),
+        known("curvature_error"),
         NUMBER,
         always=False,
     ),
-    Figure("source", "", "meshes: the file and what is in it", _known("source"), TEXT, always=False),
+    Figure("source", "", "meshes: the file and what is in it", known("source"), TEXT, always=False),
     Figure(
         "treatment",
         "",
         "meshes: what was repaired or assumed",
-        _known("treatment"),
+        known("treatment"),
         list_of(TEXT),
         always=False,
     ),
@@ -240,7 +235,7 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "nearest_mean_curvature",
         "1/m",
         "meshes: H of the surface nearest to the vertices, before it was taken as 0 where it was",
-        _known("nearest_mean_curvature"),
+        known("nearest_mean_curvature"),
         nullable(NUMBER),
         always=False,
     ),
@@ -248,7 +243,7 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "fitted_mean_curvature",
         "1/m",
         "meshes: H from the curvature at the vertices (1 to 3 % low on coarse meshes)",
-        _known("fitted_mean_curvature"),
+        known("fitted_mean_curvature"),
         nullable(NUMBER),
         always=False,
     ),
@@ -256,7 +251,7 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "fitted_deviation",
         "",
         "meshes: how far the vertices are from that H, over the curvature scale",
-        _known("fitted_deviation"),
+        known("fitted_deviation"),
         nullable(NUMBER),
         always=False,
     ),
@@ -265,7 +260,7 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "m",
         "meshes kept as they are: standard deviation of the vertices across a smooth surface, removed where it is not "
         "0; `surface.distance_max` and `_rms` then say how far",
-        _known("vertex_scatter"),
+        known("vertex_scatter"),
         NUMBER,
         always=False,
     ),
@@ -273,7 +268,7 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "distance_max",
         "m",
         "meshes: largest distance of the mesh's vertices from the surface",
-        _known("distance_max"),
+        known("distance_max"),
         NUMBER,
         always=False,
         rows=line("Off the mesh's vertices, largest", "mm", form=".3g", scale=1e3),
@@ -282,18 +277,18 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "distance_rms",
         "m",
         "meshes: root mean square distance of the mesh's vertices from the surface",
-        _known("distance_rms"),
+        known("distance_rms"),
         NUMBER,
         always=False,
         rows=line("Off the mesh's vertices, typical", "mm", form=".3g", scale=1e3),
     ),
-    Figure("tolerance", "", "as in the project", _known("tolerance"), NUMBER, always=False),
+    Figure("tolerance", "", "as in the project", known("tolerance"), NUMBER, always=False),
     Figure(
         "origin",
         "m",
         "drawings in survey coordinates: the point of the drawing that the program measures from "
         "([below](#files-that-are-read))",
-        _known("origin"),
+        known("origin"),
         POINT,
         always=False,
         rows=_origin_rows,
@@ -302,7 +297,7 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "mean_curvature_range",
         "1/m",
         "meshes kept as they are: smallest and largest H",
-        _known("mean_curvature_range"),
+        known("mean_curvature_range"),
         PAIR,
         always=False,
         rows=_range_rows,
@@ -311,7 +306,7 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         "normal_curvature_range",
         "1/m",
         "meshes kept as they are: smallest k2 and largest k1",
-        _known("normal_curvature_range"),
+        known("normal_curvature_range"),
         PAIR,
         always=False,
     ),
@@ -323,6 +318,8 @@ FIGURES: tuple[Figure[SurfaceOutput], ...] = (
         _loops,
         list_of(record(name=TEXT, length=NUMBER, held=TEXT)),
         always=False,
+        rows=_loop_rows,
+        section="Boundary",
     ),
 )
 
@@ -341,5 +338,6 @@ REPORT = (
     "distance_max",
     "distance_rms",
     "elements",
+    "loops",
 )
 """Order of the report's lines."""

@@ -11,10 +11,7 @@ from lamella.base.message import Message
 from lamella.base.progress import Progress, Report
 from lamella.base.wording import one_line
 from lamella.files.whole import write_whole
-from lamella.files.write.curves_3dm import write_curves_3dm
 from lamella.files.write.meshes import write_surface_obj, write_surface_ply
-from lamella.files.write.rhino_file import Frame
-from lamella.files.write.surface_3dm import write_surface_3dm
 from lamella.project.read import moved
 from lamella.project.tables import FormFoundTable, Project
 from lamella.stages.drawn import in_drawing
@@ -82,6 +79,10 @@ class SurfaceStage(Stage[SurfaceOutput]):
         yield File("surface.ply", lambda path: write_surface_ply(path, mesh, **signed))
         surface = out.surface
         if isinstance(surface, ElementSurface):
+            # Rhino's library is heavy, and closed forms and checks do without
+            from lamella.files.write.rhino_file import Frame
+            from lamella.files.write.surface_3dm import write_surface_3dm
+
             frame = Frame(project.files.unit, origin)
             yield File("surface.3dm", lambda path: write_surface_3dm(path, surface, frame, **signed))
 
@@ -128,6 +129,9 @@ def _adjusted_files(adjusted: AdjustedTable, up: Upstream) -> Iterator[File]:
     )
     unit = drawing_unit(adjusted.table, up.folder)
     if unit:
+        from lamella.files.write.curves_3dm import write_curves_3dm
+        from lamella.files.write.rhino_file import Frame
+
         loops = boundary_loops(adjusted.table, up.folder)
         frame = Frame(unit, drawing_origin(adjusted.surface))
         signed: Any = {"name": up.project.name, "version": __version__}

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
-from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.arrays import Floats, Integers
 from lamella.base.drawing_origin import origin_figure
 from lamella.base.errors import InputError
 from lamella.base.message import Message
@@ -36,9 +36,10 @@ from lamella.surface.element.varying import VaryingSurface
 from lamella.surface.form_finding.film import Film, NoFilmError
 from lamella.surface.form_finding.meshing import start_sizes, with_sizes
 from lamella.surface.from_mesh.clean import CleanMesh, clean
-from lamella.surface.from_mesh.edges import vertex_areas, vertex_normals
+from lamella.surface.from_mesh.edges import vertex_areas
 from lamella.surface.from_mesh.fit_options import FitOptions
 from lamella.surface.from_mesh.raw_mesh import RawMesh, mesh_of_arrays
+from lamella.surface.from_mesh.scatter_limits import FIT_OPEN, moved_by_scatter, too_scattered
 from lamella.surface.from_mesh.to_elements import as_film, checked_loops
 from lamella.surface.from_mesh.vertex_fits import VertexFits, disagreement, fit_vertices, through_vertices
 from lamella.surface.from_mesh.vertex_noise import READING, Smoothed, without_scatter
@@ -63,10 +64,6 @@ RELAXED_ORDER = 3
 RELAXING = 3
 # of the curvature scale: a mesh whose curvature jumps by more is refused
 ROUGHEST = 0.5
-# of the curvature scale: what scatter leaves open at half of the vertices; with more, even signs are unknown
-FIT_OPEN = 1.0
-# of that limit, what a scatter that is offered may leave open in each of some draws; halvings until one does
-SCATTER_ENOUGH, DRAWS, SCATTER_HALVINGS_MAX = 0.7, 3, 6
 
 
 class Kept(NamedTuple):
@@ -397,7 +394,7 @@ def kept_surface(
     if smoothed is not None:
         mesh = replace(mesh, points=smoothed.points)
         loops, notes = checked_loops(mesh, options.corner_angle)
-        notes += (_moved(smoothed, given, flat.mesh.loop >= 0),)
+        notes += (moved_by_scatter(smoothed, given, flat.mesh.loop >= 0),)
         flat = as_film(mesh, loops)
         fits = fit_vertices(flat.nodes, mesh.faces, READING)
         kept = through_film(mesh, flat, loops, fits, options, progress)
@@ -416,7 +413,7 @@ def kept_surface(
     errors = vertex_errors(film, fits, mesh.faces, smoothed)
     typical = float(np.sqrt(np.average(errors**2, weights=vertex_areas(mesh.points, mesh.faces)))) / scale
     if smoothed is not None and np.median(errors) > FIT_OPEN * scale:
-        raise _too_scattered(smoothed, mesh.faces, flat.mesh.loop >= 0, float(np.median(errors)) / scale, scale)
+        raise too_scattered(smoothed, mesh.faces, flat.mesh.loop >= 0, float(np.median(errors)) / scale, scale)
     distance = distances(film, given)
     doubts: tuple[Message, ...] = ()
     if typical > options.tolerance:
@@ -448,53 +445,6 @@ def kept_surface(
     return VaryingSurface(
         "mesh", mean, basis, film.nodes, rim_loop, figures, doubts, vertices=mesh.points, vertex_errors=errors
     )
-
-
-def _moved(smoothed: Smoothed, given: Floats, border: Booleans) -> Message:
-    """What was done to vertices that scatter."""
-    move = 1000 * np.linalg.norm(smoothed.points - given, axis=1)
-    rim = float(move[border].max(initial=0))
-    return Message(
-        "mesh_scatter",
-        f"its vertices scatter by {1000 * smoothed.scatter:.2g} mm (standard deviation) about a smooth surface; that "
-        f"was taken, which moves vertices by up to {move.max():.2g} mm ({np.sqrt((move**2).mean()):.2g} mm root mean "
-        f"square), " + (f"those of the border by up to {rim:.2g} mm" if rim else "none of the border"),
-    )
-
-
-def _too_scattered(smoothed: Smoothed, faces: Integers, border: Booleans, error: float, scale: float) -> InputError:
-    enough = _endurable(smoothed, faces, border, scale)
-    return InputError(
-        f"the mesh is too rough to tell a curvature: its vertices scatter by {1000 * smoothed.scatter:.2g} mm "
-        f"(standard deviation) about a smooth surface, which leaves normal curvatures open by {error:.2g} of the "
-        f"curvature scale {scale:.4g} 1/m at half of them (limit {FIT_OPEN:g})",
-        f"with these edges vertices have to be known to {1000 * enough:.2g} mm (standard deviation)"
-        if enough
-        else "give a finer mesh: with these edges no scatter is small enough",
-        "faces",
-    )
-
-
-def _endurable(smoothed: Smoothed, faces: Integers, border: Booleans, scale: float) -> float:
-    """A scatter of the same mesh that leaves half of its curvatures open by less than the limit, m; 0: there is none.
-
-    By draws, since what is left open does not go with the scatter in proportion: more of it is smoothed more.
-    """
-    normals = vertex_normals(smoothed.points, faces)
-    for scatter in smoothed.scatter * np.cumprod(np.full(SCATTER_HALVINGS_MAX, 0.5)):
-        for seed in range(DRAWS):
-            noise = scatter * np.random.default_rng(seed).normal(size=(len(normals), 1))
-            points = smoothed.points + noise * normals
-            found = without_scatter(points, faces, border)
-            if found is None:
-                errors = disagreement(fit_vertices(points, faces), faces)
-            else:
-                errors = disagreement(fit_vertices(found.points, faces, READING), faces, 1.0) + found.curvature_error
-            if np.median(errors) > SCATTER_ENOUGH * FIT_OPEN * scale:
-                break
-        else:
-            return float(scatter)
-    return 0.0
 
 
 def distances(film: Film, points: Floats) -> Floats:

@@ -20,7 +20,7 @@ from lamella.surface.umbilic import refuse_umbilic
 
 
 @keys("network", surface="surface")
-def lay(
+def net_plan(
     surface: Surface[Any],
     project: Project,
     step: float | None,
@@ -45,7 +45,7 @@ def lay(
 
 
 @keys("network", surface="surface")
-def net_on(laid: NetPlan, project: Project) -> ElementNetwork:
+def net_of_plan(laid: NetPlan, project: Project) -> ElementNetwork:
     """The network of that lattice."""
     table = project.network
     # what is left of an adjusted net's misses is below what counts as closed
@@ -54,7 +54,7 @@ def net_on(laid: NetPlan, project: Project) -> ElementNetwork:
 
 
 @keys("network", surface="surface")
-def lay_traced(surface: Surface[Any], project: Project) -> StreamlinePlan:
+def streamline_plan(surface: Surface[Any], project: Project) -> StreamlinePlan:
     """How lines that follow from no lattice are laid."""
     refuse_umbilic(surface)
     table = project.network
@@ -62,7 +62,7 @@ def lay_traced(surface: Surface[Any], project: Project) -> StreamlinePlan:
 
 
 @keys("network", surface="surface")
-def trace(surface: Surface[Any], project: Project, progress: Progress) -> TracedNetwork:
+def streamline_net(surface: Surface[Any], project: Project, progress: Progress) -> TracedNetwork:
     """The network of such lines."""
     refuse_umbilic(surface)
     table = project.network
