@@ -32,10 +32,7 @@ types: .venv/ready
 	$(BIN)/mypy
 
 bench: .venv/ready
-	$(ONE) $(BIN)/python benchmarks/growth.py
-	$(ONE) $(BIN)/python benchmarks/film.py
-	$(ONE) $(BIN)/python benchmarks/projection.py
-	$(ONE) $(BIN)/python benchmarks/network.py
+	$(BIN)/python benchmarks/page.py
 
 docs: .venv/ready
 	$(ONE) $(BIN)/python docs/build.py

@@ -1,17 +1,18 @@
-"""What a second computation costs in the same process: seconds over those of the first one.
-
-CPU time of one thread; the ratios are those within one run.
-"""
+"""What a second computation costs in the same process, with what the first one left in a `lamella.Memory`."""
 
 from __future__ import annotations
 
-import time
+from collections.abc import Iterator
 from pathlib import Path
+from statistics import median
 from typing import Any
+
+from bench import Limit, Row, Table, clocked, show
 
 from lamella import Memory, compute, parse_project, read_project
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
+NAMES = ("08_two_rings", "10_saddle", "13_oculus", "14_three_columns", "16_hall")
 # key, value and the largest share of the first computation that it may cost
 CHANGES: tuple[tuple[str, Any, float], ...] = (
     ("lamella.height", 0.07, 0.15),
@@ -20,28 +21,37 @@ CHANGES: tuple[tuple[str, Any, float], ...] = (
 )
 
 
-def main() -> None:
-    """Print a table."""
-    print(f"{'example':18s} {'first, s':>9s} " + " ".join(f"{key:>18s}" for key, _, _ in CHANGES))
-    for example in ("08_two_rings", "10_saddle", "13_oculus", "14_three_columns", "16_hall"):
+def tables() -> Iterator[Table]:
+    """A row an example."""
+    rows: list[Row] = []
+    shares: dict[str, list[float]] = {key: [] for key, _, _ in CHANGES}
+    for example in NAMES:
         project = read_project(EXAMPLES / f"{example}.toml")
-        memory, seconds = Memory(), []
-        changed = [project]
+        memory = Memory()
+        first, _ = clocked(lambda: compute(project, folder=EXAMPLES, memory=memory))  # noqa: B023 (called at once)
+        row: dict[str, Any] = {"example": example, "first, s": first}
         for key, value, _ in CHANGES:
-            tables = project.model_dump(exclude_none=True)
+            written = project.model_dump(exclude_none=True)
             table, _, name = key.partition(".")
-            tables[table] = tables.get(table, {}) | {name: value}
+            written[table] = written.get(table, {}) | {name: value}
             if key == "network.cells":
-                tables[table].pop("spacing", None)
-            changed.append(parse_project(tables))
-        for one in changed:
-            start = time.process_time()
-            compute(one, folder=EXAMPLES, memory=memory)
-            seconds.append(time.process_time() - start)
-        ratios = " ".join(f"{one / seconds[0]:18.3f}" for one in seconds[1:])
-        print(f"{example:18s} {seconds[0]:9.2f} {ratios}")
-    print(f"{'limits':28s} " + " ".join(f"{limit:18.3f}" for _, _, limit in CHANGES))
+                written[table].pop("spacing", None)
+            changed = parse_project(written)
+            again, _ = clocked(lambda: compute(changed, folder=EXAMPLES, memory=memory))  # noqa: B023
+            row[f"other `{key}` / first"] = again / first
+            shares[key].append(again / first)
+        rows.append(row)
+    yield Table(
+        "A second computation",
+        "Examples computed with a `lamella.Memory`, then again with one value changed: surface and net that do not "
+        "hang on it are kept.",
+        tuple(rows),
+        tuple(
+            Limit(f"other `{key}` / first, median of the examples", median(shares[key]), at_most)
+            for key, _, at_most in CHANGES
+        ),
+    )
 
 
 if __name__ == "__main__":
-    main()
+    show(tables())
