@@ -43,8 +43,8 @@ api: .venv/ready
 clean:
 	rm -rf .venv out build dist
 
-# pinned versions, then the program itself with the pinned build tool
-.venv/ready: pins.txt pyproject.toml
+# pinned versions, then the program itself with the pinned build tool, which compiles the remesher's kernel
+.venv/ready: pins.txt pyproject.toml hatch_build.py src/lamella/surface/remesh/kernel.c
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "lamella needs Python 3.11 or newer; say which with: make demo PYTHON=python3.12")'
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r pins.txt

@@ -7,8 +7,11 @@ import numpy as np
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ties import MARGIN, nearest_whole
 from lamella.base.vectors import lengths
-from lamella.surface.remesh.draft import COLLAPSE_LENGTH, DRAFT_SHAPE, SPLIT_LENGTH, Draft, edge_lengths, narrow
+from lamella.surface.remesh.draft import BRIDGE, COLLAPSE_LENGTH, DRAFT_SHAPE, SPLIT_LENGTH, Draft, edge_lengths, narrow
+from lamella.surface.remesh.kernel import kernel
 from lamella.surface.remesh.topology import Topology, area_vectors, ragged, shape
+
+APART_PASSES = 3  # rounds of the selection of collapses that do not touch
 
 
 def collapse_short(draft: Draft) -> int:
@@ -57,8 +60,7 @@ def collapse_thin(draft: Draft, limit: float) -> int:
     int
         Number of edges collapsed.
     """
-    area, normals = draft.face_normals()
-    thin = np.flatnonzero(shape(draft.points[draft.faces], area, normals) < limit)
+    thin = np.flatnonzero(draft.face_shapes().shape < limit)
     if thin.size == 0:
         return 0
     topology = draft.topology()
@@ -81,6 +83,13 @@ def collapse_thin(draft: Draft, limit: float) -> int:
 
 def link_condition(draft: Draft, topology: Topology, edges: Integers, removed: Integers, kept: Integers) -> Booleans:
     """Whether a collapse keeps the surface a surface, and makes no long inner edge between boundary vertices."""
+    allowed: Booleans
+    fast = kernel()
+    if fast:
+        allowed = np.empty(edges.size, bool)
+        given = draft.points, draft.size, draft.boundary, *topology.neighbours, draft.faces, topology.halves
+        fast.call("link_condition", edges.size, *given, BRIDGE, edges, removed, kept, allowed)
+        return allowed
     owner, near = ragged(topology.neighbours, removed)
     other = near != kept[owner]
     owner, near = owner[other], near[other]
@@ -95,7 +104,7 @@ def link_condition(draft: Draft, topology: Topology, edges: Integers, removed: I
     # Each vertex opposite to a collapsed edge loses one of its edges.
     enough = ((topology.valence[apex] >= least) | (apex < 0)).all(axis=1)
     inner = topology.inner[edges]
-    allowed: Booleans = (common == np.where(inner, 2, 1)) & (bridges == 0) & enough
+    allowed = (common == np.where(inner, 2, 1)) & (bridges == 0) & enough
     return allowed
 
 
@@ -103,19 +112,25 @@ def star_after(
     draft: Draft, topology: Topology, removed: Integers, kept: Integers, target: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Worst shape after and before collapses, and the longest edge after them in units of the size, each (k,)."""
+    faces = draft.face_shapes()
+    fast = kernel()
+    if fast:
+        new, old, longest = np.empty((3, removed.size))
+        given = draft.points, draft.faces, draft.size, faces.normals, faces.shape, *topology.fans
+        fast.call("star_after", removed.size, *given, removed, kept, target, new, old, longest)
+        return new, old, longest
     owners, halves = zip(ragged(topology.fans, removed), ragged(topology.fans, kept), strict=True)
     owner, face = np.concatenate(owners), np.concatenate(halves) // 3
     triangle = draft.faces[face]
     goes = triangle == removed[owner][:, None]
     stays = triangle == kept[owner][:, None]
-    area, normals = draft.face_normals()
     old = np.full(removed.size, np.inf)
-    np.minimum.at(old, owner, shape(draft.points[draft.faces], area, normals)[face])
+    np.minimum.at(old, owner, faces.shape[face])
     remains = ~(goes.any(axis=1) & stays.any(axis=1))
     owner, face, triangle, moved = owner[remains], face[remains], triangle[remains], (goes | stays)[remains]
     corners = np.where(moved[..., None], target[owner][:, None], draft.points[triangle])
     new = np.full(removed.size, np.inf)
-    np.minimum.at(new, owner, shape(corners, area_vectors(corners), normals[face]))
+    np.minimum.at(new, owner, shape(corners, area_vectors(corners), faces.normals[face]))
     spoke = corners - target[owner][:, None]
     reach = lengths(spoke) / (0.5 * (draft.size[triangle] + draft.size[kept[owner]][:, None]))
     longest = np.zeros(removed.size)
@@ -128,9 +143,17 @@ def apart(draft: Draft, topology: Topology, removed: Integers, kept: Integers, r
     place = np.empty(rank.size, dtype=np.int64)
     place[np.lexsort((np.arange(rank.size) * 7919 % 104729, rank))] = np.arange(rank.size)
     chosen = np.zeros(rank.size, dtype=bool)
+    fast = kernel()
+    if fast:
+        n, k = len(draft.points), rank.size
+        left, at_vertex, around = (np.empty(count, np.int64) for count in (k, n, n))
+        blocked = np.empty(n, bool)
+        given = n, len(draft.faces), draft.faces, k, removed, kept, place, APART_PASSES
+        fast.call("apart", *given, chosen, left, at_vertex, around, blocked)
+        return chosen
     left = np.arange(rank.size)
     corner = draft.faces.ravel()
-    for _ in range(3):
+    for _ in range(APART_PASSES):
         at_vertex = np.full(len(draft.points), rank.size)
         np.minimum.at(at_vertex, removed[left], place[left])
         np.minimum.at(at_vertex, kept[left], place[left])

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.ties import rounded
 from lamella.base.vectors import dots, lengths
-from lamella.surface.remesh.topology import Topology, area_vectors, connect, unit
+from lamella.surface.remesh.kernel import kernel
+from lamella.surface.remesh.topology import Topology, area_vectors, connect, shape, unit
 
 SPLIT_LENGTH, COLLAPSE_LENGTH = (
     4.0 / 3.0,
@@ -20,6 +22,24 @@ DRAFT_SHAPE = 0.35  # shape above which an operation may make a triangle worse
 BEND = 0.5  # cosine of the angle between two faces above which they count as one piece of surface
 EAR = np.deg2rad(75.01)  # a corner sharper than this, which no design draws, is one triangle with two boundary edges
 BRIDGE = 0.7  # an inner edge between boundary vertices longer than this many sizes gets a vertex in its middle
+
+
+class FaceShapes(NamedTuple):
+    """Faces of a draft.
+
+    Attributes
+    ----------
+    area : (m, 3)
+        Area vectors, m^2.
+    normals : (m, 3)
+        Unit normals; a face turned over takes that of its surroundings.
+    shape : (m,)
+        See `lamella.surface.remesh.topology.shape`.
+    """
+
+    area: Floats
+    normals: Floats
+    shape: Floats
 
 
 @dataclass
@@ -87,13 +107,21 @@ class Draft:
         self.points, self.loop, self.station = self.points[stays], self.loop[stays], self.station[stays]
         self.fixed, self.size = self.fixed[stays], self.size[stays]
 
-    def face_normals(self) -> tuple[Floats, Floats]:
-        """Area vectors of the faces, and unit normals that a face turned over takes from its surroundings."""
+    def face_shapes(self) -> FaceShapes:
+        """Measured now."""
+        fast = kernel()
+        if fast:
+            n, m = len(self.points), len(self.faces)
+            area, normals = np.empty((2, m, 3))
+            shapes, room = np.empty(m), np.empty((n, 3))
+            fast.call("face_shapes", n, m, self.points, self.faces, BEND, area, normals, shapes, room)
+            return FaceShapes(area, normals, shapes)
         area = area_vectors(self.points[self.faces])
         at_vertices = self.vertex_normals(area)
         around = unit(at_vertices[self.faces].sum(axis=1))
         own = unit(area)
-        return area, np.where((dots(own, around) > BEND)[:, None], own, around)
+        normals = np.where((dots(own, around) > BEND)[:, None], own, around)
+        return FaceShapes(area, normals, shape(self.points[self.faces], area, normals))
 
     def vertex_normals(self, area: Floats) -> Floats:
         """Unit normals at the vertices from the area vectors of the faces, (n, 3)."""

@@ -23,7 +23,7 @@ from lamella.surface.remesh.flip import flip
 from lamella.surface.remesh.rim import Plan, Rim
 from lamella.surface.remesh.smooth import round_off, smooth
 from lamella.surface.remesh.split import split_long
-from lamella.surface.remesh.topology import Topology, connect, shape
+from lamella.surface.remesh.topology import Topology, connect
 
 __all__ = ["Rim", "TriangleMesh", "remesh"]
 
@@ -139,8 +139,7 @@ def remesh(
         _delaunay(draft)
         draft.size = np.array(size(draft.points))
         split_long(draft, look_inside=False, longest=TOO_LONG)
-    area, normals = draft.face_normals()
-    folded = int(np.sum(shape(draft.points[draft.faces], area, normals) < BROKEN_SHAPE))
+    folded = int(np.sum(draft.face_shapes().shape < BROKEN_SHAPE))
     if folded:
         raise ValueError(
             f"{folded} triangles are folded over or flat after remeshing: the start is folded, or too coarse "

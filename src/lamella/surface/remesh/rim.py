@@ -13,11 +13,13 @@ from lamella.base.arrays import Floats, Integers
 from lamella.base.ties import MARGIN, grid_of, nearest_whole, rounded
 from lamella.surface.remesh.collapse import apart, link_condition, star_after
 from lamella.surface.remesh.draft import Draft
+from lamella.surface.remesh.smooth import guarded
 from lamella.surface.remesh.split import apply_splits
-from lamella.surface.remesh.topology import Topology, area_vectors, disjoint, shape
+from lamella.surface.remesh.topology import Topology, disjoint
 
 CORNER_PARAMETER = 1e-9  # difference of boundary parameters below which a vertex sits in a corner
 LOOP_EDGES_MIN = 3  # edges of a loop
+SPREAD_SHAPE = 0.1  # shape above which a careful move of a boundary vertex may make a triangle worse
 STATIONS = grid_of(1.0)  # to which stations are rounded, in edges
 
 
@@ -283,15 +285,8 @@ def spread(draft: Draft, plans: Sequence[Plan], careful: bool, step: float = 0.6
         return
     goal[rim] = curve_points(draft, plans, draft.loop[rim], station[rim])
     if careful:
-        area, normals = draft.face_normals()
-        before = shape(draft.points[draft.faces], area, normals)
-        while True:
-            corners = goal[draft.faces]
-            after = shape(corners, area_vectors(corners), normals)
-            back = np.unique(draft.faces[after < np.minimum(0.1, before) - MARGIN])
-            back = back[station[back] != draft.station[back]]
-            if back.size == 0:
-                break
-            goal[back], station[back] = draft.points[back], draft.station[back]
+        moves = station != draft.station
+        goal, away = guarded(draft, goal, draft.face_shapes(), SPREAD_SHAPE, moves)
+        station = np.where(moves & ~away, draft.station, station)
     draft.points, draft.station = goal, station
     draft.size[rim] = draft.size_at(goal[rim])

@@ -9,8 +9,10 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.vectors import crosses, dots, lengths
+from lamella.surface.remesh.kernel import kernel
 
 NONE = -1
+NO_MANIFOLD = "the triangles do not form an oriented manifold: an edge has three faces or two that disagree"
 
 
 @dataclass(frozen=True)
@@ -95,6 +97,16 @@ def connect(faces: Integers, vertices: int) -> Topology:
     ValueError
         If an edge has more than two faces, or two that run the same way along it.
     """
+    fast = kernel()
+    if fast:
+        half = 3 * len(faces)
+        keys, edge_of_half, order = np.empty((3, half), np.int64)
+        ends, halves = np.empty((2, half, 2), np.int64)
+        offsets = np.empty(vertices + 1, np.int64)
+        count = fast.call("connect", len(faces), vertices, faces, keys, ends, halves, edge_of_half, offsets, order)
+        if count < 0:
+            raise ValueError(NO_MANIFOLD)
+        return Topology(faces, vertices, keys[:count], ends[:count], halves[:count], edge_of_half)
     start, end = faces.ravel(), faces[:, [1, 2, 0]].ravel()
     key = np.minimum(start, end) * vertices + np.maximum(start, end)
     order = np.argsort(key, kind="stable")
@@ -103,21 +115,26 @@ def connect(faces: Integers, vertices: int) -> Topology:
     opens[:1] = True
     np.not_equal(ordered[1:], ordered[:-1], out=opens[1:])
     first = np.flatnonzero(opens)
-    count = np.diff(first, append=order.size)
+    times = np.diff(first, append=order.size)
     edge_of_half = np.empty(order.size, dtype=np.int64)
     edge_of_half[order] = np.cumsum(opens) - 1
     halves = np.full((first.size, 2), NONE)
     halves[:, 0] = order[first]
-    double = count == 2
+    double = times == 2
     halves[double, 1] = order[first[double] + 1]
-    if count.max(initial=0) > 2 or np.any(start[halves[double, 0]] != end[halves[double, 1]]):
-        raise ValueError("the triangles do not form an oriented manifold: an edge has three faces or two that disagree")
+    if times.max(initial=0) > 2 or np.any(start[halves[double, 0]] != end[halves[double, 1]]):
+        raise ValueError(NO_MANIFOLD)
     ends = np.column_stack([start[halves[:, 0]], end[halves[:, 0]]])
     return Topology(faces, vertices, ordered[first], ends, halves, edge_of_half)
 
 
 def grouped(owner: Integers, count: int) -> tuple[Integers, Integers]:
     """Offsets (count + 1,) and the places of `owner` sorted by owner."""
+    fast = kernel()
+    if fast:
+        offsets, order = np.empty(count + 1, np.int64), np.empty(owner.size, np.int64)
+        fast.call("grouped", owner.size, owner, count, offsets, order)
+        return offsets, order
     offsets = np.zeros(count + 1, dtype=np.int64)
     np.cumsum(np.bincount(owner, minlength=count), out=offsets[1:])
     return offsets, np.argsort(owner, kind="stable")
@@ -152,6 +169,12 @@ def disjoint(touched: Integers, rank: Floats | Integers, items: int, passes: int
         return chosen
     place = np.empty(rank.size, dtype=np.int64)
     place[np.lexsort((scattered(rank.size), rank))] = np.arange(rank.size)
+    fast = kernel()
+    if fast:
+        left, best = np.empty(rank.size, np.int64), np.empty(items, np.int64)
+        used = np.empty(items, bool)
+        fast.call("disjoint", *touched.shape, touched, place, items, passes, chosen, left, best, used)
+        return chosen
     left = np.arange(rank.size)
     used = np.zeros(items, dtype=bool)
     for _ in range(passes):
