@@ -56,6 +56,8 @@ from lamella.surface.closed_forms.scherk import Scherk as Scherk
 from lamella.surface.element.places import Places as Places
 from lamella.surface.element.surface import ElementSurface as ElementSurface
 from lamella.surface.form_finding.film_in_loops import film as film
+from lamella.surface.form_finding.followed_film import FollowedFilm as FollowedFilm
+from lamella.surface.form_finding.followed_film import follow as follow
 from lamella.surface.from_mesh.fit_cmc import fit_cmc as fit_cmc
 from lamella.surface.from_mesh.fit_surface import fit_surface as fit_surface
 from lamella.surface.mesh import SurfaceMesh as SurfaceMesh

@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from lamella.base.drawing_origin import origin_figure, origin_of, reported_from
-from lamella.base.errors import InputError
+from lamella.base.drawing_origin import origin_figure, reported_from
 from lamella.base.progress import Progress, silent
 from lamella.surface.boundary.checks import check_corner_count, check_loops
 from lamella.surface.boundary.curve import Loop
-from lamella.surface.boundary.curves import as_loop
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.find import find_film, notes_on, remarks_on
-
-
-def _named(loop: Loop, k: int) -> Loop:
-    """Loops have names in messages and files."""
-    return loop if loop.name else replace(loop, name="outer" if k == 0 else f"hole {k}")
+from lamella.surface.form_finding.given_loops import given_loops, refuse_both
 
 
 def film(
@@ -78,17 +70,8 @@ def film(
     >>> print(f"{film.describe()['stability']}, {nearest[0, 0]:.3f} m")
     stable, 2.461 m
     """
-    if volume is not None and mean_curvature:
-        raise InputError(
-            f"mean_curvature = {mean_curvature:g} and volume = {volume:g} are given", "leave one of them out", "volume"
-        )
-    given = [loops] if isinstance(loops, Loop) else list(loops)
-    if not given:
-        raise InputError("there is no loop", "give at least one closed curve", "loops")
-    curves = tuple(_named(as_loop(loop), k) for k, loop in enumerate(given))
-    origin = origin_of(curves[0].at(np.arange(8) / 8))
-    if any(origin):
-        curves = tuple(curve.scaled(1.0, -np.array(origin)) for curve in curves)
+    refuse_both(mean_curvature, volume)
+    curves, origin = given_loops(loops)
     with reported_from(origin):
         check_loops(curves)
         check_corner_count(curves, most_nodes, tolerance)

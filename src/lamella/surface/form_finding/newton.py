@@ -40,6 +40,8 @@ TURNED = 0.7
 # share of the residual that a step leaves, above which its factorisation is used again
 MUCH_LEFT = 0.03
 NEWTON_HALVINGS_MAX = 12
+# a step folds elements where a normal turns beyond this cosine, or an area element shrinks to less than this part
+FOLDED_COSINE, FOLDED_AREA = 0.3, 0.1
 
 
 @dataclass(frozen=True)
@@ -200,7 +202,7 @@ class _Search:
     def step(self) -> _Step:
         """One step, as far as no element folds."""
         # the normals at the integration points against the directions of their element
-        if _turned(self.film, self.directions, self.first) < TURNED:
+        if least_cosine(self.film, self.directions, self.first) < TURNED:
             self._take_directions()
         gradient = self.pull(self.film.nodes, self.first, self.mean_curvature)[self.free]
         solved = self._solve(gradient)
@@ -322,10 +324,16 @@ def _step_along(
     return one[:-1] + change * other[:-1], change, factor.negative - 1
 
 
-def _turned(film: Film, directions: Floats, first: FirstVariation) -> float:
+def least_cosine(film: Film, directions: Floats, first: FirstVariation) -> float:
     """Least cosine between a normal and the directions of its element."""
     middle = directions[film.connectivity.faces].mean(1)
     return float(np.einsum("ceq,ec->eq", first.normals, middle).min())
+
+
+def are_folded(before: FirstVariation, after: FirstVariation) -> bool:
+    """Whether a step turns an element over, or squeezes it, anywhere."""
+    turned = (after.normals * before.normals).sum(0) < FOLDED_COSINE
+    return bool(turned.any() or (after.elements < FOLDED_AREA * before.elements).any())
 
 
 def _line_search(
@@ -342,7 +350,7 @@ def _line_search(
     for _ in range(NEWTON_HALVINGS_MAX):
         nodes = film.nodes + share * shift[:, None] * variation.directions
         there = variation.first(nodes)
-        folded = ((there.normals * first.normals).sum(0) < 0.3).any() or (there.elements < 0.1 * first.elements).any()
+        folded = are_folded(first, there)
         new_slope = float(pull(nodes, there) @ shift)
         calm = not downhill or new_slope <= max(0.9 * abs(slope), 1e-10 * there.area)
         if not folded and calm:
@@ -360,4 +368,13 @@ def _swept(film: Film, variation: Variation, shift: Floats, share: float) -> flo
     return total
 
 
-__all__ = ["Along", "Equilibrium", "FixedH", "NoFilmError", "Volume", "find_equilibrium"]
+__all__ = [
+    "Along",
+    "Equilibrium",
+    "FixedH",
+    "NoFilmError",
+    "Volume",
+    "are_folded",
+    "find_equilibrium",
+    "least_cosine",
+]
