@@ -35,10 +35,9 @@ from lamella.project.tables import (
     Table,
     project_schema,
 )
-from lamella.stages.all_stages import STAGES, TO_COME
+from lamella.stages.all_stages import STAGES, TO_COME, WRITES
 from lamella.stages.results import Results
 from lamella.stages.schema import summary_schema
-from lamella.stages.write import WRITES
 from lamella.view.drawing_picture import draw_part, draw_sheets
 from lamella.view.picture import draw
 from lamella.view.surface_picture import Panel, draw_surface

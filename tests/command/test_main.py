@@ -96,19 +96,6 @@ def test_wrong_arguments(here: Path, capsys: pytest.CaptureFixture[str], argumen
     assert told.count("\n") == 2
 
 
-def test_help_is_instant() -> None:
-    """It imports nothing heavy."""
-    code = (
-        "import sys\nfrom lamella.command.main import main\n"
-        "try: main(['--help'])\nexcept SystemExit: pass\n"
-        "heavy = {'numpy', 'scipy', 'pydantic', 'orjson', 'ezdxf', 'rhino3dm', 'tomli_w'} & set(sys.modules)\n"
-        "sys.exit(f'imported {heavy}' if heavy else 0)"
-    )
-    for arguments in (["-c", code], ["-c", code.replace("--help", "--version")]):
-        done = subprocess.run([sys.executable, *arguments], capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-
-
 # --- new, check, examples, schema -------------------------------------------------------------------------------
 
 

@@ -4,10 +4,12 @@ import re
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 import lamella
 from lamella import Cylinder, Section, find_material
-from lamella.fabrication import make_parts
+from lamella.fabrication.collisions import _near
+from lamella.fabrication.parts import make_parts
 from lamella.strip.lamellas import make_lamellas
 
 RADIUS, CELLS = 2.0, 20
@@ -46,3 +48,15 @@ def test_outer_layers_meet_earlier():
 
 def test_a_crossing_on_the_rim_has_its_slot_and_is_no_collision():
     assert not warnings(0.0, 0.03)
+
+
+@pytest.mark.parametrize("sizes", [(0, 3), (1, 1), (40, 90)])
+def test_pairs_of_ends_are_those_of_a_search_tree(sizes):
+    rng = np.random.default_rng(5)
+    one, other = (rng.uniform(size=(n, 3)) * [1, 9, 1] for n in sizes)
+    for distance in (0.3, 1.0, 20.0):
+        expected = cKDTree(one).query_ball_point(other, distance) if len(one) else [()] * len(other)
+        pairs = {(i, j) for j, near in enumerate(expected) for i in near}
+        first, second = _near(one, other, distance)
+        assert len(first) == len(pairs)
+        assert set(zip(first.tolist(), second.tolist(), strict=True)) == pairs

@@ -16,8 +16,11 @@ import pytest
 from matplotlib.path import Path as Polygon
 
 from fabrication.test_strips import Strip, build, random_strips, sampled
-from lamella.fabrication import make_parts, nest, read_slots, write_drawings
+from lamella.fabrication.drawing import write_drawings
 from lamella.fabrication.engraving import engrave
+from lamella.fabrication.parts import make_parts
+from lamella.fabrication.read_back import read_slots
+from lamella.fabrication.sheet import nest
 from lamella.fabrication.stroke_font import GLYPH_HEIGHT, GLYPH_WIDTH, GLYPHS, text_strokes, text_width
 
 TESTS = Path(__file__).parents[1]

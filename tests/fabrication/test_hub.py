@@ -5,7 +5,7 @@ import pytest
 
 import lamella
 from lamella import Enneper, Section, find_material
-from lamella.fabrication import make_parts
+from lamella.fabrication.parts import make_parts
 from lamella.network.network import SINGULAR
 from lamella.strip.lamellas import make_lamellas
 

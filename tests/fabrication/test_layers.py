@@ -13,10 +13,14 @@ import lamella
 from fabrication.test_sheets import placed_outlines
 from fabrication.test_strips import sampled
 from lamella import Catenoid, Enneper, Section, Unduloid, find_material
-from lamella.fabrication import make_parts, nest, read_slots, write_drawings, write_schedule
 from lamella.fabrication.axis import Axis, outline
+from lamella.fabrication.drawing import write_drawings
 from lamella.fabrication.engraving import engrave
 from lamella.fabrication.flat import outline_area
+from lamella.fabrication.parts import make_parts
+from lamella.fabrication.read_back import read_slots
+from lamella.fabrication.schedule import write_schedule
+from lamella.fabrication.sheet import nest
 from lamella.fabrication.stroke_font import text_strokes
 from lamella.strip.lamellas import make_lamellas
 from lamella.strip.layers import SIDES

@@ -8,7 +8,8 @@ import pytest
 import lamella
 from lamella import Catenoid
 from lamella.base.material import MATERIALS
-from lamella.fabrication import Parts, make_parts
+from lamella.fabrication.part import Parts
+from lamella.fabrication.parts import make_parts
 from lamella.network.network import REGULAR, Network
 from lamella.strip.lamellas import Section, make_lamellas
 

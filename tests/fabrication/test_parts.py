@@ -8,9 +8,9 @@ from scipy.integrate import quad
 
 from fabrication.test_strips import Strip, build, random_strips, sampled
 from lamella.base.errors import InputError
-from lamella.fabrication import make_parts
 from lamella.fabrication.axis import Axis
 from lamella.fabrication.flat import extents, longest_fitting, outline_area
+from lamella.fabrication.parts import make_parts
 from lamella.fabrication.splitting import cut_stations
 
 STEEL = 7900.0

@@ -9,8 +9,10 @@ import pytest
 from scipy.spatial import cKDTree
 
 from fabrication.test_strips import Strip, build, random_strips, sampled
-from lamella.fabrication import make_parts, nest, write_drawings, write_schedule
-from lamella.fabrication.schedule import congruent_parts
+from lamella.fabrication.drawing import write_drawings
+from lamella.fabrication.parts import make_parts
+from lamella.fabrication.schedule import congruent_parts, write_schedule
+from lamella.fabrication.sheet import nest
 
 DENSITY = 8000.0
 

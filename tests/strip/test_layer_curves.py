@@ -23,7 +23,7 @@ from lamella import (
     parse_project,
     write,
 )
-from lamella.fabrication import make_parts
+from lamella.fabrication.parts import make_parts
 from lamella.network.elements.element_network import element_network
 from lamella.network.network import Network
 from lamella.strip.lamellas import crossings, make_lamellas

@@ -5,7 +5,7 @@ import pytest
 
 import lamella
 from lamella import Catenoid, Helicoid, Section, Unduloid, find_material
-from lamella.fabrication import make_parts
+from lamella.fabrication.parts import make_parts
 from lamella.fabrication.stroke_font import GLYPHS
 from lamella.strip.lamellas import layer_drift, make_lamellas
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from conftest import load
-from lamella.fabrication import read_slots
+from lamella.fabrication.read_back import read_slots
 
 SURFACES = [
     {"kind": "unduloid", "neck_radius": 1.1, "bulge_radius": 2.3, "height": [-1.3, 2.2]},

@@ -61,7 +61,6 @@ class _Parser(argparse.ArgumentParser):
 
 def _run_description() -> str:
     from lamella.stages import all_stages
-    from lamella.stages.write import WRITES
 
     def files(writes: tuple[tuple[str, str], ...]) -> str:
         return "".join(f"    {names:40s} {meaning}\n" for names, meaning in writes)
@@ -72,7 +71,7 @@ def _run_description() -> str:
     )
     return (
         "Compute a project and write its folder, whole or not at all.\n\n"
-        f"every run writes\n{files(WRITES)}\nstages, and what each adds:\n{stages}"
+        f"every run writes\n{files(all_stages.WRITES)}\nstages, and what each adds:\n{stages}"
     )
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from lamella.base.arrays import Floats
+from lamella.base.arrays import Floats, Integers
+from lamella.base.ragged import ragged_ranges
 from lamella.network.network import BOUNDARY, Network
 
 
@@ -39,8 +39,8 @@ def end_collisions(network: Network, before: Floats, after: Floats, spread: floa
     if not len(a) or not len(b):
         return [], 0.0
     points = network.sample_points[sample]
-    pairs = cKDTree(points[a]).sparse_distance_matrix(cKDTree(points[b]), 2 * reach[free].max(), output_type="ndarray")
-    a, b = a[pairs["i"]], b[pairs["j"]]
+    near = _near(points[a], points[b], 2 * float(reach[free].max()))
+    a, b = a[near[0]], b[near[1]]
     # where the two straight ends p + x t come closest: they are nearly at right angles
     gap = points[b] - points[a]
     cosine = np.einsum("ij,ij->i", outwards[a], outwards[b])
@@ -54,3 +54,20 @@ def end_collisions(network: Network, before: Floats, after: Floats, spread: floa
     pairs = np.unique(np.column_stack([lamella[a[meet]], lamella[b[meet]]]), axis=0)
     names = [f"{network.ids[one]} and {network.ids[other]}" for one, other in pairs.tolist()]
     return names, float(excess.max(initial=0.0))
+
+
+def _near(one: Floats, other: Floats, distance: float) -> tuple[Integers, Integers]:
+    """Indices of all pairs of points (n, 3), (m, 3) at most that far apart.
+
+    Ends are few: they are sorted along the axis in which they spread most. (A k-d tree is faster for many, but scipy's
+    takes longer to import than a check of a closed form has.)
+    """
+    axis = int(np.ptp(np.concatenate([one, other]), axis=0).argmax())
+    order = np.argsort(other[:, axis], kind="stable")
+    along = other[order, axis]
+    begin = np.searchsorted(along, one[:, axis] - distance, side="left")
+    counts = np.searchsorted(along, one[:, axis] + distance, side="right") - begin
+    first = np.repeat(np.arange(len(one)), counts)
+    second = order[np.repeat(begin, counts) + ragged_ranges(counts)]
+    close = ((one[first] - other[second]) ** 2).sum(1) <= distance**2
+    return first[close], second[close]

@@ -14,3 +14,10 @@ STAGES: tuple[Stage[Any], ...] = (SurfaceStage(), NetworkStage(), LamellasStage(
 
 TO_COME = ("structure",)
 """Announced in the file interface: null in summary.json."""
+
+WRITES = (
+    ("summary.json", "all figures and warnings"),
+    ("project.toml", "the project with all defaults filled in"),
+    ("report.html", "the same to look at"),
+)
+"""Files of every run, besides those of its stages."""

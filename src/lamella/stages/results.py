@@ -17,7 +17,8 @@ from lamella.stages.stage import Upstream
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from lamella.fabrication import Nesting, Parts
+    from lamella.fabrication.part import Parts
+    from lamella.fabrication.sheet import Nesting
     from lamella.network.network import Network
     from lamella.stages.surface.adjusted_table import AdjustedTable
     from lamella.strip.lamellas import Lamellas

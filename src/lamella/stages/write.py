@@ -24,13 +24,6 @@ from lamella.stages.stage import File, Stage
 from lamella.stages.wanted import check_name
 from lamella.view.report import write_report
 
-WRITES = (
-    ("summary.json", "all figures and warnings"),
-    ("project.toml", "the project with all defaults filled in"),
-    ("report.html", "the same to look at"),
-)
-"""Files of every run, besides those of its stages."""
-
 
 def run(
     project_file: str | Path,

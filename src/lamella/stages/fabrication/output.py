@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from lamella.fabrication import Nesting, Parts
+from lamella.fabrication.part import Parts
+from lamella.fabrication.sheet import Nesting
 
 
 @dataclass(frozen=True)

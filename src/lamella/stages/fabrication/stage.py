@@ -9,7 +9,8 @@ from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
 from lamella.base.progress import Progress
-from lamella.fabrication import make_parts, nest, write_drawings, write_schedule
+from lamella.fabrication.parts import make_parts
+from lamella.fabrication.sheet import nest
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
 from lamella.stages.fabrication.defaults import check_fabrication
@@ -67,6 +68,9 @@ class FabricationStage(Stage[FabricationOutput]):
         return (with_keys(warning, *named) for warning in out.parts.warnings)
 
     def files(self, out: FabricationOutput, up: Upstream) -> Iterator[File]:
+        from lamella.fabrication.drawing import write_drawings
+        from lamella.fabrication.schedule import write_schedule
+
         signed: Any = {"name": up.project.name, "version": __version__}
         network = in_drawing(up.outputs["network"].network, drawing_origin(up.surface))
         lamellas = up.outputs["lamellas"].lamellas

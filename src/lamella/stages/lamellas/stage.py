@@ -10,7 +10,6 @@ from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
 from lamella.base.progress import Progress
-from lamella.files.write.lamellas_json import write_lamellas
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
 from lamella.stages.keys import keys
@@ -87,6 +86,8 @@ class LamellasStage(Stage[LamellasOutput]):
         yield from layer_warnings(network, out.lamellas, out.material)
 
     def files(self, out: LamellasOutput, up: Upstream) -> Iterator[File]:
+        from lamella.files.write.lamellas_json import write_lamellas
+
         network = in_drawing(out.network, drawing_origin(up.surface))
         signed: Any = {"name": up.project.name, "version": __version__}
         yield File("lamellas.json", lambda path: write_lamellas(path, network, out.lamellas, **signed))

@@ -16,7 +16,6 @@ from lamella.network.streamlines.applicability import is_traced
 from lamella.project.tables import Project
 from lamella.stages.pattern_of_table import pattern_of
 from lamella.surface.closed_forms.closed_form import ClosedForm
-from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 
 if TYPE_CHECKING:
@@ -79,6 +78,9 @@ class OtherCells:
             return False
         if isinstance(surface, ClosedForm):
             return True
+        # heavy, and closed forms do without
+        from lamella.surface.element.surface import ElementSurface
+
         few = isinstance(surface, ElementSurface) and len(surface.nodes) <= MOST_ELEMENT_NODES
         return few and table.closing != "adjust"
 
@@ -96,7 +98,6 @@ class OtherCells:
         if isinstance(self.surface, ClosedForm):
             density = choose_density(self.surface, cells=cells, pattern=pattern_of(table))
             return trace_closed_form(self.surface, density, minimum_length=table.minimum_length)
-        # heavy, and closed forms do without
         from lamella.stages.network.net_of_table import net_of_plan, net_plan
 
         project = self.project.model_copy(update={"network": table})

@@ -10,9 +10,6 @@ from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, silent
-from lamella.files.write.meshes import write_network_obj
-from lamella.files.write.network_json import write_network
-from lamella.files.write.nodes_csv import write_nodes_csv
 from lamella.network.lattice.density import Density, choose_density
 from lamella.network.lattice.trace import trace_closed_form
 from lamella.network.streamlines.applicability import check_traced, is_traced
@@ -29,7 +26,6 @@ from lamella.stages.pattern_of_table import pattern_of, refuse_lines
 from lamella.stages.stage import Estimate, File, Stage, Upstream
 from lamella.stages.unit_first import unit_first
 from lamella.surface.closed_forms.closed_form import ClosedForm
-from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
 
@@ -124,6 +120,10 @@ class NetworkStage(Stage[NetworkOutput]):
         )
 
     def files(self, out: NetworkOutput, up: Upstream) -> Iterator[File]:
+        from lamella.files.write.meshes import write_network_obj
+        from lamella.files.write.network_json import write_network
+        from lamella.files.write.nodes_csv import write_nodes_csv
+
         network = in_drawing(out.network, drawing_origin(up.surface))
         signed: Any = {"name": up.project.name, "version": __version__}
         yield File("network.json", lambda path: write_network(path, network, **signed))
@@ -182,6 +182,7 @@ def _plan(up: Upstream, step: float | None, progress: Progress) -> NetPlan:
 def _coordinates(up: Upstream, progress: Progress) -> NetCoordinates:
     """Isothermic coordinates of a surface of elements."""
     from lamella.network.elements.net_coordinates import net_coordinates
+    from lamella.surface.element.surface import ElementSurface
 
     surface, seams = up.surface, up.project.network.closing == "open"
     assert isinstance(surface, ElementSurface)

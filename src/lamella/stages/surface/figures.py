@@ -25,8 +25,7 @@ from lamella.stages.figure import (
     record,
 )
 from lamella.stages.surface.output import SurfaceOutput
-from lamella.surface.element.rim import element_rims
-from lamella.surface.element.surface import ElementSurface
+from lamella.surface.closed_forms.closed_form import ClosedForm
 
 Rows = Iterator[tuple[str, str, str]]
 
@@ -43,6 +42,12 @@ def _deviation(out: SurfaceOutput) -> float:
 def _loops(out: SurfaceOutput) -> Any:
     """The boundary loops of a surface of elements; those of a mesh are all held."""
     surface = out.surface
+    if isinstance(surface, ClosedForm):
+        return ABSENT
+    # heavy, and closed forms do without
+    from lamella.surface.element.rim import element_rims
+    from lamella.surface.element.surface import ElementSurface
+
     if not isinstance(surface, ElementSurface):
         return ABSENT
     tables = getattr(out.project.surface, "boundary", ())

@@ -10,8 +10,6 @@ from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report
 from lamella.base.wording import one_line
-from lamella.files.whole import write_whole
-from lamella.files.write.meshes import write_surface_obj, write_surface_ply
 from lamella.project.read import moved
 from lamella.project.tables import FormFoundTable, Project
 from lamella.stages.drawn import in_drawing
@@ -23,7 +21,7 @@ from lamella.stages.surface.figures import FIGURES, REPORT
 from lamella.stages.surface.output import SurfaceOutput
 from lamella.stages.surface.surface_of_table import make_surface
 from lamella.stages.surface.warnings import size_warnings, surface_file_warnings
-from lamella.surface.element.surface import ElementSurface
+from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.surface import Surface
 
 if TYPE_CHECKING:
@@ -70,6 +68,8 @@ class SurfaceStage(Stage[SurfaceOutput]):
         yield from surface_file_warnings(out.surface)
 
     def files(self, out: SurfaceOutput, up: Upstream) -> Iterator[File]:
+        from lamella.files.write.meshes import write_surface_obj, write_surface_ply
+
         project, origin = up.project, drawing_origin(out.surface)
         signed: Any = {"name": project.name, "version": __version__}
         mesh = in_drawing(out.mesh, origin)
@@ -78,8 +78,12 @@ class SurfaceStage(Stage[SurfaceOutput]):
         yield File("surface.obj", lambda path: write_surface_obj(path, mesh, **signed))
         yield File("surface.ply", lambda path: write_surface_ply(path, mesh, **signed))
         surface = out.surface
+        if isinstance(surface, ClosedForm):
+            return
+        # heavy, and closed forms do without
+        from lamella.surface.element.surface import ElementSurface
+
         if isinstance(surface, ElementSurface):
-            # Rhino's library is heavy, and closed forms and checks do without
             from lamella.files.write.rhino_file import Frame
             from lamella.files.write.surface_3dm import write_surface_3dm
 
@@ -118,6 +122,7 @@ def _found(up: Upstream, progress: Progress) -> tuple[Surface[Any], AdjustedTabl
 
 def _adjusted_files(adjusted: AdjustedTable, up: Upstream) -> Iterator[File]:
     """The project with the boundary as it was adjusted, and the curves of that boundary that came from files."""
+    from lamella.files.whole import write_whole
     from lamella.stages.surface.boundary_of_tables import boundary_loops, drawing_unit
 
     name = one_line(up.project.name)

@@ -7,7 +7,7 @@ from typing import Any
 
 from lamella.base.message import Message
 from lamella.base.vectors import diagonal
-from lamella.surface.element.surface import SMOOTHED_ORDER, ElementSurface
+from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.mesh import SurfaceMesh
 from lamella.surface.surface import Surface
 
@@ -52,6 +52,11 @@ def order_warning(order: int, tolerance: float, most_nodes: int) -> Message | No
 
 def surface_file_warnings(surface: Surface[Any]) -> Iterator[Message]:
     """A surface.3dm that is no NURBS."""
+    if isinstance(surface, ClosedForm):
+        return
+    # heavy, and closed forms do without
+    from lamella.surface.element.surface import SMOOTHED_ORDER, ElementSurface
+
     if not isinstance(surface, ElementSurface):
         return
     from lamella.files.write.surface_3dm import MESH_TOLERANCE, MOST_PATCHES

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError, require_positive
+from lamella.base.root import root_between
 from lamella.base.wording import rounded
 from lamella.surface.closed_forms.elliptic import epsilon, first_kind, jacobi, quarter_period
 from lamella.surface.closed_forms.revolution import Profile, SurfaceOfRevolution
@@ -147,7 +147,7 @@ class Nodoid(Delaunay):
 
     def parameter_at_height(self, z: float) -> float:
         reach = self._fold_parameter
-        return float(brentq(lambda u: float(self.profile(np.array([u])).z[0]) - z, -reach, reach, xtol=1e-15))
+        return root_between(lambda u: float(self.profile(np.array([u])).z[0]) - z, -reach, reach, tolerance=1e-15)
 
     def describe(self) -> dict[str, Any]:
         """Height of the fold, m."""

@@ -6,10 +6,10 @@ from abc import abstractmethod
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from lamella.base.arrays import Complexes, Floats
 from lamella.base.errors import InputError
+from lamella.base.root import root_between
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.closed_forms.outline import Ring
 from lamella.surface.points import SurfacePoints
@@ -63,7 +63,7 @@ class SurfaceOfRevolution(ClosedForm):
         while residual(sign * np.sign(z) * reach) * np.sign(z) < 0:
             reach *= 2
         ends = sorted((0.0, sign * np.sign(z) * reach))
-        return float(brentq(residual, *ends, xtol=1e-15, rtol=1e-15))
+        return root_between(residual, *ends, tolerance=1e-15)
 
     def between(self, z0: float, z1: float) -> Ring:
         """The outline between two heights.
