@@ -40,7 +40,7 @@ def crosses(one: Floats, other: Floats) -> Floats:
 
 def images(entries: Floats, vectors: Floats) -> Floats:
     """Products of symmetric matrices (..., 6) with rows (..., 3)."""
-    result = np.empty_like(vectors)
+    result = np.empty((*np.broadcast_shapes(entries.shape[:-1], vectors.shape[:-1]), 3))
     for c, (a, b, d) in enumerate(((0, 1, 2), (1, 3, 4), (2, 4, 5))):
         np.multiply(entries[..., a], vectors[..., 0], out=result[..., c])
         result[..., c] += entries[..., b] * vectors[..., 1]

@@ -6,10 +6,12 @@ import json
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 import lamella
 from lamella import compute, parse_project
 from lamella.files.write.network_json import network_bytes
+from lamella.network.adjust.shift_gradients import depth_gradients
 from lamella.network.elements.element_network import element_network
 from lamella.network.isothermic.beyond_rim import zeros_beyond_rim
 from lamella.network.isothermic.umbilic_depth import UmbilicDepths, depth_errors
@@ -61,8 +63,26 @@ def test_how_an_umbilic_moves_from_the_rim(direction) -> None:
     position = surface.frames(moved.umbilics.places).position
     nearest = np.linalg.norm(surface.frames(surface.umbilics.places).position - rim, axis=1).argmin()
     away = np.linalg.norm(position[0] - rim[nearest]) - depths.depth[0]
-    # about half as large as the disc of the parameter
-    assert depths.change(surface, moved)[0] == pytest.approx(away, abs=0.03 * off / 2)
+    # half as large as the disc of the parameter, about
+    d = moved.at(depths.places).deviator - surface.at(depths.places).deviator
+    assert depths.by_deviator[0] @ [d.real[0], d.imag[0]] == pytest.approx(away, abs=0.03 * off / 2)
+    # by the nodes, the same with what the umbilic's place in its element moves
+    change = (depth_gradients(surface, depths)[0] * (moved.nodes - surface.nodes)).sum()
+    position = moved.frames(moved.umbilics.places).position
+    away = np.linalg.norm(position[0] - rim[nearest]) - depths.depth[0]
+    assert change == pytest.approx(away, abs=0.03 * off / 2)
+
+
+def test_no_zero_is_beyond_the_rim_of_a_bent_surface_where_it_only_leaves_its_tangent_planes() -> None:
+    """Next to a ring in a saddle tangents that lead inwards end above the surface, off it but not beyond its rim."""
+    t = np.arange(24) * 2 * np.pi / 24
+    outer = np.column_stack([6 * np.cos(t), 4.5 * np.sin(t), 2.5 - 2.5 * np.cos(2 * t)])
+    surface = lamella.film([outer, lamella.circle((0, 0, 2), 1.3)], tolerance=0.2)
+    found = zeros_beyond_rim(surface, 0.01)
+    _, nearest = surface.closest(found)
+    ring = 1.3 * np.exp(2j * np.pi * np.arange(5000) / 5000)
+    to_ring = cKDTree(np.column_stack([ring.real, ring.imag, np.full(5000, 2.0)])).query(found)[0]
+    assert to_ring == pytest.approx(np.linalg.norm(found - nearest, axis=1), rel=0.01)
 
 
 def test_umbilics_on_the_rim_are_not_listed() -> None:

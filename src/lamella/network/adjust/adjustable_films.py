@@ -132,9 +132,7 @@ class Films:
             if self.freedom.film.volume is not None:
                 curvature = curvature_rates_of_volume(film, h, rim)
             fields = jacobi_fields(film, h, rim, curvature)
-            self._sensitivities[net] = transition_sensitivities(
-                net.surface, film, net.iso, fields, rim, curvature, self._progress
-            )
+            self._sensitivities[net] = transition_sensitivities(net.surface, film, net.iso, fields, rim)
         return self._sensitivities[net]
 
     def rim_shifts(self, film: Film, shares: Floats) -> Floats:

@@ -2,21 +2,21 @@
 
 To first order a film moves along its normals by a Jacobi field: one linear system for all changes at once. The
 coordinates' forms change with it, and the shifts follow by testing this change with the harmonic functions that jump by
-1 across one piece of the cut: no coordinates have to be found anew.
+1 across one piece of the cut: one gradient by the film's nodes serves all changes
+(`lamella.network.adjust.shift_gradients`).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats
-from lamella.base.progress import Progress, Report, silent
+from lamella.network.adjust.shift_gradients import depth_gradients, shift_gradients
 from lamella.network.isothermic.holonomy import vertex_relations
-from lamella.network.isothermic.isothermic import Isothermic, sectors
-from lamella.network.isothermic.poisson import Poisson
-from lamella.network.isothermic.seamless_transitions import best_shifts, links
+from lamella.network.isothermic.isothermic import Isothermic
+from lamella.network.isothermic.seamless_transitions import best_shifts
 from lamella.network.isothermic.umbilic_depth import UmbilicDepths
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
@@ -110,13 +110,7 @@ class Sensitivities:
 
 
 def transition_sensitivities(
-    surface: ElementSurface,
-    film: Film,
-    iso: Isothermic,
-    fields: Floats,
-    rim_shifts: Floats,
-    curvature_sensitivities: Floats,
-    progress: Progress = silent,
+    surface: ElementSurface, film: Film, iso: Isothermic, fields: Floats, rim_shifts: Floats
 ) -> Sensitivities:
     """Change of every shift, and of how far umbilics are inside the rim, with each of p parameters.
 
@@ -129,39 +123,19 @@ def transition_sensitivities(
         On the surface.
     fields : (p, n)
         See `jacobi_fields`.
-    rim_shifts, curvature_sensitivities
+    rim_shifts : (p, n, 3)
         See `jacobi_fields`.
-    progress : callable
-        Is told which parameter it is.
     """
-    mesh = iso.mesh
-    system = Poisson.of(mesh, iso.sign)
-    sector = sectors(mesh.connectivity, iso.cut)
-    base, moves = system.solve(sector, *links(mesh, iso.transitions, sector))
-    gram, _ = system.quadratic(base, moves)
-    relations = list(vertex_relations(mesh, iso.transitions, iso.across, iso.odd).values())
-    directions = film.directions()
-    sensitivities = np.zeros((len(iso.transitions), len(fields)), complex)
+    moves = fields[..., None] * film.directions()
+    flat = moves.reshape(len(fields), -1).T
+    gradients = shift_gradients(surface, iso)
+    right = gradients.reshape(len(gradients), -1) @ flat
+    relations = list(vertex_relations(iso.mesh, iso.transitions, iso.across, iso.odd).values())
+    still = np.zeros(len(relations), complex)
+    shifts = np.zeros(right.shape, complex)
+    for number, column in enumerate(right.T):
+        shifts[:, number] = best_shifts(iso.gram, column, relations, still)
     umbilics = UmbilicDepths.of(surface)
-    depths = np.zeros((len(umbilics.depth), len(fields)))
-    for number, (field, rate) in enumerate(zip(fields, curvature_sensitivities, strict=True)):
-        progress(Report.detail(f"how the net follows: {number} of {len(fields)} parameters", number / len(fields)))
-        step = SENSITIVITY_STEP * film.size / max(float(np.abs(field).max()), 1e-12 * film.size)
-        moved = ElementSurface(
-            surface.kind,
-            surface.mean_curvature + step * rate,
-            surface.connectivity,
-            surface.nodes + step * field[:, None] * directions,
-            surface.rim_loop,
-        )
-        there = replace(mesh, nodes=moved.measured(mesh.places).position, shape=moved.at(mesh.places).shape_entries)
-        other = Poisson.of(there, iso.sign)
-        # the root's branch is that of each element's own middle: the same one on both surfaces
-        same = (other.form_a * system.form_a.conj() + other.form_b * system.form_b.conj()).real.sum(1)
-        turn = np.where(same < 0, -1, 1)[:, None]
-        pull = system.pull_of(turn * other.form_a - system.form_a, turn * other.form_b - system.form_b)
-        right = np.einsum("tek,ek->t", moves, pull) / step
-        sensitivities[:, number] = best_shifts(gram, right, relations, np.zeros(len(relations), complex))
-        along = rim_shifts[number] - field[:, None] * directions
-        depths[:, number] = umbilics.change(surface, moved, step * along) / step
-    return Sensitivities(sensitivities, umbilics.depth, depths)
+    inwards = depth_gradients(surface, umbilics).reshape(len(umbilics.depth), -1) @ flat
+    depths = inwards - np.einsum("zc,pzc->zp", umbilics.inwards, rim_shifts[:, umbilics.rim_node])
+    return Sensitivities(shifts, umbilics.depth, depths)

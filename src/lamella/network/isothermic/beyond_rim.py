@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from lamella.base.arrays import Floats
+from lamella.base.arrays import Booleans, Floats
 from lamella.base.triangle import CORNERS
 from lamella.base.vectors import lengths
 from lamella.surface.element.places import Places
@@ -19,6 +19,8 @@ from lamella.surface.element.surface import ElementSurface
 
 # a zero nearer to a place of the rim than this many longest edges of the element there
 RIM_EDGES = 1.5
+# barycentric coordinate below which a place is on an edge of its element
+ON_EDGE = 1e-6
 # places along an edge of the rim
 SHARES = np.array([0.1, 0.5, 0.9])
 
@@ -40,12 +42,21 @@ def zeros_beyond_rim(surface: ElementSurface, apart: float) -> Floats:
     rise, where = rise[close], where[close]
     step = -rise / np.abs(rise) ** 2
     target = there.position[close] + step.real[:, None] * there.e_u[close] + step.imag[:, None] * there.e_v[close]
-    _, nearest = surface.closest_near(target, where)
-    # one within the surface is an umbilic, or the way from a corner in which D has no bound
-    across = lengths(target - nearest)
-    target = target[across > 0.1 * np.abs(step)]
+    places, nearest = surface.closest_near(target, where)
+    # one within the surface is an umbilic, or the way from a corner in which D has no bound; where the surface bends
+    # such a one is off it all the same
+    beyond = (lengths(target - nearest) > 0.1 * np.abs(step)) & _on_rim(surface, places)
+    target = target[beyond]
     kept: list[int] = []
     for number, near in enumerate(cKDTree(target).query_ball_point(target, apart) if len(target) else []):
         if not set(near) & set(kept):
             kept.append(number)
     return np.asarray(target[kept])
+
+
+def _on_rim(surface: ElementSurface, places: Places) -> Booleans:
+    """Which of n places are on the rim, (n,)."""
+    barycentric = np.column_stack([1 - places.local.sum(1), places.local])
+    # opposite to the corners 2, 0, 1 are the edges 0, 1, 2
+    at_edge = np.roll(barycentric, -2, 1) < ON_EDGE
+    return np.asarray((at_edge & (surface.connectivity.neighbours[places.element] < 0)).any(1))

@@ -63,24 +63,6 @@ class UmbilicDepths:
         by_deviator = (inwards * along_x).sum(1)[:, None] * x + (inwards * along_y).sum(1)[:, None] * y
         return cls(places, np.asarray(depth), by_deviator, rim[nearest], inwards)
 
-    def change(self, surface: ElementSurface, moved: ElementSurface, along: Floats | None = None) -> Floats:
-        """Change of the depths, m, (z,), to first order, on a surface of the same elements that differs a little.
-
-        Parameters
-        ----------
-        surface : ElementSurface
-            The one whose depths these are.
-        moved : ElementSurface
-        along : (n, 3), optional
-            Shifts, m, of the surface's nodes on the rim besides those to the moved surface's nodes: what the rim moves
-            along the surface.
-        """
-        d = moved.at(self.places).deviator - surface.at(self.places).deviator
-        change = self.by_deviator[:, 0] * d.real + self.by_deviator[:, 1] * d.imag
-        if along is not None:
-            change = change - (self.inwards * along[self.rim_node]).sum(1)
-        return np.asarray(change)
-
 
 def depth_errors(surface: ElementSurface) -> Floats:
     """How far the umbilics of a surface may lie from where they are found, across the rim, m, (z,).

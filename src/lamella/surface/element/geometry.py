@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csc_matrix
+from scipy.sparse import csc_matrix, csr_matrix
 
 from lamella.base.arrays import Floats
 from lamella.base.conjugate_gradients import conjugate_gradients
@@ -29,10 +29,6 @@ def project_onto_nodes(
 ) -> Floats:
     """Nodal values (n, c) of an L2 projection onto continuous polynomials.
 
-    Conjugate gradients need no factorisation. Each element's own projection, as if its area element were that of all on
-    average, added up over the elements that share a node, is next to the inverse of the mass matrix: half a dozen steps
-    are enough, however many elements there are.
-
     Parameters
     ----------
     space : Connectivity
@@ -43,11 +39,51 @@ def project_onto_nodes(
         Their weights times the area element, m^2.
     values : (m, q, c)
         What is projected.
+    tolerance : float
+        L2 norm of the error over that of what is projected.
     """
     basis = space.basis.basis(points)
-    n, (m, k), c = space.node_count, space.elements.shape, values.shape[-1]
-    # adds up at each node what its elements have there
-    gathering = csc_matrix((np.ones(m * k), space.elements.ravel(), np.arange(m * k + 1)), (n, m * k)).tocsr()
+    c = values.shape[-1]
+    gathering = _gathering(space)
+    right = gathering @ np.matmul(basis.T, values * weights[..., None]).reshape(-1, c)
+    # to begin with: the mean of the elements' own projections
+    share = basis.T * weights.mean(0)
+    start = gathering @ np.matmul(np.linalg.inv(share @ basis) @ share, values).reshape(-1, c)
+    start /= (gathering @ np.ones(gathering.shape[1]))[:, None]
+    return from_moments(space, points, weights, right, tolerance, start)
+
+
+def _gathering(space: Connectivity) -> csr_matrix:
+    """Adds up at each node what its elements have there, (n, m k)."""
+    m, k = space.elements.shape
+    return csc_matrix((np.ones(m * k), space.elements.ravel(), np.arange(m * k + 1)), (space.node_count, m * k)).tocsr()
+
+
+def from_moments(
+    space: Connectivity,
+    points: Floats,
+    weights: Floats,
+    right: Floats,
+    tolerance: float = 1e-10,
+    start: Floats | None = None,
+) -> Floats:
+    """Nodal values (n, c) of continuous polynomials with given integrals (n, c) of their products with the basis.
+
+    Conjugate gradients need no factorisation. Each element's own projection, as if its area element were that of all on
+    average, added up over the elements that share a node, is next to the inverse of the mass matrix: half a dozen steps
+    are enough, however many elements there are.
+
+    Parameters
+    ----------
+    space, points, weights, tolerance
+        See `project_onto_nodes`.
+    right : (n, c)
+    start : (n, c), optional
+        Where to begin.
+    """
+    basis = space.basis.basis(points)
+    (m, k), c = space.elements.shape, right.shape[1]
+    gathering = _gathering(space)
     blocks = (weights @ (basis[:, :, None] * basis[:, None, :]).reshape(len(points), -1)).reshape(m, k, k)
 
     def gathered(parts: Floats) -> Floats:
@@ -57,8 +93,7 @@ def project_onto_nodes(
         """The mass matrix times nodal values, element by element."""
         return gathered(np.matmul(blocks, nodal.take(space.elements, 0)))
 
-    share = basis.T * weights.mean(0)
-    inverse = np.linalg.inv(share @ basis)
+    inverse = np.linalg.inv((basis.T * weights.mean(0)) @ basis)
     # the elements' parts at their nodes: by the square roots of their areas, on both sides
     area = weights.sum(1)
     part = 1 / (gathering @ np.repeat(np.sqrt(area / area.mean()), k))[:, None]
@@ -67,11 +102,9 @@ def project_onto_nodes(
         """Next to the mass matrix's inverse times nodal values."""
         return np.asarray(part * gathered(np.matmul(inverse, (part * nodal).take(space.elements, 0))))
 
-    right = gathered(np.matmul(basis.T, values * weights[..., None]))
-    # to begin with: the mean of the elements' own projections
-    start = gathered(np.matmul(inverse @ share, values)) / (gathering @ np.ones(m * k))[:, None]
+    start = conditioned(right) if start is None else start
     # squares of L2 norms: of the error, and of what is projected
-    goal = tolerance**2 * np.einsum("nc,nc->c", right, start)
+    goal = tolerance**2 * np.abs(np.einsum("nc,nc->c", right, start))
     return conjugate_gradients(image_of, conditioned, right, start, goal)
 
 

@@ -126,7 +126,7 @@ class ElementSurface(Shown):
         return self.nodes[self.connectivity.elements]
 
     @cached_property
-    def _gauss(self) -> Floats:
+    def gauss_map(self) -> Floats:
         """Normals of the harmonic Gauss map at the nodes, (n, 3)."""
         return harmonic_normals(self.connectivity, self.nodes)
 
@@ -157,7 +157,7 @@ class ElementSurface(Shown):
         x_1, x_2 = tangents(*self._slopes(points), self._corners)
         m, q = x_1.shape[:2]
         there = frames(np.empty((m * q, 0)), x_1.reshape(-1, 3), x_2.reshape(-1, 3))
-        normals = self._gauss[self.connectivity.elements]
+        normals = self.gauss_map[self.connectivity.elements]
         n_x, n_y = (np.matmul(slope, normals).reshape(-1, 3) for slope in self._slopes(points))
         # S = -dn along both axes of the frame
         along = there.to_local
@@ -242,7 +242,7 @@ class ElementSurface(Shown):
 
     def smooth_normal(self, where: Places) -> Floats:
         """Unit normal of the harmonic Gauss map at n places, (n, 3): it does not jump between elements."""
-        nodal = self._gauss[self.connectivity.elements]
+        nodal = self.gauss_map[self.connectivity.elements]
         normal = Polynomials.through(self.connectivity.basis, nodal).values(where).T
         return np.asarray(normal / lengths(normal)[:, None])
 

@@ -43,7 +43,7 @@ class VaryingSurface(ElementSurface):
         return False
 
     @cached_property
-    def _gauss(self) -> Floats:
+    def gauss_map(self) -> Floats:
         return smooth_normals(self.connectivity, self.nodes)
 
     @property
