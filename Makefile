@@ -32,6 +32,7 @@ types: .venv/ready
 	$(BIN)/mypy
 
 bench: .venv/ready
+	@$(MAKE) --no-print-directory .venv-bench/ready || echo "programs to compare with could not be installed: left out"
 	$(BIN)/python benchmarks/page.py
 
 docs: .venv/ready
@@ -41,7 +42,7 @@ api: .venv/ready
 	$(BIN)/python docs/build_api.py
 
 clean:
-	rm -rf .venv out build dist
+	rm -rf .venv .venv-bench out build dist
 
 # pinned versions, then the program itself with the pinned build tool, which compiles the remesher's kernel
 .venv/ready: pins.txt pyproject.toml hatch_build.py src/lamella/surface/remesh/kernel.c
@@ -49,4 +50,10 @@ clean:
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r pins.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --editable .
+	touch $@
+
+# programs to compare with, in an environment of their own: ours does not depend on them
+.venv-bench/ready: pins-bench.txt
+	$(PYTHON) -m venv .venv-bench
+	.venv-bench/bin/python -m pip install --quiet --disable-pip-version-check -r pins-bench.txt
 	touch $@

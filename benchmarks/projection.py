@@ -1,27 +1,14 @@
-"""Guided projection against its limits: set-up, iterations, memory, growth.
-
-A catenoid in asymptotic layout with noise of 2 % of the edge becomes a net of planar stars with equal diagonals
-(`asymptotic`, form "faces"), from 1,000 to 100,000 vertices, one thread; at 10,000 also with right angles between
-vertex circles (form "circles"), three times as many unknowns. Printed, in CPU seconds: topology and pattern (limit 1 s
-at 10,000 vertices), symbolic analysis, an iteration over its numeric factorisation and solve (limit 1.5), memory
-(limit 600 MB at 10,000), `splu` on the same matrix, and the exponent of growth (limit 1.3). Run by `make bench`.
-"""
+"""Guided projection against its limits: set-up, iterations, memory, growth; scipy's `splu` on the same matrix."""
 
 from __future__ import annotations
 
-import os
-import resource
-import sys
 import time
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Iterator
 from dataclasses import replace
-from itertools import pairwise
-from multiprocessing import get_context
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("RAYON_NUM_THREADS", "1")
+from typing import Any
 
 import numpy as np
+from bench import Limit, Table, alone, clocked, exponent, memory_gb, show
 
 from lamella import Catenoid
 from lamella.base import sparse
@@ -36,6 +23,8 @@ CASES: tuple[tuple[int, AngleForm], ...] = (
     (10_000, "circles"),
     (100_000, "faces"),
 )
+SPLU_AT = 10_000
+GROWING = ("iteration, s", "whole, s")
 
 
 class Clock:
@@ -101,53 +90,57 @@ def topology(vertices: np.ndarray, faces: np.ndarray) -> tuple[QuadMesh, float]:
     return mesh, time.process_time() - begin
 
 
-def measured(size: int, form: AngleForm) -> tuple[int, float, float]:
-    """Print a line; vertices, seconds of an iteration and of the whole."""
+def measured(size: int, form: AngleForm) -> dict[str, Any]:
+    """A row."""
     clock = Clock()
     mesh, seconds = topology(*noisy_catenoid(size))
     clock.setup = seconds
     begin = time.process_time()
     net = asymptotic(mesh, form=form, on_iteration=lambda _: clock.stamps.append(time.process_time()))
     whole = seconds + time.process_time() - begin
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e6
+    memory = memory_gb()
     # the first factorisation analyses the pattern too
     numeric = float(np.mean(clock.factor[1:]))
     iteration = float(np.diff(clock.stamps)[:-1].mean())
-    count = len(mesh.vertices)
-    unknowns = sum(values.size for values in net.solution.values.values())
-    print(
-        f"{count:8,d} {form:7s} {unknowns:8,d} {clock.setup:9.2f} {clock.factor[0] - numeric:11.2f} {iteration:12.2f} "
-        f"{numeric:17.2f} {iteration / numeric:6.2f} {net.solution.last.number:6d} {whole:8.2f} {memory:10.0f}"
-        f"  {net.solution.verdict}"
-    )
-    if size == 10_000 and clock.last:
+    row: dict[str, Any] = {
+        "vertices": len(mesh.vertices),
+        "form": form,
+        "unknowns": sum(values.size for values in net.solution.values.values()),
+        "set-up, s": clock.setup,
+        "symbolic, s": clock.factor[0] - numeric,
+        "iteration, s": iteration,
+        "factor + solve, s": numeric,
+        "iteration / factor + solve": iteration / numeric,
+        "iterations": net.solution.last.number,
+        "whole, s": whole,
+        "memory, GB": memory,
+    }
+    if size == SPLU_AT and clock.last:
         pattern, values, right = clock.last
-        clock.factor = []
-        replace(pattern, backend="splu").factor(values).solve(right)
-        print(f"         splu on the same matrix: factor + solve {clock.factor[0]:.2f} s")
-    sys.stdout.flush()
-    return count, iteration, whole
+        row["splu, s"] = clocked(lambda: replace(pattern, backend="splu").factor(values).solve(right))[0]
+    return row
 
 
-def main() -> None:
-    """Print a table; each line from a process of its own, for its memory."""
-    print(
-        "vertices form    unknowns  set-up s  symbolic s  iteration s  factor + solve s  ratio  iterations  whole s  "
-        "memory MB",
-        flush=True,
+def tables() -> Iterator[Table]:
+    """A row a case, each measured in a process of its own, for its memory."""
+    rows = [alone(measured, size, form) for size, form in CASES]
+    faces = [row for row in rows if row["form"] == "faces"]
+    middle = faces[1]
+    growth = {key: exponent(*((row["vertices"], row[key]) for row in (faces[0], faces[-1]))) for key in GROWING}
+    yield Table(
+        "Guided projection",
+        "A catenoid in asymptotic layout with noise of 2 % of the edge becomes a net of planar stars with equal "
+        'diagonals (`asymptotic`, form "faces"); at 10,000 vertices also with right angles between vertex circles '
+        '(form "circles"), three times as many unknowns. `lamella optimise` tells the same CPU seconds.',
+        tuple(rows),
+        (
+            Limit("set-up, s, at 10,000 vertices", middle["set-up, s"], 1.0),
+            Limit("iteration / factor + solve at 10,000 vertices", middle["iteration / factor + solve"], 1.5),
+            Limit("memory, GB, at 10,000 vertices", middle["memory, GB"], 0.6),
+            *(Limit(f"exponent of growth from 1,000 to 100,000 vertices: {key}", growth[key], 1.3) for key in GROWING),
+        ),
     )
-    rows: list[tuple[int, float, float]] = []
-    for size, form in CASES:
-        with ProcessPoolExecutor(1, get_context("spawn")) as process:
-            row = process.submit(measured, size, form).result()
-        if form == "faces":
-            rows.append(row)
-    print('growth exponents, form "faces":')
-    for (n0, i0, w0), (n1, i1, w1) in (*pairwise(rows), (rows[0], rows[-1])):
-        span = np.log(n1 / n0)
-        exponents = f"iteration {np.log(i1 / i0) / span:.2f}, whole {np.log(w1 / w0) / span:.2f}"
-        print(f"  from {n0:,d} to {n1:,d}: {exponents}")
 
 
 if __name__ == "__main__":
-    main()
+    show(tables())

@@ -49,7 +49,7 @@ class Iteration:
     damping : float
         Levenberg and Marquardt's lambda.
     seconds : float
-        Since the solver was called.
+        CPU time since the solver was called.
     """
 
     number: int

@@ -75,7 +75,7 @@ def solve(
     InputError
         Blocks or constraints that make no problem.
     """
-    begin = time.perf_counter()
+    begin = time.process_time()
     _check(constraints, iterations, tolerance)
     layout, vector = Layout.of(blocks)
     origin = np.concatenate([np.ravel(b.values if b.origin is None else b.origin) for b in blocks])
@@ -116,7 +116,7 @@ def solve(
                 vector = vector + length * direction
                 step = float(np.abs(length * direction / layout.scale).max())
                 state = replace(state, step=step, length=length, damping=damping)
-        records.append(replace(state, seconds=time.perf_counter() - begin))
+        records.append(replace(state, seconds=time.process_time() - begin))
         if on_iteration:
             on_iteration(records[-1])
         if verdict is not None:
