@@ -66,6 +66,8 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "files": ("base", "files.read", "files.write", *PROJECTIONS, "version"),
     "files.read": ("base", *FILMS, "surface.from_mesh", "network"),
     "files.write": ("base", "files", *FILMS, "network", "strip", *PROJECTIONS, "version"),
+    "structure": ("base", "structure.beam"),
+    "structure.beam": ("base", "strip"),
     "fabrication": ("base", "network", "strip", "files.write"),
     "view": ("base", *SURFACES, "surface.boundary", "network", "strip", "fabrication", *FILES, *PROJECTIONS),
     "stages": STAGE_NEEDS,

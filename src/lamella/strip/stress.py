@@ -62,6 +62,7 @@ def stresses(
     kg: Floats,
     tg: Floats,
     held: bool,
+    axial: Floats | float = 0.0,
 ) -> Stresses:
     """All stresses of twisted strips.
 
@@ -78,6 +79,8 @@ def stresses(
         1/m.
     held : bool
         Whether node marks hold the unshortened length.
+    axial : (k,) or float
+        Mean over the height of the normal stress that loads make, Pa.
 
     Returns
     -------
@@ -100,12 +103,12 @@ def stresses(
         along, cross = face * (np.abs(kg) + nu * curvature), face * (curvature + nu * np.abs(kg))
         for side in (-1.0, 1.0):
             for bent in (-strong, strong):
-                sigma = membrane + share * bent + side * along
+                sigma = membrane + axial + share * bent + side * along
                 normal = np.maximum(normal, np.abs(sigma))
                 square = np.maximum(square, sigma**2 - sigma * side * cross + cross**2)
     mises = np.sqrt(square + 3 * shear**2)
     tension = mean_tension(material, height, thickness, kg, tg) if held else np.zeros_like(weak)
-    net = net_section(weak, tension, strong)
+    net = net_section(weak, tension + axial, strong)
     return Stresses(
         weak,
         shear,

@@ -1,0 +1,51 @@
+"""Construction in the order of reality: the next stage begins where the last one ended."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from lamella.base.errors import InputError
+from lamella.structure.equilibrium import Equilibrium
+from lamella.structure.loads import Loads
+from lamella.structure.structure import Structure
+
+
+def continued(last: Equilibrium, loads: Loads, structure: Structure | None = None) -> Equilibrium:
+    """The last stage's equilibrium as the load factor 0 of the next stage.
+
+    Parameters
+    ----------
+    last : Equilibrium
+    loads : Loads
+        Of the next stage, on top of what acts at the end of the last one.
+    structure : Structure, optional
+        Of the next stage: the same nodes and beams with other supports and locks. What held there and holds no more is
+        taken away with the load factor: its force goes from what it was to 0. Default: as it was.
+
+    Returns
+    -------
+    Equilibrium
+        To go on from, with `lamella.structure.static.load_path`.
+
+    Raises
+    ------
+    InputError
+        The structure has other nodes or beams.
+    """
+    after = last.structure if structure is None else structure
+    if after.poses.unknowns != last.poses.unknowns or len(after.beams) != len(last.structure.beams):
+        raise InputError("the next stage has other nodes or beams", "change supports and locks only", "structure")
+    natural = after.beams.law.natural + last.factor * last.loads.natural
+    released = last.structure.held_unknowns & ~after.held_unknowns
+    support = np.where(released, last.internal - last.loads.forces_at(last.factor), 0.0)
+    onward = replace(
+        loads,
+        forces=loads.forces - support,
+        constant_forces=loads.constant_forces + last.loads.forces_at(last.factor) + support,
+        constant_lines=loads.constant_lines + last.loads.constant_lines + last.factor * last.loads.lines,
+    )
+    return Equilibrium(
+        replace(after, beams=after.beams.with_natural(natural)), onward, 0.0, last.poses, last.negative, 0
+    )

@@ -1,0 +1,70 @@
+"""What moves freely: a motion that meets no resistance, named by its node."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lamella.base.arrays import Floats
+from lamella.base.errors import InputError
+from lamella.base.sparse import SingularError
+from lamella.structure.beam.poses import NODE_UNKNOWNS
+from lamella.structure.structure import Structure
+
+# of the stiffness's diagonal, added so that a matrix without an inverse gets one
+MECHANISM_SHIFT = 1e-7
+# of the energy of a motion to that of the same motions of each unknown alone: less is no resistance
+LEAST_RESISTANCE = 1e-13
+MECHANISM_ROUNDS = 3
+_WAYS = ("moves along x", "moves along y", "moves along z", "turns about x", "turns about y", "turns about z")
+
+
+def freest_motion(structure: Structure, blocks: list[Floats]) -> tuple[Floats, float]:
+    """The motion that meets the least resistance, (6 n + k,) of largest number 1, and its resistance.
+
+    By inverse iteration on the stiffness of element blocks, scaled by its diagonal: the resistance is the smallest
+    eigenvalue of that matrix by size, whatever the units.
+    """
+    pattern, free = structure.pattern, structure.free
+    entries = structure.entries(blocks)
+    columns = np.repeat(np.arange(pattern.size), np.diff(pattern.columns))
+    on_diagonal = pattern.rows == columns
+    diagonal = np.abs(entries[on_diagonal])
+    scale = np.where(diagonal > 0, diagonal, 1.0)
+    shifted = entries.copy()
+    shifted[on_diagonal] += MECHANISM_SHIFT * scale
+    factored = pattern.factor(shifted)
+    matrix = pattern.matrix(entries)
+    vector = np.random.default_rng(0).standard_normal(pattern.size) / np.sqrt(scale)
+    for _ in range(MECHANISM_ROUNDS):
+        vector = factored.solve(scale * vector)
+        vector /= np.sqrt(vector @ (scale * vector))
+    motion = np.zeros(structure.poses.unknowns)
+    motion[free] = vector / np.abs(vector).max()
+    return motion, float(vector @ (matrix @ vector))
+
+
+def refuse_mechanism(structure: Structure, blocks: list[Floats]) -> None:
+    """Refuse a structure of which a part moves freely.
+
+    Raises
+    ------
+    InputError
+        Names the node that moves most, and how.
+    """
+    try:
+        motion, resistance = freest_motion(structure, blocks)
+    except SingularError:
+        return
+    if abs(resistance) > LEAST_RESISTANCE:
+        return
+    nodes = NODE_UNKNOWNS * len(structure.poses.points)
+    # shifts and the arcs that rotations make, alike
+    size = np.abs(motion)
+    size[:nodes].reshape(-1, NODE_UNKNOWNS)[:, 3:] *= structure.size
+    most = int(size.argmax())
+    if most < nodes:
+        node, way = divmod(most, NODE_UNKNOWNS)
+        what = f"node {node} {_WAYS[way]}"
+    else:
+        what = f"joint {most - nodes} turns"
+    raise InputError(f"{what} and nothing resists", "support it, or connect it to what is supported", "structure")

@@ -1,0 +1,203 @@
+"""Equilibrium under loads by steps that find their own length."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from lamella.base.arrays import Floats
+from lamella.base.errors import InputError
+from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
+from lamella.structure.beam.relative_motion import RelativeMotion
+from lamella.structure.controls import ArcLengthControl, DisplacementControl, LoadControl
+from lamella.structure.equilibrium import Equilibrium
+from lamella.structure.loads import Loads
+from lamella.structure.mechanism import refuse_mechanism
+from lamella.structure.newton import StepError, step
+from lamella.structure.structure import Structure
+
+# iterations of a step after which the next one may be twice as long
+EASY_ITERATIONS = 5
+# of the first step: no step is shorter
+SHORTEST_STEP = 1 / 4096
+# in which residual stress is let go
+RELEASE_STEPS = 8
+
+
+def at_rest(structure: Structure, loads: Loads) -> Equilibrium:
+    """Equilibrium at the load factor 0, from the structure's own pose: residual stress and constant loads alone.
+
+    Raises
+    ------
+    InputError
+        A part of the structure moves freely; no equilibrium is found.
+    """
+    own = Equilibrium(structure, loads, 0.0, structure.poses, 0, 0)
+    refuse_mechanism(structure, own.state.stiffness(own.state.stress))
+    try:
+        return step(own, LoadControl(0.0))
+    except StepError:
+        return released(structure, loads)
+
+
+def equilibrium(structure: Structure, loads: Loads, *, factor: float = 1.0, steps: int = 1) -> Equilibrium:
+    """The equilibrium at a load factor, from `at_rest` by `load_path`."""
+    return loaded(at_rest(structure, loads), factor, steps=steps)
+
+
+def loaded(start: Equilibrium, factor: float = 1.0, *, steps: int = 1) -> Equilibrium:
+    """The last of `load_path`, or the start where it has that load factor."""
+    last = start
+    for here in load_path(start, factor, steps=steps):
+        last = here
+    return last
+
+
+def load_path(start: Equilibrium, factor: float = 1.0, *, steps: int = 1) -> Iterator[Equilibrium]:
+    """Equilibria on the way to a load factor, the last one at it.
+
+    Parameters
+    ----------
+    start : Equilibrium
+    factor : float
+        Load factor to reach.
+    steps : int
+        Steps to begin with; one that does not converge is halved, after easy ones they get longer up to the first's
+        length.
+
+    Raises
+    ------
+    InputError
+        No equilibrium is found beyond some load factor, which is named.
+    """
+    here = start
+    longest = length = (factor - here.factor) / steps
+    while here.factor != factor:
+        # what rounding leaves is no step of its own
+        last = abs(factor - here.factor) <= abs(length) * (1 + 1e-9)
+        target = factor if last else here.factor + length
+        try:
+            here = step(here, LoadControl(target))
+        except StepError as error:
+            length = _shorter(here, target - here.factor, longest, error)
+            continue
+        yield here
+        if here.iterations <= EASY_ITERATIONS and abs(length) < abs(longest):
+            length *= 2
+
+
+def displacement_path(start: Equilibrium, unknown: int, by: float, *, steps: int = 1) -> Iterator[Equilibrium]:
+    """Equilibria while one unknown moves by a given amount, whatever load that takes.
+
+    Parameters
+    ----------
+    start : Equilibrium
+    unknown : int
+        6 times the node, plus 0 to 2 for a shift, 3 to 5 for a rotation; 6 n plus the joint for an angle.
+    by : float
+        m or rad, from `start` on.
+    steps : int
+        As `load_path`.
+
+    Raises
+    ------
+    InputError
+        No equilibrium is found beyond some load factor; loads that change natural curvatures.
+    """
+    _refuse_natural(start.loads)
+    here, longest, length, left = start, by / steps, by / steps, by
+    while left:
+        part = left if abs(left) <= abs(length) * (1 + 1e-9) else length
+        try:
+            here = step(here, DisplacementControl(unknown, part))
+        except StepError as error:
+            length = _shorter(here, part, longest, error)
+            continue
+        left -= part
+        yield here
+        if here.iterations <= EASY_ITERATIONS and abs(length) < abs(longest):
+            length *= 2
+
+
+def arc_length_path(start: Equilibrium, length: float) -> Iterator[Equilibrium]:
+    """Equilibria along the path without an end, past limit points; the first step raises the load factor.
+
+    Parameters
+    ----------
+    start : Equilibrium
+    length : float
+        Of a step, m, see `ArcLengthControl`.
+
+    Raises
+    ------
+    InputError
+        No equilibrium is found beyond some load factor; loads that change natural curvatures.
+    """
+    _refuse_natural(start.loads)
+    here, longest, before = start, length, np.zeros(start.poses.unknowns)
+    while True:
+        try:
+            after = step(here, ArcLengthControl(length, before))
+        except StepError as error:
+            length = _shorter(here, length, longest, error)
+            continue
+        before = _shifts(here.poses, after.poses)
+        here = after
+        yield here
+        if here.iterations <= EASY_ITERATIONS and length < longest:
+            length *= 2
+
+
+def released(structure: Structure, loads: Loads) -> Equilibrium:
+    """Equilibrium at the load factor 0 of beams that are held in the structure's pose, and let go little by little.
+
+    Elements begin with the curvature that they have as their natural one, which then becomes their own.
+
+    Raises
+    ------
+    InputError
+        No equilibrium is found beyond some share of the residual stress.
+    """
+    law = structure.beams.law
+    points, frames = structure.beams.attachment.ends(structure.poses)
+    present = RelativeMotion.between(points, frames).theta / law.length[:, None]
+    held = replace(structure, beams=structure.beams.with_natural(present))
+    going = replace(loads, forces=0 * loads.forces, lines=0 * loads.lines, motions=0 * loads.motions)
+    going = replace(going, natural=law.natural - present)
+    first = step(Equilibrium(held, going, 0.0, structure.poses, 0, 0), LoadControl(0.0))
+    last = loaded(first, steps=RELEASE_STEPS)
+    return replace(last, structure=structure, loads=loads, factor=0.0)
+
+
+def _shorter(here: Equilibrium, length: float, longest: float, error: StepError) -> float:
+    """Half of a step's length.
+
+    Raises
+    ------
+    InputError
+        The step is as short as it may be.
+    """
+    if abs(length) <= SHORTEST_STEP * abs(longest):
+        raise InputError(
+            f"no equilibrium is found beyond the load factor {here.factor:.6g}: {error}",
+            "the structure gives way there, or nothing holds a part of it",
+            "loads",
+        ) from None
+    return length / 2
+
+
+def _refuse_natural(loads: Loads) -> None:
+    if loads.natural.any():
+        raise InputError(
+            "changes of natural curvature are not followed past limit points", "use load_path", "loads.natural"
+        )
+
+
+def _shifts(one: Poses, other: Poses) -> Floats:
+    """Motion (6 n + k,) with the shifts between two poses, and no rotations."""
+    motion = np.zeros(one.unknowns)
+    nodes = motion[: NODE_UNKNOWNS * len(one.points)].reshape(-1, NODE_UNKNOWNS)
+    nodes[:, :3] = other.points - one.points
+    return motion

@@ -1,0 +1,144 @@
+"""A structure: beams on nodes, what is held, and its systems of equations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.errors import InputError
+from lamella.base.result import Lean
+from lamella.base.sparse import SymmetricPattern, packed
+from lamella.base.vectors import diagonal
+from lamella.structure.beam.beams import Beams
+from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
+
+
+@dataclass(frozen=True)
+class Structure(Lean):
+    """Beams on nodes.
+
+    Attributes
+    ----------
+    poses : Poses
+        As it was put together: what loads are counted from, not necessarily in equilibrium.
+    beams : Beams
+    held : (n, 6) bool
+        Shifts along and rotations about the global axes that supports hold.
+    held_joints : (k,) bool
+        Joints that are locked.
+    """
+
+    poses: Poses
+    beams: Beams
+    held: Booleans
+    held_joints: Booleans
+
+    def __post_init__(self) -> None:
+        nodes = len(self.poses.points)
+        if self.held.shape != (nodes, NODE_UNKNOWNS):
+            raise InputError(
+                f"held has the shape {self.held.shape}",
+                f"it has to be ({nodes}, {NODE_UNKNOWNS}): a row a node",
+                "held",
+            )
+        if self.held_joints.shape != self.poses.angles.shape:
+            raise InputError(
+                f"held_joints has the shape {self.held_joints.shape}",
+                f"it has to be {self.poses.angles.shape}: one a joint",
+                "held_joints",
+            )
+
+    @cached_property
+    def size(self) -> float:
+        """Diagonal of the box around its nodes, m."""
+        return diagonal(self.poses.points)
+
+    @cached_property
+    def held_unknowns(self) -> Booleans:
+        """(6 n + k,)."""
+        return np.concatenate((self.held.ravel(), self.held_joints))
+
+    @cached_property
+    def free(self) -> Integers:
+        """Unknowns that are not held."""
+        return np.flatnonzero(~self.held_unknowns)
+
+    @cached_property
+    def unknowns(self) -> list[Integers]:
+        """Of each element, in the groups of `Beams.unknowns`; -1: it has none there."""
+        return self.beams.unknowns(len(self.poses.points))
+
+    @cached_property
+    def pattern(self) -> SymmetricPattern:
+        """Of the stiffness in the free unknowns."""
+        number = np.full(self.poses.unknowns + 1, -1)
+        number[self.free] = np.arange(len(self.free))
+        pairs = []
+        for unknowns in self.unknowns:
+            first, second = np.tril_indices(unknowns.shape[1])
+            numbers = number[unknowns]
+            pairs.append((numbers[:, first].ravel(), numbers[:, second].ravel()))
+        one, other = (np.concatenate(side) for side in zip(*pairs, strict=True))
+        return SymmetricPattern.from_pairs(one, other, len(self.free))
+
+    def entries(self, blocks: list[Floats]) -> Floats:
+        """Entries in `pattern` of a matrix of element blocks, in the groups of `Beams.unknowns`."""
+        return self.pattern.assemble(np.concatenate([packed(block).ravel() for block in blocks]))
+
+    def vector(self, parts: list[Floats]) -> Floats:
+        """Sum of element vectors, in the groups of `Beams.unknowns`, (6 n + k,)."""
+        size = self.poses.unknowns
+        total = np.zeros(size + 1)
+        for unknowns, part in zip(self.unknowns, parts, strict=True):
+            # what has no unknown is counted to one place more
+            places = np.where(unknowns < 0, size, unknowns)
+            total += np.bincount(places.ravel(), part.ravel(), size + 1)
+        return total[:-1]
+
+    def gathered(self, motion: Floats) -> list[Floats]:
+        """A motion (6 n + k,) as elements have it, in the groups of `Beams.unknowns`."""
+        padded = np.append(motion, 0.0)
+        return [padded[unknowns] for unknowns in self.unknowns]
+
+    def multiplied(self, blocks: list[Floats], motion: Floats) -> Floats:
+        """Product of a matrix of element blocks with a motion (6 n + k,), (6 n + k,)."""
+        parts = [np.einsum("mij,mj->mi", b, q) for b, q in zip(blocks, self.gathered(motion), strict=True)]
+        return self.vector(parts)
+
+
+def make_structure(poses: Poses, beams: Beams, held: dict[int, str], *, locked: Sequence[int] = ()) -> Structure:
+    """A structure with supports at some nodes.
+
+    Parameters
+    ----------
+    poses : Poses
+    beams : Beams
+    held : dict of int to str
+        Held unknowns of nodes by name, blank between: "x y z" of shifts, "rx ry rz" of rotations, "all" of everything.
+    locked : sequence of int
+        Joints that keep their angle.
+
+    Raises
+    ------
+    InputError
+        A node or a joint that is not there; a name that is none.
+    """
+    names = ("x", "y", "z", "rx", "ry", "rz")
+    mask = np.zeros((len(poses.points), NODE_UNKNOWNS), bool)
+    for node, wanted in held.items():
+        if not 0 <= node < len(mask):
+            raise InputError(f"there is no node {node}", f"nodes are 0 to {len(mask) - 1}", "held")
+        for name in names if wanted == "all" else wanted.split():
+            if name not in names:
+                raise InputError(f"{name!r} at node {node} is no support", f"use {', '.join(names)} or all", "held")
+            mask[node, names.index(name)] = True
+    locks = np.zeros(len(poses.angles), bool)
+    for joint in locked:
+        if not 0 <= joint < len(locks):
+            raise InputError(f"there is no joint {joint}", f"there are {len(locks)} joints, the first is 0", "locked")
+        locks[joint] = True
+    return Structure(poses, beams, mask, locks)
