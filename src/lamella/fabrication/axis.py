@@ -22,6 +22,8 @@ STRAIGHT_CURVATURE = 1e-12
 BEFORE = 0.2
 # of the distance from an arc against that beyond its ends, when a point's arc is chosen
 NEARER = 1e-3
+# index of a single arc
+ONLY_ARC = np.array(0)
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,9 @@ class Axis:
         return len(self.curvatures) == 1
 
     def piece(self, stations: Floats) -> Integers:
-        """The arc that stations lie on; beyond the ends the first or the last one."""
+        """The arc that stations lie on; beyond the ends the first or the last one. Of a single arc one 0 for all."""
+        if self.is_arc:
+            return ONLY_ARC
         return np.asarray(np.searchsorted(self.knots[1:-1], stations, side="right"))
 
     def develop(self, stations: ArrayLike, heights: ArrayLike) -> Floats:
@@ -84,22 +88,22 @@ class Axis:
         On one arc ((1/k - z) sin k(s - o), 1/k - (1/k - z) cos k(s - o)), o its middle, written so that it neither
         divides by nor cancels against a small curvature.
         """
-        s, z = np.broadcast_arrays(np.asarray(stations, float), np.asarray(heights, float))
-        points = self._points(s, z)
+        points = self._points(np.asarray(stations, float), np.asarray(heights, float))
         return np.stack((points.real, points.imag), axis=-1)
 
-    def heading(self, stations: Floats) -> Floats:
-        """Direction of the centre line at stations, rad."""
-        piece = self.piece(stations)
+    def heading(self, stations: Floats, piece: Integers | None = None) -> Floats:
+        """Direction of the centre line at stations, rad; `piece` where it is known."""
+        piece = self.piece(stations) if piece is None else piece
         return np.asarray(self.headings[piece] + self.curvatures[piece] * (stations - self.references[piece]))
 
-    def _points(self, stations: Floats, heights: Floats) -> Complexes:
-        piece = self.piece(stations)
+    def _points(self, stations: Floats, heights: Floats | float, piece: Integers | None = None) -> Complexes:
+        piece = self.piece(stations) if piece is None else piece
         ahead, begin = stations - self.references[piece], self.headings[piece]
         half = 0.5 * self.curvatures[piece] * ahead
         chord = ahead * np.sinc(half / np.pi)
-        x = chord * np.cos(begin + half) - heights * np.sin(begin + 2 * half)
-        y = chord * np.sin(begin + half) + heights * np.cos(begin + 2 * half)
+        turned = begin + 2 * half
+        x = chord * np.cos(begin + half) - heights * np.sin(turned)
+        y = chord * np.sin(begin + half) + heights * np.cos(turned)
         return np.asarray(self.places[piece] + (x + 1j * y))
 
     def stations(self, points: Floats) -> Floats:
@@ -125,12 +129,14 @@ class Axis:
 
     def edge_stations(self, stations: Floats, height: float, across: float) -> Floats:
         """Stations of the points at `height` that are `across` ahead of the perpendiculars at stations (k,), m."""
-        foot, heading = self._points(stations, np.zeros_like(stations)), self.heading(stations)
-        ahead = stations + across / (1 - self.curvatures[self.piece(stations)] * height)
+        piece = self.piece(stations)
+        foot, heading = self._points(stations, 0.0, piece), self.heading(stations, piece)
+        ahead = stations + across / (1 - self.curvatures[piece] * height)
         for _ in range(STATION_STEPS):
-            off = (self._points(ahead, np.full_like(ahead, height)) - foot) * np.exp(-1j * heading)
-            turn = np.cos(self.heading(ahead) - heading)
-            scale = 1 - self.curvatures[self.piece(ahead)] * height
+            piece = self.piece(ahead)
+            off = (self._points(ahead, height, piece) - foot) * np.exp(-1j * heading)
+            turn = np.cos(self.heading(ahead, piece) - heading)
+            scale = 1 - self.curvatures[piece] * height
             ahead = ahead - (off.real - across) / (scale * turn)
         return ahead
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -126,7 +127,7 @@ class Part(Shown):
         """Whether slots begin at the +n edge."""
         return self.family == "A"
 
-    @property
+    @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
         """Least x, y and greatest x, y in the part's own frame, m."""
         if not self.axis.is_arc:
@@ -144,7 +145,7 @@ class Part(Shown):
         """Points of the strip in the part's own frame, (..., 2), m; see `Axis.develop`."""
         return self.axis.develop(stations, heights)
 
-    @property
+    @cached_property
     def bow(self) -> float:
         """How far the centre line leaves the arc of the part's `curvature` laid best on it, m."""
         if self.axis.is_arc:

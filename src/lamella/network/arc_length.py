@@ -79,8 +79,9 @@ class ArcLengths:
             self._group[left[done]] = len(self._series)
             self._member[left[done]] = np.arange(done.sum())
             self.length[left[done]] = length[done]
-            integral = np.asarray(np.polynomial.legendre.legint(speed[:, done], lbnd=-1, axis=0) / 2, np.float64)
-            self._series.append((integral, speed[:, done] / 2))
+            integral = np.polynomial.legendre.legint(speed[:, done], lbnd=-1, axis=0) / 2
+            # rows in one piece: numpy's take copies any other row as a whole, however few of its members are taken
+            self._series.append((np.ascontiguousarray(integral), np.ascontiguousarray(speed[:, done] / 2)))
             left, points = left[~done], 4 * points
 
     def parameter(self, segment: Integers, fraction: Floats) -> Floats:

@@ -9,7 +9,8 @@ import rhino3dm
 
 from lamella.base.arrays import Floats
 from lamella.files.write.drawn_layer import DrawnLayer
-from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile, nurbs_curve
+from lamella.files.write.nurbs_objects import nurbs_surface
+from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile
 from lamella.files.write.splines import SPLINE_TOLERANCE, fit_spline
 from lamella.files.write.text import require_finite
 from lamella.network.network import NODE_KINDS, Network
@@ -34,7 +35,7 @@ COLOURS = {
 # samples of a layer that make a strip
 LEAST_SAMPLES = 4
 
-POINT_OBJECTS = 20_000
+POINT_OBJECTS = 2_000
 """Nodes up to this number are points named by their index; above, one point cloud a layer."""
 
 
@@ -179,11 +180,9 @@ class _Model:
         length = float(arclengths[-1])
         spline = fit_spline(arclengths, edges, slopes, SPLINE_TOLERANCE * length / 3**0.5)
         knots, place, metres = spline.knots[1:-1], self.rhino.placed, self.rhino.metres
-        lower, upper = (
-            nurbs_curve(3, knots / metres, place(spline.controls[:, side])) for side in (slice(0, 3), slice(3, 6))
-        )
-        strip = rhino3dm.NurbsSurface.CreateRuledSurface(lower, upper)
-        strip.SetDomain(1, rhino3dm.Interval(-section.height / 2 / metres, section.height / 2 / metres))
+        across = np.array([-0.5, 0.5]) * section.height / metres
+        lower_upper = place(spline.controls.reshape(-1, 2, 3))
+        strip = nurbs_surface((3, 1), (knots / metres, across), lower_upper)
         family = str(network.families[k])
         name = f"{network.ids[k]}-{layer}" if layer else network.ids[k]
         reported = {"side": SIDES[section.layers][layer - 1]} if layer else {}

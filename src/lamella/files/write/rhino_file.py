@@ -14,6 +14,7 @@ from lamella.base.arrays import Floats
 from lamella.base.drawing_origin import NOWHERE, Origin
 from lamella.base.units import METRES
 from lamella.base.wording import one_line
+from lamella.files.write.nurbs_objects import nurbs_curve
 from lamella.surface.mesh import SurfaceMesh
 
 RHINO_TOLERANCE = 1e-5
@@ -129,16 +130,3 @@ class RhinoFile:
     def encoded(self) -> bytes:
         """The file's bytes."""
         return base64.b64decode(self.file.Encode())
-
-
-def nurbs_curve(degree: int, knots: Floats, controls: Floats) -> rhino3dm.NurbsCurve:
-    """A curve from its control points (n, 3) and all but the first and the last of its knots.
-
-    openNURBS leaves those two out, which no basis function needs.
-    """
-    points = [rhino3dm.Point3d(x, y, z) for x, y, z in controls.tolist()]
-    curve = rhino3dm.NurbsCurve.Create(False, degree, points)
-    inner = curve.Knots
-    for k, knot in enumerate(knots.tolist()):
-        inner[k] = knot
-    return curve

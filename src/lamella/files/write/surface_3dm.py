@@ -18,6 +18,7 @@ import rhino3dm
 from lamella.base.arrays import Floats, Integers
 from lamella.base.vectors import diagonal
 from lamella.files.whole import write_whole
+from lamella.files.write.nurbs_objects import nurbs_surface
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile
 from lamella.files.write.text import require_finite
 from lamella.surface.element.lagrange import lagrange, subdivision
@@ -227,16 +228,12 @@ class _Model:
         group.Name = "surface"
         group.Id = self.rhino.identity("surface", "group")
         self.file.Groups.Add(group)
-        patch = _bezier_patch(p)
-        points = patch.Points
-        places = [(i, j) for i in range(p + 1) for j in range(p + 1)]
-        for k, net in enumerate(self.rhino.placed(controls).reshape(len(controls), -1, 3).tolist()):
+        # openNURBS leaves out the first and the last knot, which no basis function needs
+        knots = np.repeat([0.0, 1.0], p)
+        for k, net in enumerate(self.rhino.placed(controls)):
             attributes = self._attributes("surface", f"{k // 3}.{k % 3}")
             attributes.AddToGroup(0)
-            for place, (x, y, z) in zip(places, net, strict=True):
-                points[place] = rhino3dm.Point4d(x, y, z, 1.0)
-            # the file keeps a copy
-            self.file.Objects.AddSurface(patch, attributes)
+            self.file.Objects.AddSurface(nurbs_surface((p, p), (knots, knots), net), attributes)
 
     def add_mesh(self, count: int) -> None:
         parts, reached = 0, np.inf
@@ -262,13 +259,3 @@ class _Model:
     def _attributes(self, layer: str, name: str, **text: str) -> rhino3dm.ObjectAttributes:
         shared = {"mean_curvature": repr(float(self.surface.mean_curvature)), "version": self.version} if text else {}
         return self.rhino.attributes(layer, name, **(text | shared))
-
-
-def _bezier_patch(degree: int) -> rhino3dm.NurbsSurface:
-    """A patch on the unit square, its control points still to be set."""
-    patch = rhino3dm.NurbsSurface.Create(3, False, degree + 1, degree + 1, degree + 1, degree + 1)
-    # openNURBS leaves out the first and the last knot, which no basis function needs.
-    for knots in (patch.KnotsU, patch.KnotsV):
-        for k in range(degree):
-            knots[k], knots[degree + k] = 0.0, 1.0
-    return patch
