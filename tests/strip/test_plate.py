@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lamella.base.material import Material
-from lamella.strip.plate import across, mean_tension, poisson_ratio
+from lamella.strip.plate import Plate, poisson_ratio
 from lamella.strip.stress import stresses
 from strip.plate_strip import plate_strip
 
@@ -20,7 +20,7 @@ def von_mises(h: float, t: float, kg: float, tg: float, held: bool) -> float:
 
 
 def membrane(h: float, t: float, kg: float, tg: float, held: bool, share: float = 1.0) -> float:
-    return float(across(STEEL, h, t, kg * ONE, tg * ONE, share, held).stress[0])
+    return float(Plate(STEEL, h, t, kg * ONE, tg * ONE).across(share, held).stress[0])
 
 
 def test_edge_stress_over_that_of_a_strip_flat_across():
@@ -81,7 +81,7 @@ def test_resultants(kg: float):
     x, weight = np.polynomial.legendre.leggauss(30)
     for held in (False, True):
         stress = [membrane(h, t, kg, tg, held, share) for share in ((x + 1) / 2).tolist()]
-        expected = mean_tension(STEEL, h, t, kg * ONE, tg * ONE)[0] if held else 0.0
+        expected = Plate(STEEL, h, t, kg * ONE, tg * ONE).mean_tension()[0] if held else 0.0
         assert weight / 2 @ stress == pytest.approx(expected, abs=1e-9 * E * h**2 * tg**2)
 
 
@@ -92,7 +92,7 @@ def test_the_equation_and_its_edges():
     share = np.linspace(0.2, 1.0, 401)
     step = (share[1] - share[0]) * h / 2
     for held in (False, True):
-        told = [across(STEEL, h, t, kg * ONE, tg * ONE, s, held) for s in share.tolist()]
+        told = [Plate(STEEL, h, t, kg * ONE, tg * ONE).across(s, held) for s in share.tolist()]
         stress, curvature = (np.array([getattr(a, name)[0] for a in told]) for name in ("stress", "curvature"))
         balance = stiffness * np.diff(curvature, 2) / step**2 - t * kg * stress[1:-1]
         assert np.abs(balance).max() < 1e-4 * np.abs(t * kg * stress).max()
@@ -110,6 +110,6 @@ def test_poisson_ratio():
 def test_very_wide_thin_strips_do_not_overflow():
     for kg in (50.0, 1e4, 1e6):
         for held in (False, True):
-            a = across(STEEL, 1.0, 1e-4, kg * ONE, ONE, 0.5, held)
+            a = Plate(STEEL, 1.0, 1e-4, kg * ONE, ONE).across(0.5, held)
             assert np.isfinite(a.stress).all()
             assert np.isfinite(a.curvature).all()

@@ -9,7 +9,7 @@ import pytest
 
 from lamella import find_material
 from lamella.base.material import MATERIALS, Material
-from lamella.strip.plate import across, mean_tension
+from lamella.strip.plate import Plate
 from lamella.strip.stress import Stresses, bending, net_section, shortening, stresses, torsion
 
 STEEL = Material(7850, 200e9, 77e9, 235e6)
@@ -83,7 +83,7 @@ def test_helix_stress_is_the_strain_of_helical_fibres():
             return np.sqrt((1 - e) ** 2 + (z * tg) ** 2) - 1
 
         e = brentq(lambda e: weight @ strain(e), 0, 0.1, xtol=1e-16)
-        told = [across(STEEL, h, 0.0015, ZERO, tg * ONE, abs(x), False).stress[0] for x in share.tolist()]
+        told = [Plate(STEEL, h, 0.0015, ZERO, tg * ONE).across(abs(x), False).stress[0] for x in share.tolist()]
         formula = np.array(told) / STEEL.youngs_modulus
         assert e == pytest.approx(shortening(h, tg * ONE)[0], rel=0.1)
         assert weight @ formula == pytest.approx(0, abs=1e-15)  # no resultant
@@ -99,7 +99,7 @@ def test_net_section_is_half_of_the_height():
     half = force / (t * h / 2) + moment / (t * (h / 2) ** 2 / 6)
     assert net_section(0 * ONE, whole_tension * ONE, whole_bending * ONE)[0] == pytest.approx(half)
     s = strip(0.0, 0.5, layer=1e-3, held=True)
-    tension = mean_tension(STEEL, h, t, ZERO, 0.5 * ONE)[0]
+    tension = Plate(STEEL, h, t, ZERO, 0.5 * ONE).mean_tension()[0]
     assert tension == pytest.approx(200e9 * h**2 * 0.25 / 24)
     expected = np.hypot(2 * tension + 4 * s.layer[0], np.sqrt(3) * s.torsion[0]) / 235e6
     assert s.net_utilisation[0] == pytest.approx(expected)

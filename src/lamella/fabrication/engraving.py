@@ -99,7 +99,8 @@ def _id_strokes(part: Part, gaps: Floats, begin: float) -> tuple[Floats, ...]:
         at, room = _room(np.array([[begin, part.end]]), margin, 2 * least * ratio)
     size = min(full, room / ratio)
     middle = -0.25 * part.height if part.from_above else 0.25 * part.height
-    return tuple(
-        part.place(at + size * stroke[:, 0], middle + size * (stroke[:, 1] - 0.5))
-        for stroke in text_strokes(part.label)
-    )
+    strokes = text_strokes(part.label)
+    points = np.concatenate(strokes) if strokes else np.empty((0, 2))
+    placed = part.place(at + size * points[:, 0], middle + size * (points[:, 1] - 0.5))
+    ends = np.cumsum([len(stroke) for stroke in strokes]).tolist()
+    return tuple(placed[end - len(stroke) : end] for stroke, end in zip(strokes, ends, strict=True))

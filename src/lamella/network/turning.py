@@ -29,7 +29,9 @@ def turning(tangents: Floats, sideways: Floats, arclengths: Floats, offsets: Int
     return np.asarray(dots(derivative(tangents, arclengths, offsets, closed), sideways))
 
 
-def derivative(values: Floats, arclengths: Floats, offsets: Integers, closed: Booleans) -> Floats:
+def derivative(
+    values: Floats, arclengths: Floats, offsets: Integers, closed: Booleans, at: Integers | None = None
+) -> Floats:
     """Derivatives by the arc length of values along curves, (k, c): of second order in the samples' distance.
 
     That of the parabola through three samples: this one and those about `STENCIL_WIDTH` to either side of it; next to
@@ -44,25 +46,32 @@ def derivative(values: Floats, arclengths: Floats, offsets: Integers, closed: Bo
         Where each curve's samples begin.
     closed : (m,) bool
         Curves that go on from their last sample, which is the first one once more, to the second.
+    at : (s,) int, optional
+        Samples at which they are wanted; all when not given.
+
+    Returns
+    -------
+    (s, c)
     """
     if not len(arclengths):
         return np.zeros_like(values)
-    count = np.diff(offsets)
-    begin, end = np.repeat(offsets[:-1], count), np.repeat(offsets[1:] - 1, count)
-    middle = np.arange(len(arclengths))
+    owner, middle = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets)), np.arange(len(arclengths))
+    if at is not None:
+        owner, middle = owner[at], at.copy()
+    begin, end, own = offsets[owner], offsets[owner + 1] - 1, arclengths[middle]
     before, after = np.maximum(middle - STENCIL_WIDTH, begin), np.minimum(middle + STENCIL_WIDTH, end)
     a, c = arclengths[before], arclengths[after]
-    even = (after - before == 2 * STENCIL_WIDTH) & (np.abs(a + c - 2 * arclengths) < STENCIL_EVEN * (c - a))
+    even = (after - before == 2 * STENCIL_WIDTH) & (np.abs(a + c - 2 * own) < STENCIL_EVEN * (c - a))
     uneven = np.flatnonzero(~even)
-    curve = np.repeat(np.arange(len(count)), count)[uneven]
-    three = _three(arclengths, offsets, uneven, curve, closed[curve])
+    curve = owner[uneven]
+    three = _three(arclengths, offsets, middle[uneven], curve, closed[curve])
     before[uneven], middle[uneven], after[uneven] = three.samples
     a, b, c = (arclengths[k] for k in (before, middle, after))
     a[uneven], b[uneven], c[uneven] = three.places
     v_a, v_b, v_c = (values.take(k, 0) for k in (before, middle, after))
     first, second = (v_b - v_a) / (b - a)[:, None], (v_c - v_b) / (c - b)[:, None]
     # Newton's form of the parabola through (a, v_a), (b, v_b), (c, v_c), derived
-    return np.asarray(first + (second - first) * ((2 * arclengths - a - b) / (c - a))[:, None])
+    return np.asarray(first + (second - first) * ((2 * own - a - b) / (c - a))[:, None])
 
 
 def sideways_slopes(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
+from lamella.base.blocks import blocks
 from lamella.base.errors import InputError, require_positive
 from lamella.base.material import Material, find_material
 from lamella.base.onward import onward
@@ -17,7 +18,7 @@ from lamella.network.network import SINGULAR, Network
 from lamella.strip.layer_curves import lamella_layers
 from lamella.strip.layers import LayerCurves, Layers, at_stops, parallel_layers, running
 from lamella.strip.planarity import planarity_score
-from lamella.strip.stress import shortening, stresses
+from lamella.strip.stress import Stresses, shortening, stresses
 from lamella.surface.surface import Surface
 
 if TYPE_CHECKING:
@@ -259,26 +260,8 @@ def make_lamellas(
             f"write height = {rounded(0.99 * limit / 2, up=False):g} or less, or check that the surface is in metres",
             "section.height",
         )
-    kn, kg, tg = network.sample_darboux
-    held = section.marks == "arc-length"
-    offsets = section.layer_offsets
-    beside = np.abs(offsets).max() * np.abs(network.sample_slopes)
-    s = stresses(
-        material,
-        section.height,
-        section.thickness,
-        curvature_error=kn - curvature,
-        layer_curvature=beside if section.layer_curves == "offset" else np.zeros_like(kn),
-        kg=kg,
-        tg=tg,
-        held=held,
-    )
-
-    low, high = twisted_strip(network, section.height)
-    planarity = np.zeros(len(kn))
-    planarity[:-1] = planarity_score(low[:-1], low[1:], high[1:], high[:-1])
-    ends = network.sample_offsets[1:] - 1
-    planarity[ends] = 0.0
+    held, tg = section.marks == "arc-length", network.sample_darboux.tg
+    s = _stresses(network, section, material)
 
     lengthening = np.zeros_like(tg) if held else shortening(section.height, tg)
     stations = network.stop_arclengths + at_stops(network, running(network, lengthening))
@@ -295,10 +278,43 @@ def make_lamellas(
         s.von_mises,
         s.utilisation,
         np.where(crossings(network)[network.stop_nodes], at_stops(network, s.net_utilisation), 0.0),
-        planarity,
+        _planarity(network, section.height),
         stations,
         _layers(network, section, lengthening, surface),
         stations[network.stop_offsets[1:] - 1],
+    )
+
+
+def _planarity(network: Network, height: float) -> Floats:
+    """Planarity score of the quad of a strip between each sample and the next, (k,); 0 at a lamella's end."""
+    planarity = np.zeros(len(network.sample_points))
+    for block in blocks(len(planarity) - 1):
+        reach = height / 2 * network.sample_normals[block.start : block.stop + 1]
+        points = network.sample_points[block.start : block.stop + 1]
+        low, high = points - reach, points + reach
+        planarity[block] = planarity_score(low[:-1], low[1:], high[1:], high[:-1])
+    planarity[network.sample_offsets[1:] - 1] = 0.0
+    return planarity
+
+
+def largest_utilisation(network: Network, section: Section, material: Material) -> float:
+    """The largest utilisation of strips that `make_lamellas` would make, from their stresses alone."""
+    return float(_stresses(network, section, material).utilisation.max())
+
+
+def _stresses(network: Network, section: Section, material: Material) -> Stresses:
+    """Stresses at the samples of a network."""
+    kn, kg, tg = network.sample_darboux
+    beside = np.abs(section.layer_offsets).max() * np.abs(network.sample_slopes)
+    return stresses(
+        material,
+        section.height,
+        section.thickness,
+        curvature_error=kn - network.normal_curvature,
+        layer_curvature=beside if section.layer_curves == "offset" else np.zeros_like(kn),
+        kg=kg,
+        tg=tg,
+        held=section.marks == "arc-length",
     )
 
 

@@ -20,6 +20,7 @@ from typing import Literal
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
+from lamella.base.blocks import blocks
 from lamella.network.network import Network
 
 LayerCurves = Literal["offset", "cut", "lamella"]
@@ -103,20 +104,30 @@ def parallel_layers(network: Network, offsets: Floats, lengthening: Floats, *, o
     if own_lengths:
         stretch = np.sqrt((1 - d * kg) ** 2 + (d * tg) ** 2) - 1
         stations = stations + np.stack([running(network, strain) for strain in stretch])
-    normals, tangents = network.sample_normals, network.sample_tangents
-    sideways = np.cross(normals, tangents)
-    # kn of the curve that leads sideways, up to its own geodesic curvature
-    across = 2 * network.sample_mean_curvature - kn
-    turn = d[..., None] * (tg[:, None] * tangents + across[:, None] * sideways)
-    rise = d[..., None] ** 2 / 2 * across[:, None] * normals
-    tilted = normals - turn
+    points, normals = _beside(network, offsets)
     return Layers(
         np.repeat(d, len(kn), 1),
         stations,
         at_stops(network, stations),
         d * network.sample_slopes if cut else np.zeros_like(stations),
         None,
-        network.sample_points + d[..., None] * sideways + rise,
-        tilted / np.linalg.norm(tilted, axis=2)[..., None],
+        points,
+        normals,
         np.ones(len(kn), bool),
     )
+
+
+def _beside(network: Network, offsets: Floats) -> tuple[Floats, Floats]:
+    """Points and unit normals of the surface at distances beside the lamellas, each (layers, k, 3)."""
+    d = offsets[:, None, None]
+    points, turned = np.empty((2, len(offsets), *network.sample_points.shape))
+    for block in blocks(len(network.sample_points)):
+        normals, tangents = network.sample_normals[block], network.sample_tangents[block]
+        sideways = np.cross(normals, tangents)
+        # kn of the curve that leads sideways, up to its own geodesic curvature
+        across = (2 * network.sample_mean_curvature[block] - network.sample_darboux.kn[block])[:, None]
+        turn = d * (network.sample_darboux.tg[block, None] * tangents + across * sideways)
+        tilted = normals - turn
+        points[:, block] = network.sample_points[block] + d * sideways + d**2 / 2 * across * normals
+        turned[:, block] = tilted / np.linalg.norm(tilted, axis=2)[..., None]
+    return points, turned

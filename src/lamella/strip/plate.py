@@ -21,6 +21,7 @@ twice as much, 20 % at seven times as much.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -47,10 +48,8 @@ def poisson_ratio(material: Material) -> float:
     return ratio if 0 <= ratio <= MOST_POISSON else 0.0
 
 
-def across(
-    material: Material, height: float, thickness: float, kg: Floats, tg: Floats, share: float, held: bool
-) -> Across:
-    """Membrane stress along the strip, and its curvature across, at a height.
+class Plate:
+    """Strips as plates, at samples where they are bent and twisted; what heights share is computed once.
 
     Parameters
     ----------
@@ -59,63 +58,89 @@ def across(
         m.
     kg, tg : (k,)
         1/m.
-    share : float
-        Height above the centre line over h / 2: 1 at the edges, 0 on the centre line.
-    held : bool
-        Whether nodes hold the centre line at its length (it is then without strain). Else the strip is free to shorten,
-        and the stress has no resultant.
     """
-    nu, kg = poisson_ratio(material), np.abs(kg)
-    x = _reach(material, height, thickness, kg)
-    bent = np.maximum(x, FLAT_ACROSS)
-    shape, spread = _held(bent, share) if held else _free(bent, share)
-    flat = x < FLAT_ACROSS
-    limit = share**2 / 2 - (0.0 if held else 1 / 6)
-    stress = material.youngs_modulus * (tg**2 + nu * kg**2) * height**2 / 4 * np.where(flat, limit, shape)
-    rise = np.where(flat, 0.0, (1 - spread) / np.where(flat, 1.0, kg))
-    return Across(stress, np.asarray(tg**2 * rise - nu * kg * np.where(flat, 1.0, spread)))
+
+    def __init__(self, material: Material, height: float, thickness: float, kg: Floats, tg: Floats) -> None:
+        self._nu, self._kg, self._tg = poisson_ratio(material), np.abs(kg), tg
+        # beta h / 2
+        rate = np.sqrt(3 * (1 - self._nu**2)) / thickness
+        reach = np.asarray(0.5 * height * np.sqrt(self._kg * rate))
+        self._flat = reach < FLAT_ACROSS
+        self._x = np.maximum(reach, FLAT_ACROSS)
+        self._strain = tg**2 + self._nu * self._kg**2
+        self._modulus, self._height = material.youngs_modulus, height
+        self._at = {1.0: _functions(self._x, 1.0)}
+
+    def across(self, share: float, held: bool) -> Across:
+        """Membrane stress along the strip, and its curvature across, at a height.
+
+        Parameters
+        ----------
+        share : float
+            Height above the centre line over h / 2: 1 at the edges, 0 on the centre line.
+        held : bool
+            Whether nodes hold the centre line at its length (it is then without strain). Else the strip is free to
+            shorten, and the stress has no resultant.
+        """
+        nu, kg, flat = self._nu, self._kg, self._flat
+        shape, spread = self._held(share) if held else self._free(share)
+        limit = share**2 / 2 - (0.0 if held else 1 / 6)
+        stress = self._modulus * self._strain * self._height**2 / 4 * np.where(flat, limit, shape)
+        rise = np.where(flat, 0.0, (1 - spread) / np.where(flat, 1.0, kg))
+        return Across(stress, np.asarray(self._tg**2 * rise - nu * kg * np.where(flat, 1.0, spread)))
+
+    def mean_tension(self) -> Floats:
+        """Mean over the height of the membrane stress with a held centre line, Pa, (k,); E h^2 tg^2 / 24 at kg = 0."""
+        x, edge = self._x, self._at[1.0]
+        # from the jump of the shear force on the centre line
+        share = (edge.ch * edge.s - edge.sh * edge.c) * np.exp(-x) / (8 * x**3 * self._whole_held)
+        strain = self._strain * self._height**2 * np.where(self._flat, 1 / 24, share)
+        return np.asarray(self._modulus * strain)
+
+    @cached_property
+    def _whole_held(self) -> Floats:
+        edge = self._at[1.0]
+        return np.asarray(edge.ch**2 + edge.c**2 * edge.decay)
+
+    @cached_property
+    def _whole_free(self) -> Floats:
+        """Sinh 2x + sin 2x over e^(2x)."""
+        edge = self._at[1.0]
+        return np.asarray(2 * (edge.sh * edge.ch + edge.s * edge.c * edge.decay))
+
+    def _functions(self, share: float) -> _Functions:
+        if share not in self._at:
+            self._at[share] = _functions(self._x, share)
+        return self._at[share]
+
+    def _free(self, share: float) -> tuple[Floats, Floats]:
+        """Stress over E (tg^2 + nu kg^2) h^2 / 4, and the share of the edge's added curvature: without a resultant."""
+        edge, own, whole = self._at[1.0], self._functions(share), self._whole_free
+        less, more = edge.sh * edge.c - edge.ch * edge.s, edge.ch * edge.s + edge.sh * edge.c
+        stress = (less * own.ch * own.c + more * own.sh * own.s) * own.reach / (self._x**2 * whole)
+        return stress, 2 * (more * own.ch * own.c - less * own.sh * own.s) * own.reach / whole
+
+    def _held(self, share: float) -> tuple[Floats, Floats]:
+        """The same with a centre line that has no strain."""
+        edge, own, whole = self._at[1.0], self._functions(share), self._whole_held
+        both, less = edge.ch * edge.c, edge.ch * edge.s - edge.sh * edge.c
+        bent = less * (own.ch * own.s - own.sh * own.c)
+        stress = (2 * both * own.sh * own.s + bent) * own.reach / (2 * self._x**2 * whole)
+        return stress, (2 * both * own.ch * own.c + less * (own.ch * own.s + own.sh * own.c)) * own.reach / whole
 
 
-def mean_tension(material: Material, height: float, thickness: float, kg: Floats, tg: Floats) -> Floats:
-    """Mean over the height of the membrane stress with the centre line held, Pa, (k,); E h^2 tg^2 / 24 at kg = 0."""
-    nu, x = poisson_ratio(material), _reach(material, height, thickness, kg)
-    bent = np.maximum(x, FLAT_ACROSS)
-    ch, sh, c, s, _ = _functions(bent, 1.0)
-    # from the jump of the shear force on the centre line
-    share = (ch * s - sh * c) * np.exp(-bent) / (8 * bent**3 * (ch**2 + c**2 * np.exp(-2 * bent)))
-    strain = (tg**2 + nu * kg**2) * height**2 * np.where(x < FLAT_ACROSS, 1 / 24, share)
-    return np.asarray(material.youngs_modulus * strain)
+class _Functions(NamedTuple):
+    """Of y = share x: cosh and sinh over e^y, cos and sin, e^(y - x) and e^(-2 y)."""
+
+    ch: Floats
+    sh: Floats
+    c: Floats
+    s: Floats
+    reach: Floats
+    decay: Floats
 
 
-def _reach(material: Material, height: float, thickness: float, kg: Floats) -> Floats:
-    """x = beta h / 2."""
-    rate = np.sqrt(3 * (1 - poisson_ratio(material) ** 2)) / thickness
-    return np.asarray(0.5 * height * np.sqrt(np.abs(kg) * rate))
-
-
-def _functions(x: Floats, share: float) -> tuple[Floats, ...]:
-    """cosh and sinh over e^y, cos and sin, of y = share x, and e^(y - x)."""
+def _functions(x: Floats, share: float) -> _Functions:
     y = share * x
     decay = np.exp(-2 * y)
-    return (1 + decay) / 2, -np.expm1(-2 * y) / 2, np.cos(y), np.sin(y), np.exp(y - x)
-
-
-def _free(x: Floats, share: float) -> tuple[Floats, Floats]:
-    """Stress over E (tg^2 + nu kg^2) h^2 / 4, and the share of the edge's added curvature: without a resultant."""
-    ch, sh, c, s, _ = _functions(x, 1.0)
-    ch_y, sh_y, c_y, s_y, reach = _functions(x, share)
-    less, more = sh * c - ch * s, ch * s + sh * c
-    # sinh 2x + sin 2x over e^(2x)
-    whole = 2 * (sh * ch + s * c * np.exp(-2 * x))
-    stress = (less * ch_y * c_y + more * sh_y * s_y) * reach / (x**2 * whole)
-    return stress, 2 * (more * ch_y * c_y - less * sh_y * s_y) * reach / whole
-
-
-def _held(x: Floats, share: float) -> tuple[Floats, Floats]:
-    """The same with a centre line that has no strain."""
-    ch, sh, c, s, _ = _functions(x, 1.0)
-    ch_y, sh_y, c_y, s_y, reach = _functions(x, share)
-    both, less = ch * c, ch * s - sh * c
-    whole = ch**2 + c**2 * np.exp(-2 * x)
-    stress = (2 * both * sh_y * s_y + less * (ch_y * s_y - sh_y * c_y)) * reach / (2 * x**2 * whole)
-    return stress, (2 * both * ch_y * c_y + less * (ch_y * s_y + sh_y * c_y)) * reach / whole
+    return _Functions((1 + decay) / 2, -np.expm1(-2 * y) / 2, np.cos(y), np.sin(y), np.exp(y - x), decay)

@@ -5,13 +5,15 @@ Strip coordinates: z across the height h (along the surface normal, 0 on the cen
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 
 from lamella.base.arrays import Floats
+from lamella.base.blocks import blocks
 from lamella.base.material import Material
-from lamella.strip.plate import across, mean_tension, poisson_ratio
+from lamella.strip.plate import Plate, poisson_ratio
 
 # above the centre line, over h / 2: where stresses are compared; the worst is at the edge or on the centre line
 HEIGHTS = (0.0, 0.5, 1.0)
@@ -91,24 +93,47 @@ def stresses(
         material has a shear strength of its own, the worse of normal and shear stress over their strengths.
         The net section's is that at a slot, see `net_section`.
     """
+    result = Stresses(*np.empty((len(fields(Stresses)), len(kg))))
+    everywhere = np.broadcast_to(axial, kg.shape)
+    for block in blocks(len(kg)):
+        own = _Along(curvature_error[block], layer_curvature[block], kg[block], tg[block], everywhere[block])
+        part = _stresses(material, height, thickness, own, held)
+        for one in fields(Stresses):
+            getattr(result, one.name)[block] = getattr(part, one.name)
+    return result
+
+
+class _Along(NamedTuple):
+    """What strips have at some samples, see `stresses`."""
+
+    curvature_error: Floats
+    layer_curvature: Floats
+    kg: Floats
+    tg: Floats
+    axial: Floats
+
+
+def _stresses(material: Material, height: float, thickness: float, along: _Along, held: bool) -> Stresses:
+    kg, tg = along.kg, along.tg
     weak, shear = bending(material, thickness, kg), torsion(material, thickness, tg)
-    layer = strong_axis(material, height, layer_curvature)
-    strong = strong_axis(material, height, curvature_error) + layer
-    edge, centre = (across(material, height, thickness, kg, tg, share, False).stress for share in (1.0, 0.0))
+    layer = strong_axis(material, height, along.layer_curvature)
+    strong = strong_axis(material, height, along.curvature_error) + layer
+    plate = Plate(material, height, thickness, kg, tg)
+    edge, centre = (plate.across(share, False).stress for share in (1.0, 0.0))
     nu = poisson_ratio(material)
     face = material.youngs_modulus * thickness / (2 * (1 - nu**2))
     normal, square = np.zeros((2, len(weak)))
     for share in HEIGHTS:
-        membrane, curvature = across(material, height, thickness, kg, tg, share, held)
-        along, cross = face * (np.abs(kg) + nu * curvature), face * (curvature + nu * np.abs(kg))
+        membrane, curvature = plate.across(share, held)
+        lengthwise, cross = face * (np.abs(kg) + nu * curvature), face * (curvature + nu * np.abs(kg))
         for side in (-1.0, 1.0):
             for bent in (-strong, strong):
-                sigma = membrane + axial + share * bent + side * along
+                sigma = membrane + along.axial + share * bent + side * lengthwise
                 normal = np.maximum(normal, np.abs(sigma))
                 square = np.maximum(square, sigma**2 - sigma * side * cross + cross**2)
     mises = np.sqrt(square + 3 * shear**2)
-    tension = mean_tension(material, height, thickness, kg, tg) if held else np.zeros_like(weak)
-    net = net_section(weak, tension + axial, strong)
+    tension = plate.mean_tension() if held else np.zeros_like(weak)
+    net = net_section(weak, tension + along.axial, strong)
     return Stresses(
         weak,
         shear,

@@ -10,6 +10,7 @@ from collections import OrderedDict
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from io import StringIO
 from pathlib import Path
 
@@ -47,6 +48,11 @@ class Block:
     points: Floats
     entities: int
 
+    @cached_property
+    def ends(self) -> tuple[Floats, Floats]:
+        """Least and greatest coordinates, (2,) each, mm."""
+        return self.points.min(axis=0), self.points.max(axis=0)
+
 
 class BlockWriter:
     """Collects entities into a `Block`.
@@ -65,35 +71,36 @@ class BlockWriter:
 
     def polyline(self, layer: str, points: Floats, *, closed: bool, tag: str) -> None:
         """Add a polyline of (n, 2) points or of (n, 3) points with bulges, mm."""
-        self._begin("LWPOLYLINE", layer, "AcDbPolyline")
-        self._text.append(f" 90\n{len(points)}\n 70\n{int(closed)}\n")
+        self._text.append(f"{self._begun('LWPOLYLINE', layer, 'AcDbPolyline')} 90\n{len(points)}\n 70\n{int(closed)}\n")
         vertex = " 10\n%%s\n 20\n%%s\n"
         if points.shape[1] == 2:
             self._text.append(vertex * len(points))
         else:
-            self._text.extend(f"{vertex} 42\n{b!r}\n" if b else vertex for b in points[:, 2].tolist())
-        self._end(points[:, :2], tag)
+            self._text += [f"{vertex} 42\n{b!r}\n" if b else vertex for b in points[:, 2].tolist()]
+        self._text.append(_tagged(tag))
+        self._points.append(points[:, :2])
+        self._entities += 1
 
     def lines(self, layer: str, points: Floats, *, tag: str) -> None:
         """Add straight lines, (n, 2, 2), mm."""
-        for line in points:
-            self._begin("LINE", layer, "AcDbLine")
-            self._text.append(" 10\n%%s\n 20\n%%s\n 30\n0.0\n 11\n%%s\n 21\n%%s\n 31\n0.0\n")
-            self._end(line, tag)
+        line = self._begun("LINE", layer, "AcDbLine")
+        line += " 10\n%%s\n 20\n%%s\n 30\n0.0\n 11\n%%s\n 21\n%%s\n 31\n0.0\n" + _tagged(tag)
+        self._text.append(line * len(points))
+        self._points.append(points.reshape(-1, 2))
+        self._entities += len(points)
 
     def block(self) -> Block:
         """What has been added so far."""
         points = np.concatenate(self._points) if self._points else np.empty((0, 2))
         return Block("".join(self._text), points, self._entities)
 
-    def _begin(self, kind: str, layer: str, subclass: str) -> None:
-        self._text.append(f"  0\n{kind}\n  5\n%X\n330\n{self._owner}\n100\nAcDbEntity\n  8\n{layer}\n100\n{subclass}\n")
+    def _begun(self, kind: str, layer: str, subclass: str) -> str:
+        return f"  0\n{kind}\n  5\n%X\n330\n{self._owner}\n100\nAcDbEntity\n  8\n{layer}\n100\n{subclass}\n"
 
-    def _end(self, points: Floats, tag: str) -> None:
-        if tag:
-            self._text.append(f"1001\n{APPLICATION}\n1000\n{tag}\n1071\n{COPY}\n")
-        self._points.append(points)
-        self._entities += 1
+
+def _tagged(tag: str) -> str:
+    """Extended data of an entity: the part, and the number of the copy."""
+    return f"1001\n{APPLICATION}\n1000\n{tag}\n1071\n{COPY}\n" if tag else ""
 
 
 @dataclass(frozen=True)
@@ -110,6 +117,14 @@ class Placed:
     def points(self) -> Floats:
         """Where the block's points come to lie, (n, 2), mm."""
         return (-self.block.points if self.turned else self.block.points) + (self.x, self.y)
+
+    @property
+    def ends(self) -> tuple[Floats, Floats]:
+        """Least and greatest of these, (2,) each, mm."""
+        low, high = self.block.ends
+        if self.turned:
+            low, high = -high, -low
+        return low + (self.x, self.y), high + (self.x, self.y)
 
 
 @contextmanager
@@ -173,7 +188,7 @@ class DxfFile:
 
     def _frame(self, items: list[Placed]) -> tuple[str, str, int]:
         """Text before and after the entities, and their first handle."""
-        ends = [(item.points.min(axis=0), item.points.max(axis=0)) for item in items] or [(np.zeros(2),) * 2]
+        ends = [item.ends for item in items] or [(np.zeros(2),) * 2]
         low = np.min([end[0] for end in ends], axis=0)
         high = np.max([end[1] for end in ends], axis=0)
         centre, size = (0.5 * (low + high)).tolist(), float(np.max(high - low))

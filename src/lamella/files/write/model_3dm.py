@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import rhino3dm
 
-from lamella.base.arrays import Floats
+from lamella.base.arrays import Booleans, Floats
 from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.files.write.nurbs_objects import nurbs_surface
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile
@@ -152,18 +152,14 @@ class _Model:
         require_finite(layers.points, layers.normals)
         reach = section.height / 2 * layers.normals
         both = np.concatenate((layers.points - reach, layers.points + reach), axis=2)
-        one = np.zeros(1, bool)
-        for k in range(len(network.ids)):
-            first, last = network.sample_offsets[k : k + 2]
-            known = np.flatnonzero(layers.followed[first:last]) + first
-            if len(known) < LEAST_SAMPLES:
-                continue
-            span = slice(known[0], known[-1] + 1)
-            s = network.sample_arclengths[span] - network.sample_arclengths[span.start]
+        spans = [_known(layers.followed, *network.sample_offsets[k : k + 2].tolist()) for k in range(len(network.ids))]
+        drawn = [k for k, (first, end) in enumerate(spans) if end - first >= LEAST_SAMPLES]
+        parts = [spans[k] for k in drawn]
+        slopes = [_end_slopes(edges, network.sample_arclengths, parts) for edges in both]
+        for place, k in enumerate(drawn):
+            span = slice(*spans[k])
             for row in range(section.layers):
-                edges = both[row, span]
-                slopes = derivative(edges, s, np.array([0, len(edges)]), one)[[0, -1]]
-                self._add_strip(network, section, k, span, edges, slopes, row + 1)
+                self._add_strip(network, section, k, span, both[row, span], slopes[row][place], row + 1)
 
     def _add_strip(
         self,
@@ -212,6 +208,24 @@ class _Model:
             for i in members:
                 point = rhino3dm.Point(rhino3dm.Point3d(*points[i]))
                 self.file.Objects.Add(point, self.rhino.attributes(layer, str(i)))
+
+
+def _known(followed: Booleans, first: int, end: int) -> tuple[int, int]:
+    """The part of a lamella's samples within which its layers are known: its first one, and that after its last."""
+    known = np.flatnonzero(followed[first:end]) + first
+    return (int(known[0]), int(known[-1]) + 1) if len(known) >= LEAST_SAMPLES else (first, first)
+
+
+def _end_slopes(edges: Floats, arclengths: Floats, spans: Sequence[tuple[int, int]]) -> Floats:
+    """Derivatives of edges (k, 6) by arc length at the first and the last sample of parts of them, (n, 2, 6)."""
+    if not spans:
+        return np.empty((0, 2, 6))
+    first, end = np.array(spans).T
+    offsets = np.r_[0, np.cumsum(end - first)]
+    samples = np.repeat(first - offsets[:-1], end - first) + np.arange(offsets[-1])
+    ends = np.column_stack((offsets[:-1], offsets[1:] - 1)).ravel()
+    along = arclengths[samples] - np.repeat(arclengths[first], end - first)
+    return derivative(edges[samples], along, offsets, np.zeros(len(spans), bool), ends).reshape(-1, 2, 6)
 
 
 def _edge_slopes(network: Network, height: float, span: slice) -> Floats:

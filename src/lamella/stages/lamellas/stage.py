@@ -19,7 +19,7 @@ from lamella.stages.lamellas.warnings import lamella_warnings, layer_warnings
 from lamella.stages.pattern_of_table import pattern_of
 from lamella.stages.stage import File, Missing, Stage, Upstream
 from lamella.stages.surface.surface_of_table import make_surface
-from lamella.strip.lamellas import Lamellas, Section, make_lamellas
+from lamella.strip.lamellas import Lamellas, Section, largest_utilisation, make_lamellas
 from lamella.strip.layer_curves import check_layer_curves
 from lamella.surface.surface import Surface
 
@@ -66,7 +66,6 @@ class LamellasStage(Stage[LamellasOutput]):
 
     def warnings(self, out: LamellasOutput, up: Upstream, progress: Progress) -> Iterator[Message]:
         project, network = up.project, out.network
-        strips = strips_of(project, up.surface)
         advice = None
         if out.made:
             from lamella.stages.lamellas.corner_search import corner_help
@@ -80,7 +79,7 @@ class LamellasStage(Stage[LamellasOutput]):
             project.fabrication.slot_width or 0.0,
             out.material,
             project.known_materials(),
-            lambda other, of: float(strips(network, section=other, material=of).utilisation.max()),
+            lambda other, of: largest_utilisation(network, other, of),
             advice,
         )
         yield from layer_warnings(network, out.lamellas, out.material)
