@@ -112,7 +112,7 @@ def _reach(integral: Floats, speed: Floats, member: Integers, fraction: Floats, 
     low, high = np.full(len(member), -1.0), np.full(len(member), 1.0)
     x: Floats = 2 * fraction - 1
     # to begin with, as if the speed were the first two terms of its series
-    bend = (speed[1] / (2 * speed[0])).take(member)
+    bend = speed[1].take(member) / (2 * speed[0].take(member))
     x = np.clip(x + bend * (1 - x * x), -1, 1)
     for _ in range(60):
         residual = _clenshaw(integral, member, x) - fraction * length

@@ -70,17 +70,21 @@ def trace_faces(
     loops = [loop for loop in rim if len(loop) > 1]
     n, forward_tail = len(normals), np.concatenate(loops or [np.zeros(0, np.int64)])
     forward_head = np.concatenate([np.roll(loop, -1) for loop in loops] or [np.zeros(0, np.int64)])
+    on_rim = np.zeros(n, bool)
+    on_rim[forward_tail] = True
+    # lamella edges from rim node to rim node, few of all
+    along = np.flatnonzero(on_rim[tails] & on_rim[heads])
     # a lamella that runs along the rim is the rim's edge there
-    doubled = np.isin(forward_tail * n + forward_head, tails * n + heads)
+    doubled = np.isin(forward_tail * n + forward_head, tails[along] * n + heads[along])
     free_tail, free_head = forward_tail[~doubled], forward_head[~doubled]
-    angle = _angles(normals, tails, directions, forward_tail, rim_directions)
+    angle = _angles(normals, tails, directions, on_rim, rim_directions)
 
     tail = np.r_[tails, free_tail, free_head]
     angle = np.r_[angle, np.full(len(free_tail), -1.0), np.full(len(free_tail), 7.0)]
     outside = np.zeros(len(tail), bool)
     outside[len(tails) + len(free_tail) :] = True
     # the back side of lamella edges that are the rim belongs to no face either
-    outside[: len(tails)] = np.isin(heads * n + tails, forward_tail * n + forward_head)
+    outside[along] = np.isin(heads[along] * n + tails[along], forward_tail * n + forward_head)
     if seam is not None:
         outside |= seam[tail]
     following = _following(tail, angle, _twins(tails, heads, len(free_tail)), n)
@@ -90,16 +94,11 @@ def trace_faces(
     return Faces(*_corners(following, tail, first_edge[some], count[some]), large)
 
 
-def _angles(
-    normals: Floats, tails: Integers, directions: Floats, forward_tail: Integers, rim_directions: Floats
-) -> Floats:
+def _angles(normals: Floats, tails: Integers, directions: Floats, on_rim: Booleans, rim_directions: Floats) -> Floats:
     """Angle of each half edge about its tail's normal, from the rim or from one edge there on, radians, (h,)."""
-    n = len(normals)
-    reference = np.zeros((n, 3))
-    reference[forward_tail] = rim_directions[forward_tail]
-    inner = np.setdiff1d(np.arange(n), forward_tail)
-    seen, first = np.unique(tails, return_index=True)
-    reference[inner] = directions[first[np.searchsorted(seen, inner)]]
+    first = np.zeros(len(normals), np.int64)
+    first[tails[::-1]] = np.arange(len(tails))[::-1]
+    reference = np.where(on_rim[:, None], rim_directions, directions[first])
     sideways = np.cross(normals, reference)
     angle = np.arctan2(
         np.einsum("ij,ij->i", directions, sideways[tails]), np.einsum("ij,ij->i", directions, reference[tails])

@@ -124,7 +124,8 @@ class Placed:
         low, high = self.block.ends
         if self.turned:
             low, high = -high, -low
-        return low + (self.x, self.y), high + (self.x, self.y)
+        shift = np.array((self.x, self.y))
+        return low + shift, high + shift
 
 
 @contextmanager

@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats, Integers
+from lamella.base.blocks import blocks
 from lamella.network.lattice.domain import Domain
 from lamella.network.lattice.lattice import Lattice
+
+# parameters at which the speed is taken at a time: whole-array temporaries of large nets cost more than what is computed
+SPEEDS_AT_ONCE = 64_000
 
 
 class Segments:
@@ -46,5 +50,9 @@ class Segments:
 
     def speed(self, segment: Integers, sigma: Floats) -> Floats:
         """Arc length per sigma, m, at parameters (p,) of segments (s,), shape (s, p)."""
-        zeta, derivative = self.where(np.repeat(segment, len(sigma)), np.tile(sigma, len(segment)))
-        return np.asarray(self.domain.surface.metric(zeta) * np.abs(derivative)).reshape(len(segment), len(sigma))
+        speed = np.empty((len(segment), len(sigma)))
+        for block in blocks(len(segment), max(SPEEDS_AT_ONCE // len(sigma), 1)):
+            some = segment[block]
+            zeta, derivative = self.where(np.repeat(some, len(sigma)), np.tile(sigma, len(some)))
+            speed[block] = (self.domain.surface.metric(zeta) * np.abs(derivative)).reshape(-1, len(sigma))
+        return speed
