@@ -9,7 +9,7 @@ from lamella.base.blocks import blocks
 from lamella.network.lattice.domain import Domain
 from lamella.network.lattice.lattice import Lattice
 
-# parameters at which the speed is taken at a time: whole-array temporaries of large nets cost more than what is computed
+# parameters at which the speed is taken at a time: temporaries of a whole large net cost more than what is computed
 SPEEDS_AT_ONCE = 64_000
 
 
