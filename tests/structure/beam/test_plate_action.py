@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from mpmath import cos, cosh, diff, mp, mpf, sin, sinh, sqrt
 
-from lamella.strip.plate import across
+from lamella.strip.plate import Plate
 from lamella.structure.beam.plate_action import SERIES_UP_TO, root_share
 from lamella.structure.beam.strains import StrainLaw, Strains
 from structure.strips import HEIGHT, STEEL, STRIP, THICKNESS
@@ -53,7 +53,7 @@ def test_moments_are_integrals_of_the_strips_stresses(kg, tg):
     twisting = bending = 0.0
     for share, w in zip(place, weight * HEIGHT / 2, strict=True):
         z = share * HEIGHT / 2
-        here = across(STEEL, HEIGHT, THICKNESS, kg * one, tg * one, abs(share), False)
+        here = Plate(STEEL, HEIGHT, THICKNESS, kg * one, tg * one).across(abs(share), False)
         sigma = here.stress[0]
         # `across` takes the bend as positive; f and its curvature turn with it
         f = (tg**2 * (z**2 - HEIGHT**2 / 12) / 2 - sigma / young) / abs(kg)
