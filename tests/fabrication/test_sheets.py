@@ -81,6 +81,7 @@ def test_straight_rows_are_filled():
     strips = [Strip("A", (0.0, 1.1), "||")] * 8 + [Strip("B", (0.0, 0.65), "||")] * 8
     _, _, _, nesting = nested(strips, sheet=(2.0, 1.0))
     assert nesting.sheet_count == 2
+    assert nesting.oversize == 0
     assert len(np.unique(np.round(nesting.sheets * 10 + nesting.y, 9))) == 16
 
 
@@ -96,6 +97,7 @@ def test_oversize_part_lies_alone(curvature):
     _, _, parts, nesting = nested(strips, curvature, sheet=(2.0, 1.0))
     assert nesting.sheets.tolist() == [1, 2, 0, 0]
     assert nesting.sizes[0].tolist() == [2.0, 1.0]
+    assert nesting.oversize == 2
     low_x, low_y, high_x, high_y = parts.parts[0].bounds
     assert nesting.sizes[1].tolist() == pytest.approx([high_x - low_x + 0.02, max(1.0, high_y - low_y + 0.02)])
 

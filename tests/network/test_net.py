@@ -23,8 +23,10 @@ def film(boundary: list[dict[str, Any]]) -> Any:
 
 
 def test_a_film_goes_all_the_way_to_parts() -> None:
-    network = lamella.net(film([{"points": WAVED}]), cells=10)
+    steps: list[str] = []
+    network = lamella.net(film([{"points": WAVED}]), cells=10, progress=lambda report: steps.append(str(report)))
     assert network.cells == 10
+    assert any("umbilics" in step for step in steps)
     parts = network.strips((0.08, 0.001), "S355").parts()
     assert parts.pieces == 2 * len(network.ids)
     # the mass of two layers as long as the net's lamellas, slots and ends aside
@@ -50,7 +52,9 @@ def test_meshes_kept_as_they_are(tmp_path: Path) -> None:
     write_grid(tmp_path / "m.obj", hypar, (-2, 2), (-2, 2), 16, 16)
     table = {"surface": {"kind": "mesh", "file": "m.obj", "mean_curvature": "varying"}}
     surface = lamella.make_surface(lamella.parse_project(table | {"network": {"normal_curvature": 0.0}}), tmp_path)
-    network = lamella.net(surface, cells=8, normal_curvature=0.0)
+    steps: list[str] = []
+    network = lamella.net(surface, cells=8, normal_curvature=0.0, progress=lambda report: steps.append(str(report)))
+    assert any("8 cells" in step or "lines" in step for step in steps)
     assert network.normal_curvature == 0
     assert np.abs(network.sample_darboux.kn).max() < 1e-6
     with pytest.raises(InputError) as refused:

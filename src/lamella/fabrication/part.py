@@ -195,7 +195,9 @@ class Parts(Shown):
         Parameters
         ----------
         sheet : (float, float)
-            Length and width, m; the longer one is laid along x.
+            Length and width, m; the longer one is laid along x. Best those that the parts were made for
+            (`lamellas.parts(sheet=...)`): a piece too long for a smaller one lies alone on a larger sheet, and the
+            result says how many there are (`oversize`).
         gap : float
             Between pieces and to the sheet's edge, m.
 

@@ -33,7 +33,9 @@ class Nesting(Shown):
     rotations : (p,)
         Angle by which the part is turned, degrees: 0 or 180.
     sizes : (s, 2)
-        Length and width of each sheet, m; larger than asked for where a part does not fit otherwise.
+        Length and width of each sheet, m.
+    oversize : int
+        How many of the sheets, the last ones, are larger than requested: each has one piece that fits no other.
     gap : float
         Between pieces and to the sheet's edge, m.
     source : Parts
@@ -57,11 +59,13 @@ class Nesting(Shown):
     y: Floats
     rotations: Floats
     sizes: Floats
+    oversize: int
     gap: float
     source: Parts = field(compare=False)
 
     def _line(self) -> str:
-        return f"{counted(len(self.parts), 'piece')} on {counted(self.sheet_count, 'sheet')}"
+        larger = f", {self.oversize} of them larger than requested" if self.oversize else ""
+        return f"{counted(len(self.parts), 'piece')} on {counted(self.sheet_count, 'sheet')}{larger}"
 
     @property
     def sheet_count(self) -> int:
@@ -138,6 +142,7 @@ def nest(parts: Parts, *, sheet: tuple[float, float] = (12.0, 2.0), gap: float =
         plan.y,
         np.where(turned, 180.0, 0.0),
         np.array(plan.sizes, dtype=float).reshape(-1, 2)[order],
+        sum(plan.oversize),
         gap,
         parts,
     )

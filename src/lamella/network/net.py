@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from lamella.base.errors import InputError
+from lamella.base.progress import Progress, silent
 from lamella.network.charts.charts_of import charts_of
 from lamella.network.density_request import DensityRequest
 from lamella.network.elements.element_network import Closing, ElementNetwork, element_network
@@ -31,6 +32,7 @@ def net(
     every: tuple[int, int] = (1, 1),
     normal_curvature: float | None = None,
     closing: Closing = "open",
+    progress: Progress = silent,
 ) -> Network:
     """The network of lamellas, or of principal lines, on a surface.
 
@@ -57,6 +59,8 @@ def net(
         (meshes kept as they are), unless principal lines are made.
     closing : "open" or "round"
         Where the net of a surface of elements misses whole cells: a seam, or bent to the nearest whole numbers.
+    progress : callable
+        Receives what is being done on surfaces of elements; `print` will do.
 
     Returns
     -------
@@ -100,10 +104,17 @@ def net(
             cells=cells,
             spacing=spacing,
             minimum_length=minimum_length,
+            progress=progress,
         )
     elif isinstance(surface, ElementSurface):
         made = element_network(
-            surface, cells=cells, spacing=spacing, closing=closing, minimum_length=minimum_length, pattern=pattern
+            surface,
+            cells=cells,
+            spacing=spacing,
+            closing=closing,
+            minimum_length=minimum_length,
+            pattern=pattern,
+            progress=progress,
         )
     else:
         density = choose_density(surface, cells=cells, spacing=spacing, pattern=pattern)

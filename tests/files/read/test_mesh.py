@@ -224,7 +224,8 @@ def test_units(read):
         ("a.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", [1, 2], []),
         ("a.obj", "v 0 0 0\nv 1e999 0 0\nv 0 1 0\nf 1 2 3\n", [1, 2], []),
         ("a.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", [], []),
-        ("a.obj", "v -1e308 1 1\nv 1e308 1 1\nv 1 1 1\nf 1 2 3\n", [], []),
+        ("a.obj", "v -1e308 1 1\nv 1e308 1 1\nv 1 1 1\nf 1 2 3\n", [1, 1e308, 1e11], []),
+        ("a.obj", "v -1e10 1 1\nv 1e10 1 1\nv 1 1 1\nf 1 2 3\n", [2e10, 5000], []),
         ("a.obj", obj_text(np.random.default_rng(0).random((300, 3)), [range(300)]), [300, 256], []),
         # .ply without what it needs
         ("a.ply", PLY + "element face 1\nproperty list uchar int vertex_index\nend_header\n3 0 1 2\n", [], []),

@@ -35,6 +35,8 @@ def test_quads_are_split_as_those_of_files() -> None:
     [
         (POINTS[:, :2], QUADS, "points", "2"),
         (np.full((4, 3), np.nan), [[0, 1, 2]], "points", "points[0]"),
+        (np.eye(3) * 1e308, [[0, 1, 2]], "points", "points[0]"),
+        (np.eye(3) * 1e7, [[0, 1, 2]], "points", "1e+07 m"),
         (np.zeros((3, 3)), [[0, 1, 2]], "points", "one place"),
         (POINTS, [[0, 1]], "faces", "(1, 2)"),
         (POINTS, QUADS * 1.0, "faces", "float64"),

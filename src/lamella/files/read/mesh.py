@@ -9,6 +9,7 @@ import numpy as np
 from lamella.base.byte_order import unmarked
 from lamella.base.drawing_origin import Origin, origin_of
 from lamella.base.errors import InputError
+from lamella.base.limits import MOST_COORDINATE
 from lamella.base.message import Message
 from lamella.base.plausible_size import refuse_doubtful
 from lamella.base.units import METRES, metres_of, unit_name
@@ -129,6 +130,14 @@ def check_polygons(found: Polygons) -> None:
             f"infinite); the first is number {number}",
             "export the mesh again",
         )
+    largest = np.abs(used).max(axis=1)
+    farthest = int(largest.argmax())
+    if largest[farthest] > MOST_COORDINATE:
+        raise mesh_error(
+            f"vertex number {found.corners[farthest] + 1} has a coordinate of {largest[farthest]:.3g} (limit "
+            f"{MOST_COORDINATE:g})",
+            "export the mesh again, near its origin",
+        )
 
 
 def _metres(found: Polygons, requested: float | None) -> tuple[float, tuple[Message, ...]]:
@@ -147,8 +156,7 @@ def _metres(found: Polygons, requested: float | None) -> tuple[float, tuple[Mess
 
 
 def _check_size(corners: np.ndarray[tuple[int, int], np.dtype[np.float64]], metres: float) -> None:
-    with np.errstate(over="ignore"):
-        size = float(np.ptp(corners, axis=0).max())
+    size = float(np.ptp(corners, axis=0).max())
     if not size > 0:
         raise mesh_error("the mesh has no size: all its vertices are at one place", "export the mesh again")
     if not size <= LARGEST_SIZE:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from lamella.base.arrays import Floats, Integers
 from lamella.base.drawing_origin import NOWHERE, Origin, coordinates
 from lamella.base.errors import InputError
+from lamella.base.limits import MOST_COORDINATE, MOST_LENGTH
 from lamella.base.message import Message
 from lamella.base.wording import counted
 from lamella.surface.from_mesh.split_polygons import split_faces
@@ -53,7 +54,7 @@ def mesh_of_arrays(points: ArrayLike, faces: ArrayLike) -> RawMesh:
     Raises
     ------
     InputError
-        No such arrays, points that are not finite, or faces of vertices that are not there.
+        No such arrays, points that are not finite or out of range, or faces of vertices that are not there.
     """
     at, given = np.asarray(points, float), np.asarray(faces)
     if at.ndim != 2 or at.shape[1] != 3:
@@ -61,6 +62,14 @@ def mesh_of_arrays(points: ArrayLike, faces: ArrayLike) -> RawMesh:
     if not np.isfinite(at).all():
         first = int(np.flatnonzero(~np.isfinite(at).all(axis=1))[0])
         raise InputError(f"points[{first}] is not finite: {at[first]}", "give finite numbers in m", "points")
+    if np.abs(at).max(initial=0.0) > MOST_COORDINATE:
+        first = int(np.flatnonzero((np.abs(at) > MOST_COORDINATE).any(axis=1))[0])
+        raise InputError(
+            f"points[{first}] is out of range: a coordinate is {np.abs(at[first]).max():.3g} m (limit "
+            f"{MOST_COORDINATE:g})",
+            "give lengths in m",
+            "points",
+        )
     if given.ndim != 2 or given.shape[1] not in (3, 4) or not len(given) or given.dtype.kind not in "iu":
         raise InputError(
             f"faces are an array {given.shape} of {given.dtype}, not of whole numbers (m, 3) or (m, 4)",
@@ -73,8 +82,11 @@ def mesh_of_arrays(points: ArrayLike, faces: ArrayLike) -> RawMesh:
             "count vertices from 0",
             "faces",
         )
-    if not np.ptp(at[given.ravel()], axis=0).max() > 0:
+    size = float(np.ptp(at[given.ravel()], axis=0).max())
+    if not size > 0:
         raise InputError("the mesh has no size: all its vertices are at one place", "give lengths in m", "points")
+    if size > MOST_LENGTH:
+        raise InputError(f"the mesh is {size:.3g} m large (limit {MOST_LENGTH:g})", "give lengths in m", "points")
     corners = given.astype(np.int64)
     triangles, left_out = split_faces(at, np.full(len(given), given.shape[1]), corners.ravel())
     notes = (Message("faces_covered", f"{counted(left_out, 'face')} that lie on others left out"),) if left_out else ()
