@@ -20,7 +20,7 @@ TOPICS: dict[str, tuple[str, ...]] = {
     "Surfaces that are found": ("film", "follow", "FollowedFilm", "fit_cmc", "fit_surface", "ElementSurface", "Places"),
     "What surfaces answer": ("SurfacePoints", "SurfaceMesh"),
     "What all results can do": ("Result", "Shown"),
-    "Nets": ("net", "Network", "read_network"),
+    "Nets": ("net", "Network", "follow_net", "FollowedNet", "LevelLines", "read_network"),
     "Strips": ("Section", "Material", "find_material", "Lamellas"),
     "Parts and sheets": ("Part", "Parts", "Nesting"),
     "Projects": (

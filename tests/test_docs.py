@@ -59,7 +59,7 @@ def test_examples_of_the_library_page_run(
 ) -> None:
     pytest.importorskip("matplotlib").use("Agg")
     monkeypatch.chdir(tmp_path)
-    chain, curves, alone, results = blocks((DOCS / "library.md").read_text(), "python")
+    chain, curves, alone, follow, results = blocks((DOCS / "library.md").read_text(), "python")
     exec(chain, {})
     kinds = [line.partition("(")[0] for line in capsys.readouterr().out.splitlines()]
     assert kinds == ["ElementSurface", "Network", "Lamellas", "Parts", "Nesting"]
@@ -68,6 +68,11 @@ def test_examples_of_the_library_page_run(
     exec(alone, {})
     assert capsys.readouterr().out.startswith("Parts(48 parts, ")
     assert (tmp_path / "net.json").exists()
+    exec(follow, {})
+    *frames, last = capsys.readouterr().out.splitlines()
+    assert [frame.startswith("LevelLines(") and frame.endswith(" kept") for frame in frames] == [True] * 3
+    assert last.startswith("Network(16 cells: ")
+    assert last.endswith(" stable")
     exec(results, {})
     assert capsys.readouterr().out == "True\n"
     assert (tmp_path / "strips.png").stat().st_size > 10_000

@@ -18,6 +18,9 @@ from lamella.files.read.loop import read_loop as read_loop
 from lamella.files.read.network_json import network_of_compas as network_of_compas
 from lamella.files.read.network_json import read_network as read_network
 from lamella.files.write.compas_graph import write_compas as write_compas
+from lamella.network.elements.followed_net import FollowedNet as FollowedNet
+from lamella.network.elements.followed_net import follow_net as follow_net
+from lamella.network.elements.level_lines import LevelLines as LevelLines
 from lamella.network.net import net as net
 from lamella.network.network import Network as Network
 from lamella.project.read import parse_project as parse_project

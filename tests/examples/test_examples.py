@@ -16,7 +16,7 @@ from lamella import Places, Unduloid, parse_project, read_project
 from lamella.fabrication.schedule import COLUMNS
 from lamella.files.write.network_json import network_bytes
 from lamella.network.isothermic.holonomy import around_vertex, holonomies
-from lamella.network.isothermic.integration_mesh import make_integration_mesh
+from lamella.network.isothermic.mesh_layout import make_integration_mesh
 from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.network import SINGULAR
 from lamella.project.tables import FURTHER_TABLES

@@ -121,12 +121,12 @@ def test_stresses_are_those_of_the_strip():
     shortened = length / elements * (1 + STRIP.gyration * tg**2 / 2)
     beams = make_beams(nodes, shortened, STRIP)
     state = beams.at(Poses(np.array(points), np.array(frames), np.zeros(0)))
-    assert np.abs(state.stress[0]).max() < 1e-3 * STRIP.axial * STRIP.gyration * tg**2
+    assert np.abs(state.stress[:, 0]).max() < 1e-3 * STRIP.axial * STRIP.gyration * tg**2
     curvature = np.array([tg, 0, kg]) * length / elements / shortened
     assert np.allclose(curvatures_at_ends(state), curvature, rtol=0, atol=1e-12)
     found = strip_stresses(state, STEEL, HEIGHT, THICKNESS)
     one, zero = np.ones(1), np.zeros(1)
-    axial = state.stress[0, :1] / shortened / (HEIGHT * THICKNESS)
+    axial = state.stress[:1, 0] / shortened / (HEIGHT * THICKNESS)
     expected = stresses(
         STEEL,
         HEIGHT,

@@ -157,12 +157,7 @@ def test_the_model_may_be_turned_and_moved():
         ends.append((found.poses.points - by) @ rotation)
         stress.append(found.resultants)
     assert np.abs(ends[0] - ends[1]).max() < 1e-9
-    difference = np.abs(stress[0] - stress[1])
-    assert difference[3:].max() < 1e-9 * np.abs(stress[0][3:]).max()
-    # axial and shear forces are differences of coordinates times stiffness
-    rounding = np.finfo(float).eps * np.linalg.norm(shift) / 0.2
-    stiffness = structure.beams.law.stiffness[:3, 0] / 0.2
-    assert (difference[:3].max(1) < 1e-9 * np.abs(stress[0]).max() + 8 * rounding * stiffness).all()
+    assert np.abs(stress[0] - stress[1])[:, 1:].max() < 1e-9 * np.abs(stress[0]).max()
 
 
 def test_symmetric_structure_symmetric_answer():

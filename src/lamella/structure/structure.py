@@ -11,10 +11,9 @@ import numpy as np
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.result import Lean
-from lamella.base.sparse import SymmetricPattern
+from lamella.base.sparse import SymmetricPattern, packed
 from lamella.base.vectors import diagonal
 from lamella.structure.beam.beams import Beams
-from lamella.structure.beam.columns import product
 from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
 
 
@@ -80,15 +79,15 @@ class Structure(Lean):
         number[self.free] = np.arange(len(self.free))
         pairs = []
         for unknowns in self.unknowns:
-            first, second = np.tril_indices(len(unknowns))
+            first, second = np.tril_indices(unknowns.shape[1])
             numbers = number[unknowns]
-            pairs.append((numbers[first].ravel(), numbers[second].ravel()))
+            pairs.append((numbers[:, first].ravel(), numbers[:, second].ravel()))
         one, other = (np.concatenate(side) for side in zip(*pairs, strict=True))
         return SymmetricPattern.from_pairs(one, other, len(self.free))
 
     def entries(self, blocks: list[Floats]) -> Floats:
         """Entries in `pattern` of a matrix of element blocks, in the groups of `Beams.unknowns`."""
-        return self.pattern.assemble(np.concatenate([block[np.tril_indices(len(block))].ravel() for block in blocks]))
+        return self.pattern.assemble(np.concatenate([packed(block).ravel() for block in blocks]))
 
     def vector(self, parts: list[Floats]) -> Floats:
         """Sum of element vectors, in the groups of `Beams.unknowns`, (6 n + k,)."""
@@ -107,7 +106,7 @@ class Structure(Lean):
 
     def multiplied(self, blocks: list[Floats], motion: Floats) -> Floats:
         """Product of a matrix of element blocks with a motion (6 n + k,), (6 n + k,)."""
-        parts = [product(b, q) for b, q in zip(blocks, self.gathered(motion), strict=True)]
+        parts = [np.einsum("mij,mj->mi", b, q) for b, q in zip(blocks, self.gathered(motion), strict=True)]
         return self.vector(parts)
 
 

@@ -17,10 +17,11 @@ from lamella.network.isothermic.between_umbilics import between_umbilics, keeps_
 from lamella.network.isothermic.cut import cut_edges
 from lamella.network.isothermic.holonomy import around_vertex, holonomies, tip_vertices, vertex_relations
 from lamella.network.isothermic.integer_transitions import IntegerTransitions, _closest, _even, _kernel, _reduced
-from lamella.network.isothermic.integration_mesh import IntegrationMesh, make_integration_mesh
+from lamella.network.isothermic.integration_mesh import IntegrationMesh
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.isothermic.lattice_origin import lattice_origin
 from lamella.network.isothermic.match_transitions import TransitionMatcher
+from lamella.network.isothermic.mesh_layout import make_integration_mesh
 from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.network import SEAM, SINGULAR
 from lamella.network.pattern import LAMELLAS

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lamella.network.isothermic.integration_mesh import make_integration_mesh
+from lamella.network.isothermic.mesh_layout import make_integration_mesh
 from lamella.network.isothermic.umbilic_patch import PATCH_RINGS, umbilic_patch
 from lamella.surface.element.bisect import bisect, whole
 from lamella.surface.element.lagrange import lagrange

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from lamella.network.isothermic.holonomy import holonomies
-from lamella.network.isothermic.integration_mesh import make_integration_mesh
 from lamella.network.isothermic.isothermic import Isothermic, sectors
-from lamella.network.isothermic.poisson import Poisson
+from lamella.network.isothermic.mesh_layout import make_integration_mesh
+from lamella.network.isothermic.poisson import Poisson, Unknowns
 from lamella.network.isothermic.recut import cut_straight
 from lamella.network.isothermic.seamless_transitions import integrate, links
 from lamella.surface.boundary import make_loop
@@ -117,7 +117,7 @@ def test_corrections_are_those_of_the_new_cut() -> None:
     _, _, new = cut_twice("one hole")
     sector = sectors(new.mesh.connectivity, new.cut)
     system = Poisson.of(new.mesh, new.sign).weighted()
-    base, moves = system.solve(sector, *links(new.mesh, new.transitions, sector))
+    base, moves = system.solve(Unknowns(sector, *links(new.mesh, new.transitions, sector)))
     gram, _ = system.quadratic(base, moves)
     # over their traces, as the weight is relative to its mean over the elements; parts follow a little better
     mine, theirs = new.gram / np.trace(new.gram), gram / np.trace(gram)

@@ -40,13 +40,13 @@ def test_moments_are_integrals_of_the_strips_stresses(kg, tg):
     law = StrainLaw(
         length * one,
         np.zeros((1, 3)),
-        length * np.array([[0, 0, 0, 0, 0, STRIP.bending_n, STRIP.helix]]).T,
+        length * np.array([[0, 0, 0, 0, 0, STRIP.bending_n, STRIP.helix]]),
         STRIP.gyration * one,
         STRIP.poisson * one,
         STRIP.plate_rate * one,
     )
-    strains = Strains.of(law, np.array([[length, 0, 0]]).T, length * np.array([[tg, 0, kg]]).T)
-    moments = np.einsum("im,ijm->j", law.stiffness * strains.values, strains.first)[[3, 5]]
+    strains = Strains.of(law, np.array([[length, 0, 0]]), length * np.array([[tg, 0, kg]]))
+    moments = np.einsum("mi,mij->j", law.stiffness * strains.values, strains.first)[[3, 5]]
     place, weight = np.polynomial.legendre.leggauss(60)
     young, nu = STEEL.youngs_modulus, STRIP.poisson
     plate = young * THICKNESS**3 / (12 * (1 - nu**2))

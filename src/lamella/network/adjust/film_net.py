@@ -11,9 +11,9 @@ from lamella.base.arrays import Complexes, Floats
 from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.isothermic.holonomy import fixed_point_factors
 from lamella.network.isothermic.integer_transitions import IntegerTransitions
-from lamella.network.isothermic.integration_mesh import make_integration_mesh
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.isothermic.lattice_origin import lattice_origin
+from lamella.network.isothermic.mesh_layout import make_integration_mesh
 from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.pattern import Pattern
 from lamella.surface.element.surface import ElementSurface

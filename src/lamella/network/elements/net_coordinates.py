@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from lamella.base.progress import Progress, Report, silent
 from lamella.network.isothermic.holonomy import Holonomy, holonomies
-from lamella.network.isothermic.integration_mesh import make_integration_mesh
 from lamella.network.isothermic.isothermic import Isothermic
+from lamella.network.isothermic.mesh_layout import make_integration_mesh
 from lamella.network.isothermic.recut import straightened
 from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.surface.element.surface import ElementSurface

@@ -16,7 +16,7 @@ from lamella.base.triangle import CORNERS
 from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.isothermic.isothermic import sectors
 from lamella.network.network import A, B
-from lamella.surface.element.connectivity import connect
+from lamella.surface.element.connectivity import Connectivity, connect
 from lamella.surface.element.lagrange import local_faces
 
 # small triangles reach over at most this many cells; parts of an element's edge at least and at most
@@ -55,7 +55,58 @@ class SmallTriangles:
     cut_piece: Integers
 
 
-def small_triangles(cells: IntegerGridMap, cut: Booleans, umbilics: Integers) -> SmallTriangles:
+@dataclass(frozen=True)
+class SmallGrid:
+    """The small triangles of elements that are cut in one way, whatever chi is on them.
+
+    Attributes
+    ----------
+    parts : int
+        Of an element's edge.
+    local : (g, 2)
+        Local coordinates of an element's grid points.
+    point : (m, g) int
+        Number of each, the same across edges that are not cut.
+    piece : (c,) int
+        Piece of the cut that each edge on it is of.
+    left, right : (c, parts + 1) int
+        Grid points along it on both sides.
+    """
+
+    parts: int
+    local: Floats
+    point: Integers
+    piece: Integers
+    left: Integers
+    right: Integers
+
+    @classmethod
+    def of(cls, connectivity: Connectivity, cut: Booleans, across: Integers, parts: int) -> SmallGrid:
+        """Of a mesh with cut edges (m, 3) and the transitions through them (m, 3)."""
+        grid = connect(connectivity.faces, int(connectivity.faces.max()) + 1, parts)
+        point = sectors(grid, cut)
+        element, edge = np.nonzero(across > 0)
+        neighbour, other = connectivity.neighbours[element, edge], connectivity.neighbour_edges[element, edge]
+        return cls(
+            parts,
+            grid.basis.nodes,
+            point,
+            across[element, edge] - 1,
+            point[element[:, None], grid.basis.edge_nodes[edge]],
+            point[neighbour[:, None], grid.basis.edge_nodes[other][:, ::-1]],
+        )
+
+
+def parts_of(cells: IntegerGridMap) -> int:
+    """Into how many parts the edges of elements are cut."""
+    corner = cells.value[:, :3]
+    span = np.abs(corner - np.roll(corner, 1, 1)).max()
+    return int(np.clip(np.ceil(span / SMALL_TRIANGLE_CELLS), EDGE_PARTS_MIN, EDGE_PARTS_MAX))
+
+
+def small_triangles(
+    cells: IntegerGridMap, cut: Booleans, umbilics: Integers, grid: SmallGrid | None = None
+) -> SmallTriangles:
     """Cut the elements of a cell map.
 
     Parameters
@@ -65,14 +116,14 @@ def small_triangles(cells: IntegerGridMap, cut: Booleans, umbilics: Integers) ->
         Edges that are cut.
     umbilics : (z,) int
         Vertices that may be singular nodes.
+    grid : SmallGrid, optional
+        Of these elements, where it is at hand.
     """
     connectivity = cells.mesh.connectivity
-    corner = cells.value[:, :3]
-    span = np.abs(corner - np.roll(corner, 1, 1)).max()
-    parts = int(np.clip(np.ceil(span / SMALL_TRIANGLE_CELLS), EDGE_PARTS_MIN, EDGE_PARTS_MAX))
-    grid = connect(connectivity.faces, int(connectivity.faces.max()) + 1, parts)
-    local = grid.basis.nodes
-    point = sectors(grid, cut)
+    parts = parts_of(cells)
+    if grid is None or grid.parts != parts:
+        grid = SmallGrid.of(connectivity, cut, cells.across, parts)
+    local, point = grid.local, grid.point
     values = cells.value @ connectivity.basis.basis(local).T
     for vertex in umbilics.tolist():
         _straighten(values, cells, local, vertex)
@@ -89,34 +140,26 @@ def small_triangles(cells: IntegerGridMap, cut: Booleans, umbilics: Integers) ->
         pair[at] = np.where(settled, np.round(pair[at]), pair[at])
     near = (np.abs(pair - np.round(pair)) < NUDGE) & ~singular
     pair += np.where(near, 3 * NUDGE, 0)
-    chi = pair[:, 0] + 1j * pair[:, 1]
     # both sides of a cut alike to the last digit, where the net goes on across it
-    element, edge = np.nonzero(cells.across > 0)
-    piece = cells.across[element, edge] - 1
-    neighbour, other = connectivity.neighbours[element, edge], connectivity.neighbour_edges[element, edge]
-    left = point[element[:, None], grid.basis.edge_nodes[edge]]
-    right = point[neighbour[:, None], grid.basis.edge_nodes[other][:, ::-1]]
-    pair = np.stack([chi.real, chi.imag], 1)
     for family, whole in enumerate((integer_transitions(cells, A), integer_transitions(cells, B))):
         column = 1 - family
         for number in np.flatnonzero(~np.isnan(whole)):
-            mine = piece == number
-            target = right[mine].ravel()
-            wanted = cells.signs[number] * pair[left[mine].ravel(), column] + whole[number]
+            mine = grid.piece == number
+            target = grid.right[mine].ravel()
+            wanted = cells.signs[number] * pair[grid.left[mine].ravel(), column] + whole[number]
             free = ~singular[target].any(1)
             pair[target[free], column] = wanted[free]
-    chi = pair[:, 0] + 1j * pair[:, 1]
     faces = local_faces(parts)
-    m = len(connectivity.elements)
+    left, right = grid.left, grid.right
     return SmallTriangles(
-        np.repeat(np.arange(m), len(faces)),
+        np.repeat(np.arange(len(connectivity.elements)), len(faces)),
         point[:, faces].reshape(-1, 3),
         local[faces],
-        chi,
+        pair[:, 0] + 1j * pair[:, 1],
         singular,
         np.stack([left[:, :-1].ravel(), left[:, 1:].ravel()], 1),
         np.stack([right[:, :-1].ravel(), right[:, 1:].ravel()], 1),
-        np.repeat(piece, parts),
+        np.repeat(grid.piece, parts),
     )
 
 

@@ -134,27 +134,59 @@ _MIDDLES = np.array([[0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 _DIRECTIONS = np.array([[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]])
 
 
+@dataclass(frozen=True)
+class EdgeTurns:
+    """What roots do over the edges between elements, once from either side.
+
+    Attributes
+    ----------
+    element, edge, neighbour : (e,) int
+    same : (e,) int
+        -1 where the roots of the elements on both sides run against each other.
+    root : (m, 3) complex
+        At the middles of all local edges.
+    """
+
+    element: Integers
+    edge: Integers
+    neighbour: Integers
+    same: Integers
+    root: Complexes
+
+    @classmethod
+    def of(cls, mesh: IntegrationMesh) -> EdgeTurns:
+        """Of each element's own branch."""
+        root, along, other, _ = deviator_root(mesh, _MIDDLES)
+        through = root * (along * _DIRECTIONS[:, 0] + other * _DIRECTIONS[:, 1])
+        connectivity = mesh.connectivity
+        element, edge = np.nonzero(connectivity.neighbours >= 0)
+        neighbour = connectivity.neighbours[element, edge]
+        back = through[neighbour, connectivity.neighbour_edges[element, edge]]
+        # the neighbour runs along the edge the other way
+        same = np.where((through[element, edge] * -back.conj()).real > 0, 1, -1)
+        return cls(element, edge, neighbour, same, root)
+
+    def turns(self, sign: Integers) -> Integers:
+        """What roots with signs (m,) do over edges, (m, 3): -1 where they run against each other."""
+        result = np.ones(self.root.shape, np.int64)
+        result[self.element, self.edge] = self.same * sign[self.element] * sign[self.neighbour]
+        return result
+
+
 def root_signs(mesh: IntegrationMesh, cut: Booleans) -> tuple[Integers, Booleans, Integers]:
     """Sign of each element's root, (m,), alike across what is not cut; the cut; and what signs do over edges, (m, 3).
 
     Where an umbilic next to the rim was not cut to, the signs still disagree across some edges: these are cut as well.
     """
-    root, along, other, _ = deviator_root(mesh, _MIDDLES)
-    through = root * (along * _DIRECTIONS[:, 0] + other * _DIRECTIONS[:, 1])
-    connectivity = mesh.connectivity
-    element, edge = np.nonzero(connectivity.neighbours >= 0)
-    neighbour = connectivity.neighbours[element, edge]
-    back = through[neighbour, connectivity.neighbour_edges[element, edge]]
-    # the neighbour runs along the edge the other way
-    same = np.where((through[element, edge] * -back.conj()).real > 0, 1, -1)
-    m = len(connectivity.elements)
-    every, over = (element, edge, neighbour, same), ~cut[element, edge]
-    element, edge, neighbour, same = (part[over] for part in every)
+    edges = EdgeTurns.of(mesh)
+    m = len(mesh.connectivity.elements)
+    over = ~cut[edges.element, edges.edge]
+    element, edge, neighbour, same = (part[over] for part in (edges.element, edges.edge, edges.neighbour, edges.same))
     # signs are handed on where the root is large, away from umbilics
-    cost = 1 / np.maximum(np.abs(root[element, edge]), 1e-300)
+    cost = 1 / np.maximum(np.abs(edges.root[element, edge]), 1e-300)
     tree = minimum_spanning_tree(coo_matrix((cost, (element, neighbour)), (m, m)).tocsr())
     # of equal ones the first
-    size = np.abs(root).mean(1)
+    size = np.abs(edges.root).mean(1)
     start = int(np.rint(size / (MARGIN * size.max())).argmax())
     order, parent = breadth_first_order(tree, start, directed=False)
     relation = coo_matrix((same, (element, neighbour)), (m, m)).tocsr()
@@ -165,10 +197,7 @@ def root_signs(mesh: IntegrationMesh, cut: Booleans) -> tuple[Integers, Booleans
     cut = cut.copy()
     off = same * sign[element] * sign[neighbour] < 0
     cut[element[off], edge[off]] = True
-    turns = np.ones((m, 3), np.int64)
-    element, edge, neighbour, same = every
-    turns[element, edge] = same * sign[element] * sign[neighbour]
-    return sign, cut, turns
+    return sign, cut, edges.turns(sign)
 
 
 def sectors(connectivity: Connectivity, cut: Booleans) -> Integers:

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from lamella.base.arrays import Booleans, Complexes, Floats, Integers
+from lamella.base.result import Lean
 from lamella.base.sparse import SymmetricPattern, packed
 from lamella.network.isothermic.integration_mesh import IntegrationMesh
 from lamella.surface.element.geometry import tangents, weighted_dirichlet_blocks
@@ -16,6 +17,62 @@ from lamella.surface.element.quadrature import triangle_rule
 # of the mean |D|: where it is less the weight does not grow any more. Its square over the rounding of 1e-16 is what
 # remains of elements' stiffness against the sum of their rows, which has to be 0
 POISSON_SHARE_MIN = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Unknowns(Lean):
+    """Which of the elements' own values are one unknown, up to sign and parameters c; the same for all surfaces.
+
+    Attributes
+    ----------
+    sector : (m, k) int
+        Sector of each element's own nodes.
+    home : (s,) int
+        Unknown of each sector.
+    sign : (s,)
+    offset : (s, t)
+        The value of a sector is sign U + offset c.
+    held : dict
+        Unknowns that are a row (t,) times c.
+    """
+
+    sector: Integers
+    home: Integers
+    sign: Floats
+    offset: Floats
+    held: dict[int, Floats]
+
+    @cached_property
+    def signs(self) -> Floats:
+        """Sign of each element's own values, (m, k)."""
+        return np.asarray(self.sign[self.sector])
+
+    @cached_property
+    def _numbers(self) -> tuple[Integers, int]:
+        count = int(self.home.max()) + 1
+        free = np.ones(count, bool)
+        free[list(self.held)] = False
+        number = np.where(free, np.cumsum(free) - 1, -1)
+        return number[self.home[self.sector]], int(free.sum())
+
+    @property
+    def number(self) -> Integers:
+        """Number of the free unknown of each element's own values, (m, k); -1: held."""
+        return self._numbers[0]
+
+    @cached_property
+    def pattern(self) -> SymmetricPattern:
+        """Pattern of the free unknowns: its analysis serves all surfaces."""
+        return SymmetricPattern.from_elements(*self._numbers)
+
+    @cached_property
+    def fixed(self) -> tuple[Floats, ...]:
+        """Of each parameter: the elements' own values (m, k) for c = 1 where the free unknowns are 0."""
+        at = np.zeros((int(self.home.max()) + 1, self.offset.shape[1]))
+        for index, row in self.held.items():
+            at[index] = row
+        unknown = self.home[self.sector]
+        return tuple(self.signs * at[unknown, t] + self.offset[self.sector, t] for t in range(self.offset.shape[1]))
 
 
 @dataclass(frozen=True)
@@ -51,6 +108,23 @@ class Poisson:
         area = np.sqrt(np.maximum(e * g - f * f, 1e-12 * e * g)) / weights
         return cls(form_a, form_b, (e, f, g), area, x, y)
 
+    def alike(self, forms: Complexes) -> tuple[Poisson, Integers]:
+        """The same with the roots nearer to those of a surface near by, and which were turned, -1, (m,).
+
+        Each element's own branch is that of its middle, and may change while the surface moves.
+
+        Parameters
+        ----------
+        forms : (2, m, q) complex
+            The other surface's forms along both local coordinates.
+        """
+        same = (self.form_a * forms[0].conj() + self.form_b * forms[1].conj()).real.sum(1)
+        turn = np.where(same < 0, -1, 1)
+        if (turn > 0).all():
+            return self, turn
+        turned = replace(self, form_a=self.form_a * turn[:, None], form_b=self.form_b * turn[:, None])
+        return turned, turn
+
     def weighted(self) -> Poisson:
         """The same fit with the weight 1 / |D|^2: what the forms are not closed by stays away from umbilics.
 
@@ -80,21 +154,12 @@ class Poisson:
         a, b = form_a / self.area, form_b / self.area
         return np.asarray((g * a - f * b) @ self.x + (e * b - f * a) @ self.y)
 
-    def solve(
-        self, sector: Integers, home: Integers, sign: Floats, offset: Floats, held: dict[int, Floats]
-    ) -> tuple[Complexes, Floats]:
+    def solve(self, unknowns: Unknowns) -> tuple[Complexes, Floats]:
         """Least values, and how they change with t parameters c.
 
         Parameters
         ----------
-        sector : (m, k) int
-        home : (s,) int
-            Unknown of each sector.
-        sign : (s,)
-        offset : (s, t)
-            The value of a sector is sign U + offset c.
-        held : dict
-            Unknowns that are a row (t,) times c.
+        unknowns : Unknowns
 
         Returns
         -------
@@ -103,33 +168,23 @@ class Poisson:
         moves : (t, m, k)
             Per c.
         """
-        count = int(home.max()) + 1
-        free = np.ones(count, bool)
-        free[list(held)] = False
-        number = np.where(free, np.cumsum(free) - 1, -1)
-        at = np.zeros((count, offset.shape[1]))
-        for index, row in held.items():
-            at[index] = row
-        unknown, s = home[sector], sign[sector]
-        one, other = np.tril_indices(sector.shape[1])
+        s, number, pattern = unknowns.signs, unknowns.number, unknowns.pattern
+        one, other = np.tril_indices(number.shape[1])
         blocks = packed(self.blocks) * (s.take(one, 1) * s.take(other, 1))
-        flat = number[unknown].ravel()
+        flat = number.ravel()
         inside = flat >= 0
-        size = int(free.sum())
 
         def gathered(part: Floats) -> Floats:
-            return np.bincount(flat[inside], (s * part).ravel()[inside], size).astype(np.float64)
+            return np.bincount(flat[inside], (s * part).ravel()[inside], pattern.size).astype(np.float64)
 
         # what the held unknowns and the offsets make of c = 1 without the free unknowns
-        fixed = [s * at[unknown, t] + offset[sector, t] for t in range(offset.shape[1])]
         right = [gathered(self.pull.real), gathered(self.pull.imag)]
-        right += [-gathered(np.matmul(self.blocks, part[..., None])[..., 0]) for part in fixed]
-        pattern = SymmetricPattern.from_elements(number[unknown], size)
+        right += [-gathered(np.matmul(self.blocks, part[..., None])[..., 0]) for part in unknowns.fixed]
         solved = pattern.factor(pattern.assemble(blocks)).solve(np.stack(right, 1))
         padded = np.vstack([solved, np.zeros((1, solved.shape[1]))])[number]
-        base = s * (padded[unknown, 0] + 1j * padded[unknown, 1])
-        moves = np.array([s * padded[unknown, 2 + t] + part for t, part in enumerate(fixed)])
-        return np.asarray(base), moves.reshape(-1, *sector.shape)
+        base = s * (padded[..., 0] + 1j * padded[..., 1])
+        moves = np.array([s * padded[..., 2 + t] + part for t, part in enumerate(unknowns.fixed)])
+        return np.asarray(base), moves.reshape(-1, *number.shape)
 
     def quadratic(self, base: Complexes, moves: Floats) -> tuple[Floats, Complexes]:
         """Matrix (t, t) and right side (t,) of the parameters' least squares."""

@@ -10,16 +10,18 @@ is given and the coordinates are fitted to it; here both follow from the surface
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lamella.base.arrays import Complexes, Floats, Integers
+from lamella.base.arrays import Booleans, Complexes, Floats, Integers
+from lamella.base.result import Lean
 from lamella.network.isothermic.cut import cut_edges
 from lamella.network.isothermic.holonomy import vertex_relations
 from lamella.network.isothermic.integration_mesh import IntegrationMesh
-from lamella.network.isothermic.isothermic import Isothermic, Transition, cut_pieces, root_signs, sectors
-from lamella.network.isothermic.poisson import Poisson
+from lamella.network.isothermic.isothermic import EdgeTurns, Isothermic, Transition, cut_pieces, root_signs, sectors
+from lamella.network.isothermic.mesh_layout import LayoutError
+from lamella.network.isothermic.poisson import Poisson, Unknowns
 
 # w + a constant is as good as w: it changes the shifts of pieces where w comes back as -w, and costs nothing. A change
 # that costs less than this part of the dearest one is that, and rounding: it stays as small as it can. Between two
@@ -44,18 +46,95 @@ def integrate(mesh: IntegrationMesh, odd: Integers) -> Isothermic:
     odd : (z,) int
         Vertices that are umbilics of odd order.
     """
-    sign, cut, turns = root_signs(mesh, cut_edges(mesh, odd))
-    pieces, across = cut_pieces(mesh, cut, turns, odd)
-    plain = Poisson.of(mesh, sign)
-    system = plain.weighted()
-    sector = sectors(mesh.connectivity, cut)
-    base, moves = system.solve(sector, *links(mesh, pieces, sector))
-    gram, right = system.quadratic(base, moves)
-    relations = vertex_relations(mesh, pieces, across, odd)
-    shifts = best_shifts(gram, right, list(relations.values()), np.zeros(len(relations), complex))
-    value = base + np.einsum("t,tek->ek", shifts, moves)
-    transitions = _shifted(pieces, shifts)
-    return Isothermic(mesh, odd, sign, cut, value, transitions, across, moves, gram, plain.residual(value), plain)
+    return CutLayout.of(mesh, odd).integrated(mesh)
+
+
+@dataclass(frozen=True, eq=False)
+class CutLayout(Lean):
+    """How a mesh is cut, and what follows from that alone: it serves all surfaces on which roots turn alike.
+
+    Attributes
+    ----------
+    odd : (z,) int
+        Vertices that are umbilics of odd order.
+    sign : (m,) int
+        Of each element's root on the reference.
+    cut : (m, 3) bool
+        Local edges that are cut.
+    pieces : tuple of Transition
+        Their shifts are 0.
+    across : (m, 3) int
+        See `Isothermic.across`.
+    unknowns : Unknowns
+    relations : tuple of (t,) int
+        Whole factors whose sum with the shifts is 0.
+    forms : (2, m, q) complex
+        The forms on the reference along both local coordinates.
+    """
+
+    odd: Integers
+    sign: Integers
+    cut: Booleans
+    pieces: tuple[Transition, ...]
+    across: Integers
+    unknowns: Unknowns
+    relations: tuple[Integers, ...]
+    forms: Complexes
+
+    @classmethod
+    def of(cls, mesh: IntegrationMesh, odd: Integers) -> CutLayout:
+        """Of a mesh: each hole and each umbilic of odd order hangs on the outer rim."""
+        sign, cut, turns = root_signs(mesh, cut_edges(mesh, odd))
+        pieces, across = cut_pieces(mesh, cut, turns, odd)
+        sector = sectors(mesh.connectivity, cut)
+        plain = Poisson.of(mesh, sign)
+        return cls(
+            odd,
+            sign,
+            cut,
+            pieces,
+            across,
+            Unknowns(sector, *links(mesh, pieces, sector)),
+            tuple(vertex_relations(mesh, pieces, across, odd).values()),
+            np.stack([plain.form_a, plain.form_b]),
+        )
+
+    def integrated(self, mesh: IntegrationMesh) -> Isothermic:
+        """Isothermic coordinates on the mesh as it lies on a surface (see `refuse_turned`)."""
+        plain, turn = Poisson.of(mesh, self.sign).alike(self.forms)
+        system = plain.weighted()
+        base, moves = system.solve(self.unknowns)
+        gram, right = system.quadratic(base, moves)
+        shifts = best_shifts(gram, right, list(self.relations), np.zeros(len(self.relations), complex))
+        value = base + np.einsum("t,tek->ek", shifts, moves)
+        transitions = _shifted(self.pieces, shifts)
+        return Isothermic(
+            mesh,
+            self.odd,
+            self.sign * turn,
+            self.cut,
+            value,
+            transitions,
+            self.across,
+            moves,
+            gram,
+            plain.residual(value),
+            plain,
+        )
+
+    def refuse_turned(self, mesh: IntegrationMesh, sign: Integers) -> None:
+        """Refuse a surface whose roots, with signs (m,), turn otherwise than on the reference.
+
+        Raises
+        ------
+        LayoutError
+        """
+        turns = EdgeTurns.of(mesh).turns(sign)
+        if (turns[~self.cut] < 0).any():
+            raise LayoutError("principal directions turn otherwise: an umbilic has come or gone")
+        for piece in self.pieces:
+            if (turns[piece.left, piece.left_edge].sum() > 0) != (piece.sign > 0):
+                raise LayoutError("principal directions turn otherwise across the cut")
 
 
 def with_shifts(iso: Isothermic, parts: Floats, turn: complex = 1.0) -> Isothermic:

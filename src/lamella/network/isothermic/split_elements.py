@@ -19,6 +19,7 @@ from lamella.network.isothermic.straight_walk import FlatTriangles, share_of_edg
 from lamella.network.isothermic.tight_lines import Course
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.lagrange import EDGES
+from lamella.surface.element.places import Places
 from lamella.surface.element.surface import ElementSurface
 
 # a place of a line inside an element is one of its vertices where it is as far as this from the edges
@@ -211,11 +212,36 @@ def _inside(corners: Floats, local: Floats) -> Floats:
 def _fields(split: Split, faces: Integers, loop: Integers, surface: ElementSurface) -> IntegrationMesh:
     """The mesh of the parts."""
     old = split.mesh
-    new = connect(faces, len(loop), old.connectivity.basis.order)
-    values = np.column_stack([old.nodes, old.shape, old.normals, old.places.element, old.places.local])
-    # the numbers of places are handed on where elements are whole, and looked for elsewhere
+    bare = replace(
+        old,
+        connectivity=connect(faces, len(loop), old.connectivity.basis.order),
+        loop=loop,
+        patch=old.patch[split.parent],
+    )
+    return fields_of_parts(split, bare, old, surface)
+
+
+def fields_of_parts(
+    split: Split, parts: IntegrationMesh, old: IntegrationMesh, surface: ElementSurface, *, known: bool = False
+) -> IntegrationMesh:
+    """The mesh of the parts on a surface.
+
+    Parameters
+    ----------
+    split : Split
+    parts : IntegrationMesh
+        The parts, on whatever surface.
+    old : IntegrationMesh
+        The whole elements on this one.
+    surface : ElementSurface
+    known : bool
+        Whether the places of `parts` are near those on this surface.
+    """
+    new = parts.connectivity
+    values = np.column_stack([old.nodes, old.shape, old.normals])
     nodal = np.empty((new.node_count, values.shape[1]))
     nodal[new.elements] = np.moveaxis(split.restricted(values[old.connectivity.elements].transpose(2, 0, 1)), 0, 2)
+    # the numbers of places are handed on where elements are whole, and looked for elsewhere
     whole = (split.corners == CORNERS).all((1, 2))
     element, local = np.zeros(new.node_count, np.int64), np.full((new.node_count, 2), np.nan)
     there = new.elements[whole].ravel()
@@ -223,15 +249,13 @@ def _fields(split: Split, faces: Integers, loop: Integers, surface: ElementSurfa
     element[there], local[there] = old.places.element[source], old.places.local[source]
     nodes, normals = nodal[:, :3], nodal[:, 9:12]
     lost = np.flatnonzero(np.isnan(local[:, 0]))
-    nearest, _ = surface.closest(nodes[lost])
+    nearest, _ = surface.closest_near(nodes[lost], parts.places[lost]) if known else surface.closest(nodes[lost])
     element[lost], local[lost] = nearest.element, nearest.local
     return replace(
-        old,
-        connectivity=new,
+        parts,
         nodes=nodes,
-        places=type(old.places)(element, local),
+        places=Places(element, local),
         shape=nodal[:, 3:9],
         normals=normals,
-        loop=loop,
-        patch=old.patch[split.parent],
+        rim_starts=old.rim_starts,
     )

@@ -108,7 +108,7 @@ def find_umbilics(surface: SmoothElements) -> Umbilics:
     local, faces = subdivision(SEARCH_PARTS)
     m = len(surface.connectivity.elements)
     axes = surface.frames_everywhere(np.full((1, 2), 1 / 3)).e_u
-    value = _turned(surface.at_everywhere(local), np.repeat(axes, len(local), 0)).reshape(m, -1)
+    value = turned_deviators(surface.at_everywhere(local), np.repeat(axes, len(local), 0)).reshape(m, -1)
     corners = value[:, faces]
     turn = np.angle(np.roll(corners, -1, 2) / np.where(corners == 0, 1, corners)).sum(2) / (2 * np.pi)
     # a small value beside the corners' differences may hide a zero next to the triangle's edge
@@ -244,7 +244,7 @@ def _recentred(surface: SmoothElements, places: Places, position: Floats, orders
     return surface.closest_near(moved, places) if len(moved) else (places, position)
 
 
-def _turned(at: SurfacePoints, axes: Floats) -> Complexes:
+def turned_deviators(at: SurfacePoints, axes: Floats) -> Complexes:
     """Trace-free shape operators, 1/m, (n,), in frames along the tangents nearest to given directions (n, 3)."""
     turn = dots(axes, at.e_u) + 1j * dots(axes, at.e_v)
     return np.asarray(at.deviator * (turn / np.abs(turn)) ** 2)
@@ -260,7 +260,7 @@ def _newton(surface: SmoothElements, start: Places, axes: Floats) -> tuple[Place
     every, each = np.tile(element, 3), np.tile(axes, (3, 1))
     for _ in range(UMBILIC_STEPS_MAX):
         there = Places(every, (local + ahead).reshape(-1, 2))
-        value, *further = _turned(surface.at(there), each).reshape(3, -1)
+        value, *further = turned_deviators(surface.at(there), each).reshape(3, -1)
         change = (np.stack(further, 1) - value[:, None]) / step
         slope = np.stack([change.real, change.imag], 1)
         determinant = np.linalg.det(slope)
@@ -286,7 +286,7 @@ def _circle(surface: SmoothElements, places: Places, centre: Floats, radius: Flo
         + (radius[:, None] * np.sin(angle))[..., None] * frame.e_v[:, None]
     )
     around, _ = surface.closest_near(ring.reshape(-1, 3), places[np.repeat(np.arange(len(places)), CIRCLE)])
-    return _turned(surface.at(around), np.repeat(frame.e_u, CIRCLE, axis=0)).reshape(-1, CIRCLE)
+    return turned_deviators(surface.at(around), np.repeat(frame.e_u, CIRCLE, axis=0)).reshape(-1, CIRCLE)
 
 
 def _turns(surface: SmoothElements, places: Places, centre: Floats, radius: Floats) -> Integers:

@@ -26,6 +26,7 @@ from lamella.surface.form_finding.adaptivity import Deviation, deviation_of
 from lamella.surface.form_finding.carried_rim import NotKeptError
 from lamella.surface.form_finding.chord import settled
 from lamella.surface.form_finding.find import Found, find_film, notes_on, remarks_on
+from lamella.surface.form_finding.found_film import surface_of
 from lamella.surface.form_finding.given_loops import given_loops, refuse_both
 from lamella.surface.form_finding.kept_elements import Boundary, Kept, kept
 from lamella.surface.form_finding.newton import Equilibrium
@@ -224,7 +225,22 @@ class FollowedFilm(Result):
 
     @cached_property
     def surface(self) -> ElementSurface:
-        """The film as nets are made on it."""
+        """The film as nets are made on it; it is not asked whether it is stable (`assessed`)."""
+        connectivity, deviation = self.equilibrium.film.connectivity, self.deviation
+        figures = {
+            "order": connectivity.basis.order,
+            "surface_nodes": connectivity.node_count,
+            "elements": len(connectivity.elements),
+            "curvature_scale": deviation.scale,
+            "mean_curvature_deviation": deviation.largest,
+            "mean_curvature_deviation_max": deviation.largest * deviation.scale,
+            "tolerance": self.request.tolerance,
+        }
+        return surface_of(self.equilibrium, "form-found", figures | origin_figure(self.origin))
+
+    @cached_property
+    def assessed(self) -> ElementSurface:
+        """The same surface with its stability, and with what to know before building it, as `lamella.film` gives it."""
         boundary = self.boundary
         notes = remarks_on(boundary.loops) + notes_on(self.found, given_curvature=boundary.volume is None)
         return self.found.surface("form-found", notes, tolerance=self.request.tolerance, **origin_figure(self.origin))
@@ -263,7 +279,7 @@ def follow(
     Returns
     -------
     FollowedFilm
-        `surface` is the film, as `lamella.film` gives it; `at` follows it.
+        `surface` is the film, `assessed` the same with its stability; `at` follows it.
 
     Raises
     ------

@@ -55,15 +55,23 @@ class Found:
             "mean_curvature_deviation_max": self.deviation * self.scale,
             "volume": enclosed_volume(film),
         }
-        rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
-        return ElementSurface(
-            kind,
-            self.equilibrium.mean_curvature,
-            film.connectivity,
-            film.nodes,
-            rim_loop,
-            known | figures,
-            notes,
-            film.loop_starts(),
-            film.slide_ends(),
-        )
+        return surface_of(self.equilibrium, kind, known | figures, notes)
+
+
+def surface_of(
+    equilibrium: Equilibrium, kind: str, figures: dict[str, Any], notes: tuple[Message, ...] = ()
+) -> ElementSurface:
+    """A film as later stages see it, with figures for the summary and what a user should know."""
+    film = equilibrium.film
+    rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
+    return ElementSurface(
+        kind,
+        equilibrium.mean_curvature,
+        film.connectivity,
+        film.nodes,
+        rim_loop,
+        figures,
+        notes,
+        film.loop_starts(),
+        film.slide_ends(),
+    )
