@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import runpy
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from lamella.fabrication.schedule import COLUMNS as PART_LIST
 from lamella.files.write.lamellas_json import COLUMNS, lamellas_schema
 from lamella.files.write.network_json import network_schema
 from lamella.files.write.optimise_json import optimise_schema
+from lamella.hardware.lists import COLUMNS as HARDWARE_LIST
 from lamella.project.tables import (
     FURTHER_TABLES,
     SURFACE_TABLES,
@@ -231,7 +232,8 @@ def files_page() -> str:
         "stages": _stages_table(),
         "figures": _figures_table(),
         "along lamellas": _columns_table(),
-        "part list": _part_list_table(),
+        "part list": _list_table(PART_LIST),
+        "hardware list": _list_table(HARDWARE_LIST),
     }
     for name, table in tables.items():
         before, rest = page.split(f"<!-- {name}: made by docs/build.py -->\n")
@@ -271,9 +273,9 @@ def _columns_table() -> str:
     return "\n".join(rows) + "\n"
 
 
-def _part_list_table() -> str:
+def _list_table(columns: Sequence[Any]) -> str:
     rows = ["| column | meaning |", "|---|---|"]
-    rows += [f"| `{column.name}` | {column.meaning} |" for column in PART_LIST]
+    rows += [f"| `{column.name}` | {column.meaning} |" for column in columns]
     return "\n".join(rows) + "\n"
 
 

@@ -19,7 +19,18 @@ from lamella.project.values import Unit
 from lamella.stages.keys import key_of, keys, with_keys
 
 PACKAGE = Path(lamella.__file__).parent
-GEOMETRY = ("base", "surface", "network", "strip", "fabrication", "structure", "projection", "files")
+GEOMETRY = (
+    "base",
+    "surface",
+    "network",
+    "strip",
+    "fabrication",
+    "hardware",
+    "solid",
+    "structure",
+    "projection",
+    "files",
+)
 KEYS = {table: set(model.model_fields) for table, model in FURTHER_TABLES.items()}
 KEYS["surface"] = {key for model in SURFACE_TABLES.values() for key in model.model_fields}
 KEY = re.compile(

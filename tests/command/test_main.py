@@ -17,7 +17,7 @@ from command.command_line import FILES, UNDULOID, contents, lamella
 from lamella import __version__
 from lamella.command.main import main
 from lamella.project.read import parse_project
-from lamella.project.tables import FURTHER_TABLES, SURFACE_TABLES, BoundaryTable
+from lamella.project.tables import FURTHER_TABLES, SURFACE_TABLES, BoundaryTable, CablesTable, JointTable
 from messages import text_faults
 
 COMMANDS = ("run", "new", "check", "optimise", "examples", "schema")
@@ -99,6 +99,9 @@ def test_wrong_arguments(here: Path, capsys: pytest.CaptureFixture[str], argumen
 # --- new, check, examples, schema -------------------------------------------------------------------------------
 
 
+HEADER = re.compile(rf"(?:# )?\[+(surface|{'|'.join(FURTHER_TABLES)}|materials)\b.*?\]+")
+
+
 @pytest.mark.parametrize("kind", SURFACE_TABLES)
 def test_a_new_project_is_good_and_mentions_every_key(
     here: Path, capsys: pytest.CaptureFixture[str], kind: str
@@ -109,7 +112,7 @@ def test_a_new_project_is_good_and_mentions_every_key(
     # comments taken off, each key stands in its table
     table, keys = "", set()
     for line in text.splitlines():
-        if header := re.fullmatch(r"(?:# )?\[+(surface|network|lamella|fabrication|files|materials)\b.*?\]+", line):
+        if header := HEADER.fullmatch(line):
             table = "boundary" if "boundary" in line else header[1]
         elif key := re.match(r"(?:# *)?([a-z]\w*) =", line):
             keys.add(f"{table}.{key[1]}")
@@ -145,12 +148,16 @@ def test_the_comments_of_a_new_project_are_its_defaults(
     text = capsys.readouterr().out
     plain = tomllib.loads(text)
     # all keys active but those that exclude another, and the ones without a default
-    others = "spacing|slot_width|end_distance|hub_radius|volume|unit|origin|normal_curvature"
+    others = "spacing|slot_width|end_distance|hub_radius|volume|unit|origin|normal_curvature|washer_length"
     uncommented = re.sub(rf"^# (?!{others})([a-z]\w* = )", r"\1", text, flags=re.M)
     uncommented = uncommented.replace('# [materials."my steel"]', '[materials."my steel"]')
-    assert parse_project(tomllib.loads(uncommented)).model_dump(exclude={"materials"}) == parse_project(
-        plain
-    ).model_dump(exclude={"materials"})
+    uncommented = re.sub(r"^# (\[(?:joint|cables)\])", r"\1", uncommented, flags=re.M)
+    active, given = parse_project(tomllib.loads(uncommented)), parse_project(plain)
+    # tables that do something by being there are commented out as a whole
+    whole = {"materials", "joint", "cables"}
+    assert active.model_dump(exclude=whole) == given.model_dump(exclude=whole)
+    assert (given.joint, given.cables) == (None, None)
+    assert (active.joint, active.cables) == (JointTable(), CablesTable())
 
 
 def test_new_to_the_screen_and_to_other_places(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -62,7 +62,8 @@ def _part_block(part: Part, owner: str) -> Block:
     """A part's entities in its own frame, mm."""
     engraving = engrave(part)
     writer = BlockWriter(owner)
-    writer.polyline("CUT", part.outline * (MM, MM, 1.0), closed=True, tag=part.id)
+    for outline in (part.outline, *part.hole_outlines()):
+        writer.polyline("CUT", outline * (MM, MM, 1.0), closed=True, tag=part.id)
     writer.lines("MARK", MM * engraving.nodes, tag=part.id)
     writer.polyline("MARK", MM * engraving.arrow, closed=True, tag=part.id)
     for stroke in engraving.strokes:

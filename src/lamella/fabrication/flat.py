@@ -25,6 +25,12 @@ def outline_area(vertices: Floats) -> float:
     return float(0.5 * np.sum(x * next_y - next_x * y) + np.sum(segments))
 
 
+def circle(diameter: float, centre: tuple[float, float] = (0.0, 0.0)) -> Floats:
+    """Outline (2, 3) of a circle, m: two half circles."""
+    x, y = centre
+    return np.array([[x - diameter / 2, y, 1.0], [x + diameter / 2, y, 1.0]])
+
+
 def outline_points(vertices: Floats) -> Floats:
     """Points (n, 2) of an outline, m, closed by its first one: its arcs in `ARC_PARTS` straight parts each."""
     corners = vertices[:, 0] + 1j * vertices[:, 1]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ from lamella.base.onward import onward
 from lamella.base.result import Shown
 from lamella.base.wording import counted
 from lamella.fabrication.axis import Axis
-from lamella.fabrication.flat import extents
+from lamella.fabrication.flat import circle, extents
 
 if TYPE_CHECKING:
     from lamella.fabrication.sheet import Nesting
@@ -68,9 +68,11 @@ class Part(Shown):
     outline : (v, 3)
         x, y in m and bulge, see `lamella.fabrication.axis.outline`.
     area : float
-        Of the outline, m2.
+        Of the outline without its holes, m2.
     mass : float
         Of one piece, kg.
+    holes : (b, 3)
+        Round holes: station, height over the centre line and diameter, m.
 
     Examples
     --------
@@ -98,6 +100,7 @@ class Part(Shown):
     outline: Floats
     area: float
     mass: float
+    holes: Floats = field(default_factory=lambda: np.empty((0, 3)))
 
     def _line(self) -> str:
         return f"{self.label}: {self.length:.4g} m, {counted(len(self.slots), 'slot')}, {self.mass:.4g} kg"
@@ -144,6 +147,11 @@ class Part(Shown):
     def place(self, stations: Floats, heights: Floats | float) -> Floats:
         """Points of the strip in the part's own frame, (..., 2), m; see `Axis.develop`."""
         return self.axis.develop(stations, heights)
+
+    def hole_outlines(self) -> tuple[Floats, ...]:
+        """Closed outlines of the holes in the part's own frame, (2, 3) as `outline`: two half circles each."""
+        centres = self.place(self.holes[:, 0], self.holes[:, 1])
+        return tuple(circle(d, (x, y)) for (x, y), d in zip(centres.tolist(), self.holes[:, 2].tolist(), strict=True))
 
     @cached_property
     def bow(self) -> float:

@@ -134,11 +134,12 @@ def explain(error: ErrorDetails, values: dict[str, Any]) -> Reported:
     if kind in ("union_tag_invalid", "union_tag_not_found") and isinstance(values["surface"], dict):
         return "surface.kind", *explain_kind(values["surface"].get("kind"))
     place = list(error["loc"])
-    if place[0] == "surface" and len(place) > 1:
+    if len(place) > 1 and place[0] == "surface":
         del place[1]  # the kind, which pydantic puts in
     path = _keys(place)
     refusal = context.get("error")
     if isinstance(refusal, Refusal):
+        # one about several tables has no place of its own
         return ".".join([*path, refusal.key] if refusal.key else path), str(refusal), refusal.remedy
     key, leaf = ".".join(path), path[-1]
     parent = _fields(values, path[:-1])

@@ -10,7 +10,7 @@ import tomli_w
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from lamella.project.tables import FURTHER_TABLES, SURFACE_TABLES
+from lamella.project.tables import FURTHER_TABLES, SURFACE_TABLES, Project
 
 # the film between a saddle-shaped rim of 12 x 9 m and a ring
 _BOUNDARY = """\
@@ -77,7 +77,10 @@ def _key(table: str, name: str, field: FieldInfo, active: dict[str, Any]) -> str
 def _table(name: str, model: type[BaseModel], active: dict[str, Any], skip: frozenset[str] = frozenset()) -> str:
     keys = [_key(name, key, field, active) for key, field in model.model_fields.items() if key not in skip]
     about = textwrap.wrap((model.__doc__ or "").strip(), 98, initial_indent="# ", subsequent_indent="# ")
-    return "\n".join([*about, f"[{name}]", *keys])
+    field = Project.model_fields[name]
+    # a table that changes what is made by being there stands as a comment
+    header = f"# [{name}]" if field.default is None and not field.is_required() else f"[{name}]"
+    return "\n".join([*about, header, *keys])
 
 
 def starter(kind: str, name: str, mesh: str = "surface.obj") -> str:

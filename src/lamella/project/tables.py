@@ -20,6 +20,7 @@ from lamella.project.boundary_tables import (
     PlaceTable,
     SlideTable,
 )
+from lamella.project.joint_table import CablesTable, JointTable
 from lamella.project.surface_tables import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
 from lamella.project.values import (
     Name,
@@ -37,10 +38,12 @@ __all__ = [
     "AdjustTable",
     "ArcTable",
     "BoundaryTable",
+    "CablesTable",
     "CircleTable",
     "FabricationTable",
     "FilesTable",
     "FormFoundTable",
+    "JointTable",
     "LamellaTable",
     "MaterialTable",
     "MeshTable",
@@ -295,6 +298,8 @@ FURTHER_TABLES: dict[str, type[Table]] = {
     "network": NetworkTable,
     "lamella": LamellaTable,
     "fabrication": FabricationTable,
+    "joint": JointTable,
+    "cables": CablesTable,
     "files": FilesTable,
 }
 
@@ -315,8 +320,27 @@ class Project(Table):
     network: NetworkTable = NetworkTable()
     lamella: LamellaTable = LamellaTable()
     fabrication: FabricationTable = FabricationTable()
+    joint: JointTable | None = Field(default=None, description=(JointTable.__doc__ or "").strip())
+    cables: CablesTable | None = Field(default=None, description=(CablesTable.__doc__ or "").strip())
     files: FilesTable = FilesTable()
     materials: dict[Name, MaterialTable] = Field(default={}, description="Materials by name.")
+
+    @model_validator(mode="after")
+    def _possible(self) -> Project:
+        if self.joint is not None and self.joint.slot_width is not None and self.fabrication.slot_width is not None:
+            raise Refusal(
+                f"slot_width is given twice: {self.joint.slot_width:g} m here and {self.fabrication.slot_width:g} m in "
+                "[fabrication]",
+                "keep one of them",
+                "joint.slot_width",
+            )
+        if self.cables is not None and (self.joint is None or not self.joint.washer):
+            raise Refusal(
+                "cables are clamped by the bolts of the joints, and there are none",
+                "add a table [joint] with washer = true, its default",
+                "cables",
+            )
+        return self
 
     def material(self) -> Material:
         """The material of the lamellas."""

@@ -1,10 +1,42 @@
-"""Curves and points on a layer of their own, as stages add them to the model."""
+"""Curves, points and repeated solids on a layer of their own, as stages add them to the model."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
-from lamella.base.arrays import Floats
+from lamella.base.arrays import Floats, Integers
+
+
+@dataclass(frozen=True, eq=False)
+class Repeated:
+    """A solid that stands in several places.
+
+    Attributes
+    ----------
+    name : str
+        Of the block.
+    vertices : (v, 3)
+        In the solid's own axes, m.
+    triangles : (f, 3) int
+        Counter-clockwise seen from outside.
+    origins : (q, 3)
+        Of the places, m.
+    axes : (q, 3, 3)
+        Rows: where the solid's x, y and z point there.
+    labels : tuple of str
+        Name of each place.
+    text : dict
+        User text of all of them.
+    """
+
+    name: str
+    vertices: Floats
+    triangles: Integers
+    origins: Floats
+    axes: Floats
+    labels: tuple[str, ...]
+    text: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -21,9 +53,11 @@ class DrawnLayer:
         m.
     colour : (int, int, int)
         Red, green, blue, 0 to 255.
+    repeated : tuple of Repeated
     """
 
     name: str
     curves: tuple[Floats, ...] = ()
     points: tuple[Floats, ...] = ()
     colour: tuple[int, int, int] = (90, 90, 90)
+    repeated: tuple[Repeated, ...] = ()

@@ -8,8 +8,9 @@ import numpy as np
 import rhino3dm
 
 from lamella.base.arrays import Booleans, Floats
-from lamella.files.write.drawn_layer import DrawnLayer
+from lamella.files.write.drawn_layer import DrawnLayer, Repeated
 from lamella.files.write.nurbs_objects import nurbs_surface
+from lamella.files.write.rhino_blocks import add_block
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile
 from lamella.files.write.splines import SPLINE_TOLERANCE, fit_spline
 from lamella.files.write.text import require_finite
@@ -124,6 +125,31 @@ class _Model:
             require_finite(point)
             attributes = self.rhino.attributes(layer.name, f"point {k}", version=self.version)
             self.file.Objects.AddPoint(rhino3dm.Point3d(*self.rhino.placed(point).tolist()), attributes)
+        for solid in layer.repeated:
+            self._add_repeated(layer.name, solid)
+
+    def _add_repeated(self, layer: str, solid: Repeated) -> None:
+        """A block, and a reference to it for each place."""
+        require_finite(solid.vertices, solid.origins, solid.axes)
+        mesh = rhino3dm.Mesh()
+        mesh.Vertices.UseDoublePrecisionVertices = True
+        for x, y, z in (solid.vertices / self.rhino.metres).tolist():
+            mesh.Vertices.AddPoint3d(x, y, z)
+        for a, b, c in solid.triangles.tolist():
+            mesh.Faces.AddFace(a, b, c)
+        definition = self.rhino.identity("block", solid.name)
+        add_block(self.file, solid.name, mesh, definition, self.rhino.attributes(layer, f"{solid.name} block"))
+        text = {**solid.text, "id": solid.name, "version": self.version}
+        for place, axes, label in zip(
+            self.rhino.placed(solid.origins).tolist(), solid.axes.tolist(), solid.labels, strict=True
+        ):
+            matrix = rhino3dm.Transform.Identity()
+            for row in range(3):
+                for column in range(3):
+                    setattr(matrix, f"M{row}{column}", axes[column][row])
+                setattr(matrix, f"M{row}3", place[row])
+            attributes = self.rhino.attributes(layer, f"{solid.name} {label}", place=label, **text)
+            self.file.Objects.AddInstanceObject(rhino3dm.InstanceReference(definition, matrix), attributes)
 
     def encoded(self) -> bytes:
         return self.rhino.encoded()

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from lamella.base.drawing_origin import drawing_origin
+from lamella.base.material import find_material
 from lamella.fabrication.defaults import default_end_distance, default_hub_radius, default_slot_width
 from lamella.fabrication.rules import Rules, clear_hub
-from lamella.project.tables import Project
+from lamella.hardware.rules import CableRules, JointRules
+from lamella.project.tables import JointTable, Project
 from lamella.stages.keys import keys
+from lamella.strip.lamellas import Section
 from lamella.surface.surface import Surface
 
 
 def fill_in(project: Project, surface: Surface[Any]) -> Project:
     """The project with those defaults filled in that follow from its other values."""
-    cut, strip = project.fabrication, project.lamella
-    slot_width = default_slot_width(strip.thickness) if cut.slot_width is None else cut.slot_width
+    cut, strip, joint = project.fabrication, project.lamella, project.joint
+    slot_width = cut.slot_width if joint is None or joint.slot_width is None else joint.slot_width
+    if slot_width is None:
+        slot_width = default_slot_width(strip.thickness)
     end_distance = cut.end_distance
     if end_distance is None:
         end_distance = default_end_distance(slot_width, _normal_curvature(project, surface), strip.height)
@@ -24,12 +31,41 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
     if hub_radius is None and (strip.layers == 1 or strip.layer_curves != "lamella"):
         rays = max((2 * (order + 2) for order in surface.singular_orders()), default=0)
         hub_radius = default_hub_radius(clear_hub(rays, strip.layers, strip.offset, strip.thickness))
+        if joint is not None and joint.hub and rays:
+            hub_radius = max(hub_radius, joint_rules(project, joint).least_hub_radius(2 * np.pi / rays))
     measures = {"slot_width": slot_width, "end_distance": float(end_distance), "hub_radius": hub_radius}
     filled = cut.model_copy(update=measures)
     update: dict[str, Any] = {"fabrication": filled}
+    if joint is not None:
+        update["joint"] = joint.model_copy(update={"slot_width": None})
     if any(drawing_origin(surface)):
         update["surface"] = project.surface.model_copy(update={"origin": drawing_origin(surface)})
     return project.model_copy(update=update)
+
+
+def joint_rules(project: Project, joint: JointTable) -> JointRules:
+    """The measures of the hardware."""
+    material = find_material(joint.material, project.known_materials())
+    measures = joint.model_dump(exclude={"kind", "slot_width"})
+    return JointRules(density=material.density, **measures)
+
+
+def cable_rules(project: Project) -> CableRules | None:
+    """The measures of the cables, where there are some."""
+    return None if project.cables is None else CableRules(**project.cables.model_dump())
+
+
+@keys("joint")
+def check_joint(project: Project) -> None:
+    """Refuse hardware that cannot be made with the project's strips.
+
+    Raises
+    ------
+    InputError
+    """
+    if project.joint is not None:
+        section = Section(**project.lamella.model_dump(exclude={"material"}))
+        joint_rules(project, project.joint).check(section)
 
 
 @keys("fabrication", height="lamella.height")

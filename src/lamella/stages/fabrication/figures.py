@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from lamella.fabrication.schedule import congruent_parts
 from lamella.stages.fabrication.output import FabricationOutput
-from lamella.stages.figure import INTEGER, NUMBER, Figure, line
+from lamella.stages.figure import INTEGER, NUMBER, Figure, line, record
 
 Rows = Iterator[tuple[str, str, str]]
 
@@ -18,18 +19,52 @@ def _bow_rows(value: float, summary: dict[str, Any]) -> Rows:
         yield "Cut outlines bowed by, at most", format(value * 1e3, ".2g"), "mm"
 
 
+HUB = ("hub plate", "hub fin", "packer")
+"""Kinds of part that a hub is made of; it has two plates."""
+
+
+OF_KIND = record(("length",), count=INTEGER, different=INTEGER, mass=NUMBER, length=NUMBER)
+"""Schema of the figures of one kind of hardware."""
+
+
+def _hardware(out: FabricationOutput) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for item in out.hardware:
+        one = found.setdefault("hub" if item.kind in HUB else item.kind, {"count": 0, "different": 0, "mass": 0.0})
+        one["mass"] += item.quantity * item.mass
+        if item.kind == "cable":
+            one["length"] = one.get("length", 0.0) + item.quantity * item.length
+        if item.kind not in HUB[1:]:
+            one["count"] += item.quantity // 2 if item.kind in HUB else item.quantity
+            one["different"] += 1
+    return found
+
+
+def _hardware_rows(value: dict[str, Any], summary: dict[str, Any]) -> Rows:
+    for kind, of_kind in value.items():
+        several = f", {of_kind['different']} kinds" if of_kind["different"] > 1 else ""
+        yield f"{kind.capitalize()}{several}", f"{of_kind['count']:,}", f"pieces, {of_kind['mass']:.3g} kg"
+
+
 def _sheet_use(out: FabricationOutput) -> float:
     area = sum(part.quantity * part.area for part in out.parts.parts)
     return area / float(np.prod(out.nesting.sizes, axis=1).sum())
 
 
 FIGURES: tuple[Figure[FabricationOutput], ...] = (
-    Figure("mass", "kg", "of all pieces, slots taken off", lambda out: out.parts.mass, NUMBER, rows=line("Mass", "kg")),
+    Figure(
+        "mass",
+        "kg",
+        "of all strips, slots and holes taken off, and of the hardware",
+        lambda out: out.parts.mass + out.hardware.mass,
+        NUMBER,
+        rows=line("Mass", "kg"),
+    ),
     Figure(
         "surface_weight",
         "kg/m2",
         "mass over area of the surface",
-        lambda out: out.parts.mass / out.surface_area,
+        lambda out: (out.parts.mass + out.hardware.mass) / out.surface_area,
         NUMBER,
         rows=line("Mass per area of surface", "kg/m²"),
     ),
@@ -50,8 +85,25 @@ FIGURES: tuple[Figure[FabricationOutput], ...] = (
         NUMBER,
         rows=_bow_rows,
     ),
+    Figure(
+        "parts_different",
+        "",
+        "kinds of lamella layers: parts that are not congruent within 0.01 mm",
+        lambda out: len(set(congruent_parts(out.parts))),
+        INTEGER,
+        rows=line("Different lamella layers", form=","),
+    ),
+    Figure(
+        "hardware",
+        "",
+        "by kind, where `[joint]` is given: `count` (of pieces; of whole hubs), `different` (kinds of them), `mass` "
+        "(kg, of all), of cables `length` (m, of all)",
+        _hardware,
+        {"type": "object", "additionalProperties": OF_KIND},
+        rows=_hardware_rows,
+    ),
     Figure("sheet_use", "", "area of the parts over area of the sheets", _sheet_use, NUMBER),
 )
 
-REPORT = ("parts", "sheets", "bow_max", "mass", "surface_weight")
+REPORT = ("parts", "parts_different", "sheets", "bow_max", "mass", "surface_weight", "hardware")
 """Order of the report's lines."""

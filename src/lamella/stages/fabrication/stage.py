@@ -11,9 +11,11 @@ from lamella.base.message import Message
 from lamella.base.progress import Progress
 from lamella.fabrication.parts import make_parts
 from lamella.fabrication.sheet import nest
+from lamella.files.write.drawn_layer import DrawnLayer, Repeated
+from lamella.hardware.item import Hardware, Item
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
-from lamella.stages.fabrication.defaults import check_fabrication
+from lamella.stages.fabrication.defaults import cable_rules, check_fabrication, check_joint, joint_rules
 from lamella.stages.fabrication.figures import FIGURES, REPORT
 from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.keys import keys, with_keys
@@ -21,6 +23,22 @@ from lamella.stages.lamellas.stage import strips_of
 from lamella.stages.network.stage import other_cells
 from lamella.stages.stage import File, Stage, Upstream
 from lamella.surface.surface import Surface
+
+COLOURS = {
+    "washer": (150, 150, 160),
+    "key": (120, 120, 130),
+    "bolt": (70, 70, 80),
+    "nut": (70, 70, 80),
+    "screw": (70, 70, 80),
+    "clamp": (120, 120, 130),
+    "cable": (40, 40, 40),
+    "block": (190, 170, 110),
+    "packer": (190, 170, 110),
+    "hub plate": (150, 110, 160),
+    "hub fin": (150, 110, 160),
+}
+"""Of the model's layers."""
+OTHER = (110, 110, 110)
 
 
 class FabricationStage(Stage[FabricationOutput]):
@@ -32,14 +50,19 @@ class FabricationStage(Stage[FabricationOutput]):
         ("fabrication/A.dxf, fabrication/B.dxf", "the parts of either family"),
         ("fabrication/sheets.dxf", "all pieces on their sheets"),
         ("fabrication/schedule.csv", "the part list"),
+        (
+            "fabrication/hardware.csv, fabrication/places.csv, fabrication/plates.dxf",
+            "where `[joint]` is given: the hardware, the place of every piece, and what of it is cut from plates",
+        ),
     )
     figures = FIGURES
     report = ("Fabrication", REPORT)
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
-        return ("fabrication",)
+        return ("fabrication", "joint", "cables")
 
     def check(self, project: Project, surface: Surface[Any] | None) -> None:
+        check_joint(project)
         if surface is not None:
             check_fabrication(project, surface)
 
@@ -58,18 +81,30 @@ class FabricationStage(Stage[FabricationOutput]):
                 others=lambda fault: others.without(lambda net: fault(net, strips(net))),
                 **cut.model_dump(),
             )
-        return FabricationOutput(parts, nest(parts, sheet=cut.sheet, gap=cut.gap), up.figures["surface"]["area"])
+        hardware = Hardware()
+        if project.joint is not None:
+            from lamella.hardware.make_hardware import make_hardware
+
+            measures = joint_rules(project, project.joint), cable_rules(project)
+            with keys("joint", prestress="cables.prestress"):
+                joined = make_hardware(up.outputs["lamellas"].lamellas, parts, *measures)
+            hardware, parts = joined.hardware, joined.parts
+        nesting = nest(parts, sheet=cut.sheet, gap=cut.gap)
+        return FabricationOutput(parts, nesting, up.figures["surface"]["area"], hardware)
 
     def result(self, figures: Mapping[str, Any], out: FabricationOutput) -> str:
         return f"{figures['parts']:,} parts, {figures['mass']:.4g} kg, {figures['sheets']} sheets"
 
     def warnings(self, out: FabricationOutput, up: Upstream, progress: Progress) -> Iterator[Message]:
         named = ("fabrication.end_distance", "fabrication.hub_radius")
-        return (with_keys(warning, *named) for warning in out.parts.warnings)
+        yield from (with_keys(warning, *named) for warning in out.parts.warnings)
+        yield from out.hardware.warnings
 
     def files(self, out: FabricationOutput, up: Upstream) -> Iterator[File]:
         from lamella.fabrication.drawing import write_drawings
         from lamella.fabrication.schedule import write_schedule
+        from lamella.hardware.lists import write_hardware, write_places
+        from lamella.hardware.plates_drawing import write_plates
 
         signed: Any = {"name": up.project.name, "version": __version__}
         network = in_drawing(up.outputs["network"].network, drawing_origin(up.surface))
@@ -83,3 +118,28 @@ class FabricationStage(Stage[FabricationOutput]):
             "fabrication/schedule.csv",
             lambda path: write_schedule(path, out.parts, out.nesting, network, lamellas, **signed),
         )
+        if out.hardware.items:
+            drawn: Any = signed | {"origin": drawing_origin(up.surface)}
+            yield File("fabrication/hardware.csv", lambda path: write_hardware(path, out.hardware, **signed))
+            yield File("fabrication/places.csv", lambda path: write_places(path, out.hardware, **drawn))
+            yield File("fabrication/plates.dxf", lambda path: write_plates(path, out.hardware, **signed))
+
+    def scene(self, out: FabricationOutput, up: Upstream) -> Iterator[DrawnLayer]:
+        for kind in dict.fromkeys(item.kind for item in out.hardware):
+            yield DrawnLayer(
+                kind, colour=COLOURS.get(kind, OTHER), repeated=tuple(map(_repeated, out.hardware.of(kind)))
+            )
+
+
+def _repeated(item: Item) -> Repeated:
+    """A kind of hardware as a block of the model."""
+    from lamella.solid.extrusion import item_solid
+
+    solid, places = item_solid(item), item.places
+    text = {
+        "kind": item.kind,
+        "description": item.description,
+        "material": item.material,
+        "mass_kg": f"{item.mass:.6g}",
+    }
+    return Repeated(item.id, solid.vertices, solid.triangles, places.origins, places.axes, places.labels, text)

@@ -1,0 +1,139 @@
+"""All hardware of a structure: joints, hubs, shear blocks, and the holes that parts need for them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from lamella.base.errors import InputError
+from lamella.base.message import Message
+from lamella.base.wording import counted
+from lamella.fabrication.part import Parts
+from lamella.hardware.bores import Bores, drilled
+from lamella.hardware.cables import cables
+from lamella.hardware.grid_joint import grid_joints, seats
+from lamella.hardware.hubs import hubs, singular_rays
+from lamella.hardware.item import Hardware, Item
+from lamella.hardware.node_frames import NodeFrames
+from lamella.hardware.rules import MM, CableRules, JointRules
+from lamella.hardware.shear_blocks import shear_blocks
+from lamella.network.network import SINGULAR
+from lamella.strip.lamellas import Lamellas
+
+# deg: keys that let a joint turn farther do not fix it
+LARGE_PLAY = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class Joined:
+    """Hardware of a structure, and its parts with holes for it.
+
+    Attributes
+    ----------
+    hardware : Hardware
+    parts : Parts
+    """
+
+    hardware: Hardware
+    parts: Parts
+
+
+def make_hardware(lamellas: Lamellas, parts: Parts, rules: JointRules, cable_rules: CableRules | None = None) -> Joined:
+    """Hardware for lamellas and their parts.
+
+    Parameters
+    ----------
+    lamellas : Lamellas
+    parts : Parts
+        Of these lamellas, before they are drilled.
+    rules : JointRules
+    cable_rules : CableRules, optional
+        Without it there are no cables; they need washers.
+
+    Raises
+    ------
+    InputError
+        Measures that contradict each other or the net.
+    """
+    section, network = lamellas.section, lamellas.network
+    rules.check(section)
+    if cable_rules is not None and not rules.washer:
+        raise InputError("cables are clamped by the bolts of the joints", "write washer = true", "washer")
+    items: list[Item] = []
+    bores = []
+    notes: list[Message] = []
+    frames = NodeFrames.of(network)
+    length = rules.star_length(section, frames.least_angle)
+    half_joint = length / 2 if rules.washer else section.offset * section.layers / 2
+    keep_clear = np.full(len(network.stop_nodes), half_joint)
+    if rules.washer:
+        above = np.zeros(len(frames))
+        if cable_rules is not None:
+            top = section.height / 2 + seats(frames, lamellas, length / 2)[0] + rules.washer_thickness
+            made_cables = cables(network, frames, section, top, rules, cable_rules)
+            items += made_cables.items
+            above = made_cables.above
+        joints = grid_joints(frames, lamellas, rules, clamp=above)
+        items += joints.items
+        notes += _loose(joints.angle_play)
+    hub_radius = _hub_radius(parts)
+    if rules.hub and (network.node_kinds == SINGULAR).any():
+        made = hubs(lamellas, rules, hub_radius, _room(lamellas, half_joint))
+        items += made.items
+        bores.append(made.bores)
+        reach = np.zeros(len(network.node_points))
+        reach[list(made.reach)] = list(made.reach.values())
+        keep_clear = np.maximum(keep_clear, reach[network.stop_nodes])
+    keep_clear = np.where(
+        network.node_kinds[network.stop_nodes] == SINGULAR, np.maximum(keep_clear, hub_radius), keep_clear
+    )
+    if rules.block_spacing and section.layers > 1:
+        blocks = shear_blocks(lamellas, rules, keep_clear)
+        items += blocks.items
+        bores.append(blocks.bores)
+        notes += _without(blocks.cells_without, len(network.cell_edges), rules)
+    drilled_parts = drilled(parts, lamellas, Bores.of(bores))
+    return Joined(Hardware(tuple(items), tuple(notes)), drilled_parts)
+
+
+def _hub_radius(parts: Parts) -> float:
+    """From singular nodes to the strips' ends, m: only there a part's node lies beyond its end."""
+    ends = [0.0]
+    for part in parts.parts:
+        if len(part.nodes):
+            ends += [part.start - float(part.nodes[0]), float(part.nodes[-1]) - part.end]
+    return max(ends)
+
+
+def _room(lamellas: Lamellas, half_joint: float) -> dict[int, float]:
+    """By singular node: from it to where the next joint begins on its rays, m."""
+    network = lamellas.network
+    owner = network.stop_owner
+    found = {}
+    for rays in singular_rays(lamellas):
+        ends = []
+        for lamella, start in zip(rays.lamellas.tolist(), rays.starts.tolist(), strict=True):
+            away = np.abs(network.stop_arclengths[owner == lamella] - start)
+            ends.append(away[away > 0].min(initial=np.inf))
+        found[rays.node] = float(min(ends)) - half_joint
+    return found
+
+
+def _loose(angle_play: float) -> Iterator[Message]:
+    if angle_play > LARGE_PLAY:
+        yield Message(
+            "joints_loose",
+            f"keys let the joints turn by up to {angle_play:.2g} deg: the strips lean and twist so much between a "
+            "node's axis and their edges; lower strips or a larger offset help",
+        )
+
+
+def _without(cells: int, all_cells: int, rules: JointRules) -> Iterator[Message]:
+    if cells:
+        yield Message(
+            "blocks_left_out",
+            f"{cells} of {counted(all_cells, 'cell')} are too short for a shear block {MM * rules.block_length:g} mm "
+            "long between their joints",
+        )
