@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import os
 import secrets
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from lamella.base.errors import InputError
 
 
-def write_whole(path: Path, content: bytes) -> None:
+def write_whole(path: Path, content: bytes | Iterable[bytes]) -> None:
     """Write a file that appears complete or not at all; an older file of that name stays until then.
 
     Parameters
     ----------
     path : Path
         Where to write; its folder must exist.
-    content : bytes
-        All of the file.
+    content : bytes or iterable of bytes
+        All of the file, or its parts one after the other, which are made as they are written.
 
     Raises
     ------
@@ -28,12 +28,13 @@ def write_whole(path: Path, content: bytes) -> None:
     write_all_whole({path: content})
 
 
-def write_all_whole(files: Mapping[Path, bytes]) -> None:
+def write_all_whole(files: Mapping[Path, bytes | Iterable[bytes]]) -> None:
     """The same for several files: none appears before all are on the disk."""
     parts = {path: path.with_name(f".{secrets.token_hex(6)}.part") for path in files}
     try:
         for path, content in files.items():
-            parts[path].write_bytes(content)
+            with parts[path].open("wb") as file:
+                file.writelines((content,) if isinstance(content, bytes) else content)
         for path, part in parts.items():
             os.replace(part, path)
     except BaseException:

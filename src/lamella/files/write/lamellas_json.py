@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import orjson
+from numpy.typing import NDArray
 
 from lamella.base.arrays import Floats
 from lamella.base.wording import one_line
@@ -18,6 +19,9 @@ from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 
 SCHEMA = "lamella/lamellas/1"
+
+# lengths to a nanometre in a kilometre and better; what is computed from them needs no more than single precision
+GEOMETRY_DIGITS = 13
 
 
 @dataclass(frozen=True)
@@ -29,19 +33,32 @@ class Column:
     key, unit, meaning : str
     values : callable
         Those of all samples, (k,), of a network and its lamellas.
+    digits : int, optional
+        They are written to so many digits of the largest one; in single precision, seven digits of each, when not
+        given.
     """
 
     key: str
     unit: str
     meaning: str
     values: Callable[[Network, Lamellas], Floats]
+    digits: int | None = None
+
+    def written(self, network: Network, lamellas: Lamellas) -> NDArray[np.floating[Any]]:
+        """The values as the file has them, (k,)."""
+        values = self.values(network, lamellas)
+        require_finite(values)
+        if self.digits is None:
+            return values.astype(np.float32)
+        largest = float(np.abs(values).max(initial=0.0)) or 1.0
+        return np.round(values, self.digits - 1 - int(np.floor(np.log10(largest))))
 
 
 COLUMNS = (
-    Column("arclength", "m", "from the lamella's start", lambda net, strips: net.sample_arclengths),
-    Column("normal_curvature", "1/m", "kn, with sign", lambda net, strips: net.sample_darboux.kn),
-    Column("geodesic_curvature", "1/m", "kg, with sign", lambda net, strips: net.sample_darboux.kg),
-    Column("geodesic_torsion", "1/m", "tg, with sign", lambda net, strips: net.sample_darboux.tg),
+    Column("arclength", "m", "from the lamella's start", lambda net, strips: net.sample_arclengths, GEOMETRY_DIGITS),
+    Column("normal_curvature", "1/m", "kn, with sign", lambda net, strips: net.sample_darboux.kn, GEOMETRY_DIGITS),
+    Column("geodesic_curvature", "1/m", "kg, with sign", lambda net, strips: net.sample_darboux.kg, GEOMETRY_DIGITS),
+    Column("geodesic_torsion", "1/m", "tg, with sign", lambda net, strips: net.sample_darboux.tg, GEOMETRY_DIGITS),
     Column("stress_bending", "Pa", "magnitude, about the weak axis", lambda net, strips: strips.bending),
     Column("stress_torsion", "Pa", "magnitude", lambda net, strips: strips.torsion),
     Column("stress_helix_edge", "Pa", "at the edges, tension > 0", lambda net, strips: strips.helix_edge),
@@ -77,32 +94,37 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
     name, version : str
         Of the project and of the program.
     """
-    along = {column.key: column.values(network, lamellas) for column in COLUMNS}
-    require_finite(*along.values(), lamellas.stop_stations, lamellas.layers.distances, lamellas.layers.bow)
-    samples, stops = network.sample_offsets.tolist(), network.stop_offsets.tolist()
-    content = {
+    require_finite(lamellas.stop_stations, lamellas.layers.distances, lamellas.layers.bow)
+    head = {
         "schema": SCHEMA,
         "version": version,
         "name": one_line(name),
         "units": {"length": "m", "curvature": "1/m", "stress": "Pa"},
         "section": asdict(lamellas.section),
         "development": {"curvature": network.normal_curvature},
-        "lamellas": [
-            {
-                "id": lamella,
-                "family": str(network.families[i]),
-                "developed_length": float(lamellas.developed_lengths[i]),
-                "nodes": network.stop_nodes[stops[i] : stops[i + 1]],
-                "node_stations": lamellas.stop_stations[stops[i] : stops[i + 1]],
-                "node_utilisation_net_section": lamellas.net_utilisation[stops[i] : stops[i + 1]],
-                "layer_node_stations": np.ascontiguousarray(lamellas.layer_stations[:, stops[i] : stops[i + 1]]),
-                "layers": _layers(lamellas, slice(samples[i], samples[i + 1])),
-            }
-            | {key: values[samples[i] : samples[i + 1]] for key, values in along.items()}
-            for i, lamella in enumerate(network.ids)
-        ],
     }
-    write_whole(path, orjson.dumps(content, option=orjson.OPT_SERIALIZE_NUMPY))
+    write_whole(path, _parts(orjson.dumps(head)[:-1], network, lamellas))
+
+
+def _parts(head: bytes, network: Network, lamellas: Lamellas) -> Iterator[bytes]:
+    """The file, a lamella at a time: as a whole it may be larger than all that it is made from."""
+    along = {column.key: column.written(network, lamellas) for column in COLUMNS}
+    samples, stops = network.sample_offsets.tolist(), network.stop_offsets.tolist()
+    yield head + b',"lamellas":['
+    for i, lamella in enumerate(network.ids):
+        sample, stop = slice(samples[i], samples[i + 1]), slice(stops[i], stops[i + 1])
+        content = {
+            "id": lamella,
+            "family": str(network.families[i]),
+            "developed_length": float(lamellas.developed_lengths[i]),
+            "nodes": network.stop_nodes[stop],
+            "node_stations": lamellas.stop_stations[stop],
+            "node_utilisation_net_section": lamellas.net_utilisation[stop],
+            "layer_node_stations": np.ascontiguousarray(lamellas.layer_stations[:, stop]),
+            "layers": _layers(lamellas, sample),
+        } | {key: values[sample] for key, values in along.items()}
+        yield (b"," if i else b"") + orjson.dumps(content, option=orjson.OPT_SERIALIZE_NUMPY)
+    yield b"]}"
 
 
 def lamellas_schema() -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from importlib.resources import files
 from itertools import pairwise
 from pathlib import Path
@@ -20,7 +21,12 @@ SCHEMA = "lamella/network/1"
 
 
 def network_bytes(network: Network, *, name: str, version: str) -> bytes:
-    """Return network.json, one line a node, a lamella and a face.
+    """Return network.json, see `network_parts`."""
+    return b"".join(network_parts(network, name=name, version=version))
+
+
+def network_parts(network: Network, *, name: str, version: str) -> Iterator[bytes]:
+    """network.json part by part, one line a node, a lamella and a face.
 
     Parameters
     ----------
@@ -29,8 +35,8 @@ def network_bytes(network: Network, *, name: str, version: str) -> bytes:
     name, version : str
         Of the project and of the program.
 
-    Returns
-    -------
+    Yields
+    ------
     bytes
         JSON in UTF-8; doubles with the shortest digits that read back the same.
     """
@@ -52,23 +58,18 @@ def network_bytes(network: Network, *, name: str, version: str) -> bytes:
         head["kind"] = network.pattern.kind
     if network.pattern.normal_curvature is not None:
         head["normal_curvature"] = network.pattern.normal_curvature
-    return b"".join(
-        (
-            orjson.dumps(head)[:-1],
-            b',\n"nodes":[\n',
-            _nodes(network),
-            b'\n],\n"lamellas":[\n',
-            b",\n".join(_lamellas(network)),
-            b'\n],\n"faces":[\n',
-            _faces(network),
-            b"\n]}\n",
-        )
-    )
+    yield orjson.dumps(head)[:-1] + b',\n"nodes":[\n'
+    yield _nodes(network)
+    yield b'\n],\n"lamellas":[\n'
+    yield from _lamellas(network)
+    yield b'\n],\n"faces":[\n'
+    yield _faces(network)
+    yield b"\n]}\n"
 
 
 def write_network(path: Path, network: Network, *, name: str, version: str) -> None:
-    """Write `network_bytes`; OSError if it cannot be written whole."""
-    write_whole(path, network_bytes(network, name=name, version=version))
+    """Write `network_parts`; OSError if they cannot be written whole."""
+    write_whole(path, network_parts(network, name=name, version=version))
 
 
 def network_schema() -> dict[str, Any]:
@@ -89,9 +90,8 @@ def _nodes(network: Network) -> bytes:
     return orjson.dumps(nodes)[1:-1].replace(b"},{", b"},\n{")
 
 
-def _lamellas(network: Network) -> list[bytes]:
+def _lamellas(network: Network) -> Iterator[bytes]:
     samples, stops = network.sample_offsets.tolist(), network.stop_offsets.tolist()
-    lines = []
     for k, identity in enumerate(network.ids):
         sample, stop = slice(samples[k], samples[k + 1]), slice(stops[k], stops[k + 1])
         lamella = {
@@ -104,8 +104,7 @@ def _lamellas(network: Network) -> list[bytes]:
             "node_samples": network.stop_samples[stop],
             "node_arclengths": network.stop_arclengths[stop],
         }
-        lines.append(orjson.dumps(lamella, option=orjson.OPT_SERIALIZE_NUMPY))
-    return lines
+        yield (b",\n" if k else b"") + orjson.dumps(lamella, option=orjson.OPT_SERIALIZE_NUMPY)
 
 
 def _faces(network: Network) -> bytes:
