@@ -22,6 +22,8 @@ SCHEMA = "lamella/lamellas/1"
 
 # lengths to a nanometre in a kilometre and better; what is computed from them needs no more than single precision
 GEOMETRY_DIGITS = 13
+# 1/m or m: columns that are nothing but rounding are not written to digits of that
+LEAST = 1e-12
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ class Column:
         require_finite(values)
         if self.digits is None:
             return values.astype(np.float32)
-        largest = float(np.abs(values).max(initial=0.0)) or 1.0
+        largest = max(float(np.abs(values).max(initial=0.0)), LEAST)
         return np.round(values, self.digits - 1 - int(np.floor(np.log10(largest))))
 
 
