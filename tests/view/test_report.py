@@ -278,6 +278,28 @@ def test_big_nets_are_thinned_but_keep_their_nodes(full, monkeypatch):
     assert planarity.min() > 0
 
 
+def test_nodes_of_very_big_nets_are_thinned(full, monkeypatch):
+    """One node in so many of each lamella and its ends; their numbers stay those of network.json, and counts true."""
+    net = full.network
+    monkeypatch.setattr(report, "STOP_LIMIT", len(net.stop_nodes) // 3)
+    monkeypatch.setattr(report, "SAMPLE_LIMIT", len(net.stop_nodes))
+    text = report_html(full)
+    data = {key: decode(value) if isinstance(value, dict) else value for key, value in payload(text)["network"].items()}
+    stops = len(data["stopNodes"])
+    assert len(net.stop_nodes) / 3 <= stops <= len(net.stop_nodes) / 3 + 2 * len(net.ids)
+    assert "one node in 4 among them" in Page(text).text or "one node in 3 among them" in Page(text).text
+    np.testing.assert_array_equal(data["nodeCounts"], np.diff(net.stop_offsets))
+    np.testing.assert_array_equal(data["kindCounts"][:3], np.bincount(net.node_kinds, minlength=3)[:3])
+    samples = np.repeat(data["offsets"][:-1], np.diff(data["stopOffsets"])) + data["stopSamples"]
+    points = data["points"].reshape(-1, 3) + np.array(payload(text)["centre"])
+    np.testing.assert_allclose(points[samples.astype(int)], net.node_points[data["stopNodes"].astype(int)], atol=1e-5)
+    for k, (first, end) in enumerate(zip(data["stopOffsets"][:-1].astype(int), data["stopOffsets"][1:].astype(int), strict=True)):
+        own = net.stop_nodes[net.stop_offsets[k] : net.stop_offsets[k + 1]]
+        assert (data["stopNodes"][first], data["stopNodes"][end - 1]) == (own[0], own[-1])
+    assert np.bincount(data["nodeKinds"].astype(int))[1] == (net.node_kinds == 1).sum()
+    assert len(data["nodePoints"]) == 3 * len(data["nodeKinds"]) < 3 * len(net.node_points)
+
+
 def test_big_surfaces_are_thinned(full, monkeypatch):
     monkeypatch.setattr(report, "VERTEX_LIMIT", 300)
     text = report_html(full)

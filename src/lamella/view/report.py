@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from lamella.base.arrays import Floats, Integers
 from lamella.base.wording import one_line
-from lamella.network.network import Network
+from lamella.network.network import NODE_KINDS, REGULAR, Network
 from lamella.strip.lamellas import Lamellas
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.quantity import Quantity, surface_quantities
@@ -26,6 +26,9 @@ Spec = dict[str, Any]
 
 SAMPLE_LIMIT = 100_000
 """Centre line samples in a report; at 50 bytes each this keeps a large net's file at a few MB."""
+
+STOP_LIMIT = 60_000
+"""Nodes on lamellas, counted on each of them, in a report."""
 
 VERTEX_LIMIT = 30_000
 """Surface vertices in a report."""
@@ -221,13 +224,14 @@ def _payload(data: ReportData) -> tuple[Spec, list[str]]:
         "lamellas": None,
     }
     if data.network is not None:
-        kept = _kept_samples(data.network, SAMPLE_LIMIT)
+        stops = _kept_stops(data.network, STOP_LIMIT)
+        kept = _kept_samples(data.network, stops, SAMPLE_LIMIT)
         total = len(data.network.sample_points)
         if len(kept) < total:
-            notes.append(
-                f"Drawn and plotted with {len(kept):,} of {total:,} centre line samples, every node among them."
-            )
-        payload["network"] = _network_payload(data.network, centre, kept)
+            every = len(stops) == len(data.network.stop_nodes)
+            nodes = "every node" if every else "one node in " + str(_stop_stride(data.network, STOP_LIMIT))
+            notes.append(f"Drawn and plotted with {len(kept):,} of {total:,} centre line samples, {nodes} among them.")
+        payload["network"] = _network_payload(data.network, centre, kept, stops)
         if data.lamellas is not None:
             payload["lamellas"] = _lamellas_payload(data.network, data.lamellas, kept)
     return payload, notes
@@ -312,17 +316,29 @@ def _distinct_triangles(triangles: Integers, count: int) -> Integers:
     return np.asarray(turned[np.sort(first)], dtype=np.int64)
 
 
-def _kept_samples(network: Network, limit: int) -> Integers:
-    """Return indices of all samples, or of every so many in each lamella with all nodes and ends."""
+def _stop_stride(network: Network, limit: int) -> int:
+    return max(-(-len(network.stop_nodes) // limit), 1)
+
+
+def _kept_stops(network: Network, limit: int) -> Integers:
+    """Return indices of all stops, or of every so many in each lamella with its ends."""
+    offsets = network.stop_offsets
+    within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], np.diff(offsets))
+    keep = within % _stop_stride(network, limit) == 0
+    keep[offsets[1:] - 1] = True
+    return np.flatnonzero(keep)
+
+
+def _kept_samples(network: Network, stops: Integers, limit: int) -> Integers:
+    """Return indices of all samples, or of every so many in each lamella with its ends and some stops."""
     offsets = network.sample_offsets
     total = int(offsets[-1])
     if total <= limit:
         return np.arange(total)
-    stops = _stop_indices(network)
     stride = -(-total // max(limit - len(stops), 1))
     within = np.arange(total) - np.repeat(offsets[:-1], np.diff(offsets))
     keep = within % stride == 0
-    keep[stops] = True
+    keep[_stop_indices(network)[stops]] = True
     keep[offsets[1:] - 1] = True
     return np.flatnonzero(keep)
 
@@ -333,9 +349,13 @@ def _stop_indices(network: Network) -> Integers:
     return np.asarray(starts + network.stop_samples, dtype=np.int64)
 
 
-def _network_payload(network: Network, centre: Floats, kept: Integers) -> Spec:
+def _network_payload(network: Network, centre: Floats, kept: Integers, stops: Integers) -> Spec:
     offsets = np.searchsorted(kept, network.sample_offsets)
-    stops = np.searchsorted(kept, _stop_indices(network))
+    samples = np.searchsorted(kept, _stop_indices(network)[stops])
+    stop_offsets = np.searchsorted(stops, network.stop_offsets)
+    # nodes that are drawn: those of kept stops, and the few of other kinds
+    drawn = network.node_kinds != REGULAR
+    drawn[network.stop_nodes[stops]] = True
     return {
         "ids": list(network.ids),
         "families": "".join(network.families.tolist()),
@@ -347,11 +367,13 @@ def _network_payload(network: Network, centre: Floats, kept: Integers) -> Spec:
         "normalCurvature": _quantised(network.sample_darboux.kn[kept]),
         "geodesicCurvature": _quantised(network.sample_darboux.kg[kept]),
         "geodesicTorsion": _quantised(network.sample_darboux.tg[kept]),
-        "stopOffsets": _integers(network.stop_offsets),
-        "stopNodes": _integers(network.stop_nodes),
-        "stopSamples": _integers(stops - np.repeat(offsets[:-1], np.diff(network.stop_offsets))),
-        "nodePoints": _float32(network.node_points - centre),
-        "nodeKinds": _integers(network.node_kinds),
+        "nodeCounts": _integers(np.diff(network.stop_offsets)),
+        "stopOffsets": _integers(stop_offsets),
+        "stopNodes": _integers(network.stop_nodes[stops]),
+        "stopSamples": _integers(samples - np.repeat(offsets[:-1], np.diff(stop_offsets))),
+        "nodePoints": _float32(network.node_points[drawn] - centre),
+        "nodeKinds": _integers(network.node_kinds[drawn]),
+        "kindCounts": _integers(np.bincount(network.node_kinds, minlength=len(NODE_KINDS))),
     }
 
 

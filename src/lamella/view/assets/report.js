@@ -488,7 +488,7 @@
 
   /** Mean distance of neighbouring nodes along the lamellas. */
   function meanCell(network) {
-    const cells = network.stopNodes.length - network.ids.length;
+    const cells = network.nodeCounts.reduce((total, count) => total + count, 0) - network.ids.length;
     return network.lengths.reduce((total, length) => total + length, 0) / (cells || 1);
   }
 
@@ -1069,7 +1069,7 @@
 
   function factsOf(network, strips, lamella) {
     const [first, end] = [network.offsets[lamella], network.offsets[lamella + 1]];
-    const nodes = network.stopOffsets[lamella + 1] - network.stopOffsets[lamella];
+    const nodes = network.nodeCounts[lamella];
     const facts = [
       ["Family", network.families[lamella], ""],
       ["Length", network.lengths[lamella].toFixed(3), "m"],
@@ -1212,7 +1212,7 @@
     function nodeLegend() {
       const kinds = NODE_STYLES.map((style, kind) => ({
         ...style,
-        count: network.nodeKinds.filter((value) => value === kind).length,
+        count: network.kindCounts[kind],
       }));
       const swatches = kinds
         .filter(({ count }) => count)
