@@ -293,7 +293,9 @@ def test_nodes_of_very_big_nets_are_thinned(full, monkeypatch):
     samples = np.repeat(data["offsets"][:-1], np.diff(data["stopOffsets"])) + data["stopSamples"]
     points = data["points"].reshape(-1, 3) + np.array(payload(text)["centre"])
     np.testing.assert_allclose(points[samples.astype(int)], net.node_points[data["stopNodes"].astype(int)], atol=1e-5)
-    for k, (first, end) in enumerate(zip(data["stopOffsets"][:-1].astype(int), data["stopOffsets"][1:].astype(int), strict=True)):
+    for k, (first, end) in enumerate(
+        zip(data["stopOffsets"][:-1].astype(int), data["stopOffsets"][1:].astype(int), strict=True)
+    ):
         own = net.stop_nodes[net.stop_offsets[k] : net.stop_offsets[k + 1]]
         assert (data["stopNodes"][first], data["stopNodes"][end - 1]) == (own[0], own[-1])
     assert np.bincount(data["nodeKinds"].astype(int))[1] == (net.node_kinds == 1).sum()

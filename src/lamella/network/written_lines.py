@@ -115,9 +115,13 @@ def _derivatives(network: Network, values: Floats, steps: Floats) -> tuple[Float
         for block in blocks(len(samples)):
             at = samples[block]
             window, away = _windows(network, at, reach, along)
+            weights = _weights(np.ascontiguousarray(away.T))
             # numbers that differ little are fitted: from the sample itself
-            apart = values[window] - values[at][:, None]
-            first[at], second[at] = _fitted(away, apart)
+            own = values[at]
+            for number, one in enumerate(window.T):
+                apart = values[one] - own
+                first[at] += weights[0, number, :, None] * apart
+                second[at] += weights[1, number, :, None] * apart
     return first, second
 
 
@@ -143,14 +147,34 @@ def _windows(network: Network, samples: Integers, reach: int, along: Floats) -> 
     return window, along[window] - along[samples][:, None] + turn * length[:, None]
 
 
-def _fitted(away: Floats, points: Floats) -> tuple[Floats, Floats]:
-    """First and second derivatives, (s, 3), at 0 of the polynomials that fit points (s, w, 3) at arguments (s, w)."""
-    scale = np.abs(away).max(1)
-    degree = min(STENCIL_DEGREE, away.shape[1] - 1)
-    powers = (away / scale[:, None])[:, :, None] ** np.arange(degree + 1)
-    q, r = np.linalg.qr(powers)
-    # of samples in one place fewer derivatives follow
-    diagonal = np.einsum("sii->si", r)
-    diagonal[np.abs(diagonal) < NOTHING] = 1 / NOTHING
-    coefficients = np.linalg.solve(r, np.matmul(q.transpose(0, 2, 1), points))
-    return coefficients[:, 1] / scale[:, None], 2 * coefficients[:, 2] / scale[:, None] ** 2
+def _weights(away: Floats) -> Floats:
+    """Weights of values at arguments (w, s) in the derivatives at 0 of the polynomial that fits them best, (2, w, s).
+
+    By polynomials that are orthogonal on the arguments, from their three-term recurrence (Forsythe, J. SIAM 5 (1957),
+    74-88, doi:10.1137/0105007): all samples at once, where a factorisation for each takes ten times as long.
+    """
+    scale = np.maximum(np.abs(away).max(0), np.finfo(float).tiny)
+    x = away / scale
+    # the polynomials of this degree and of the one before: at the arguments; value and two derivatives at 0
+    own, before = np.ones_like(x), np.zeros_like(x)
+    at_zero, earlier = np.zeros((2, 3, x.shape[1]))
+    at_zero[0] = 1.0
+    size_before = np.ones(x.shape[1])
+    weights = np.zeros((2, *x.shape))
+    for degree in range(min(STENCIL_DEGREE, len(x) - 1) + 1):
+        square = own * own
+        size = square.sum(0)
+        # of samples in one place fewer derivatives follow
+        tells = size > NOTHING**2
+        size = np.where(tells, size, 1.0)
+        share = np.where(tells, own / size, 0.0)
+        weights[0] += at_zero[1] * share
+        weights[1] += at_zero[2] * share
+        middle = (x * square).sum(0) / size
+        ratio = size / size_before if degree else np.zeros_like(size)
+        after = (x - middle) * own - ratio * before
+        there = -middle * at_zero - ratio * earlier
+        there[1] += at_zero[0]
+        there[2] += 2 * at_zero[1]
+        own, before, at_zero, earlier, size_before = after, own, there, at_zero, size
+    return np.asarray(weights / np.stack((scale, scale**2))[:, None])
