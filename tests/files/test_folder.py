@@ -476,18 +476,16 @@ def test_runs_at_once_leave_one_whole_folder(tmp_path: Path, way: str) -> None:
     assert list(target.parent.iterdir()) == [target]
 
 
-def test_write_whole_replaces_only_when_complete(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_write_whole_replaces_only_when_complete(tmp_path: Path) -> None:
     path = tmp_path / "file"
     write_whole(path, b"one")
     assert path.read_bytes() == b"one"
 
-    def full(self: Path, content: bytes) -> int:
-        with self.open("wb") as stream:
-            stream.write(content[:1])
+    def full() -> Iterator[bytes]:
+        yield b"t"
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(OSError, match="No space left"):
-        write_whole(path, b"two")
+        write_whole(path, full())
     assert path.read_bytes() == b"one"
     assert list(tmp_path.iterdir()) == [path]

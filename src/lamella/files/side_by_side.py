@@ -1,8 +1,8 @@
 """Tasks done on two processor cores: this process begins with the first ones, a copy of it with the last ones.
 
-Writers hold Python's lock while they turn numbers into text, so threads would wait for each other. A copy of the process
-(fork) shares what has been computed until someone changes it: nothing has to be sent. Where processes cannot be copied
-safely (Windows, macOS, programs with threads of their own) tasks are done one after the other.
+Writers hold Python's lock while they turn numbers into text, so threads would wait for each other. A copy of the
+process (fork) shares what has been computed until someone changes it: nothing has to be sent. Where processes cannot be
+copied safely (Windows, macOS, programs with threads of their own) tasks are done one after the other.
 """
 
 from __future__ import annotations
