@@ -12,10 +12,11 @@ ROOMS: dict[str, tuple[float, float, float, float, str]] = {
     "command/": (0, 9.2, 6.2, 0.8, "the command line"),
     "view/": (6.6, 9.2, 5.4, 0.8, "report, pictures, plots"),
     "stages/": (0, 7.2, 12, 1.6, ""),
-    "project/": (0, 5.9, 2.8, 0.9, "tables of the\nproject file"),
-    "files/": (9.2, 5.9, 2.8, 0.9, "formats:\nread, write"),
-    "fabrication/": (6.2, 5.9, 2.7, 0.9, "parts, sheets,\ndrawings"),
-    "strip/": (3.1, 5.9, 2.8, 0.9, "strips, stresses"),
+    "project/": (0, 5.9, 2.3, 0.9, "tables of the\nproject file"),
+    "files/": (10.0, 5.9, 2.0, 0.9, "formats:\nread, write"),
+    "fabrication/": (7.4, 5.9, 2.4, 0.9, "parts, sheets,\ndrawings"),
+    "strip/": (2.5, 5.9, 2.2, 0.9, "strips,\nstresses"),
+    "structure/": (4.9, 5.9, 2.3, 0.9, "beams,\nequilibrium"),
     "network/": (0, 3.5, 8.9, 2.0, ""),
     "projection/": (9.2, 3.5, 2.8, 2.0, "quad meshes\npulled onto\nconstraints"),
     "surface/": (0, 1.1, 12, 2.0, ""),
@@ -41,15 +42,15 @@ INNER: dict[str, tuple[float, float, float, float]] = {
 }
 # of a boundary point, numbered as on the page
 WAY: tuple[tuple[float, float], ...] = (
-    (1.4, 6.05),
+    (1.1, 6.05),
     (1.4, 7.5),
     (1.2, 1.4),
     (5.4, 1.4),
     (3.0, 3.8),
     (5.2, 3.8),
-    (4.5, 6.05),
-    (7.5, 6.05),
-    (10.6, 6.05),
+    (3.6, 6.05),
+    (8.6, 6.05),
+    (11.0, 6.05),
 )
 
 

@@ -39,7 +39,7 @@ def packed(blocks: Floats) -> Floats:
     """Lower triangles of symmetric blocks (e, k, k), row by row, (e, k (k + 1) / 2)."""
     k = blocks.shape[1]
     i, j = np.tril_indices(k)
-    return np.asarray(blocks.reshape(len(blocks), k * k).take(k * i + j, 1))
+    return np.asarray(blocks.reshape(len(blocks), -1).take(k * i + j, 1))
 
 
 def counted(numbers: AnyIntegers, count: int) -> AnyIntegers:

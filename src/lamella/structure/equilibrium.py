@@ -72,9 +72,9 @@ class Equilibrium(Result):
 
     @property
     def resultants(self) -> Floats:
-        """Of each element, constant along it, (m, 7).
+        """Of each element, constant along it, (7, m).
 
         Axial force N (of the mean fibre), shear along u and n, torsion moment without the helix part, bending moments
         about u and about n without that of the plate action, and the stress resultant across.
         """
-        return np.asarray(self.state.stress / self.structure.beams.law.length[:, None])
+        return np.asarray(self.state.stress / self.structure.beams.law.length)

@@ -162,7 +162,7 @@ def released(structure: Structure, loads: Loads) -> Equilibrium:
     """
     law = structure.beams.law
     points, frames = structure.beams.attachment.ends(structure.poses)
-    present = RelativeMotion.between(points, frames).theta / law.length[:, None]
+    present = (RelativeMotion.between(points, frames).local_theta / law.length).T
     held = replace(structure, beams=structure.beams.with_natural(present))
     going = replace(loads, forces=0 * loads.forces, lines=0 * loads.lines, motions=0 * loads.motions)
     going = replace(going, natural=law.natural - present)

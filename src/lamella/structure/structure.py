@@ -11,10 +11,14 @@ import numpy as np
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.result import Lean
-from lamella.base.sparse import SymmetricPattern, packed
+from lamella.base.sparse import SymmetricPattern
 from lamella.base.vectors import diagonal
 from lamella.structure.beam.beams import Beams
+from lamella.structure.beam.columns import product
 from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
+
+# of the entries of a frame's square from the unit matrix; what rounding leaves in files of six digits is less
+NOT_A_ROTATION = 1e-5
 
 
 @dataclass(frozen=True)
@@ -39,6 +43,7 @@ class Structure(Lean):
 
     def __post_init__(self) -> None:
         nodes = len(self.poses.points)
+        self._check_poses()
         if self.held.shape != (nodes, NODE_UNKNOWNS):
             raise InputError(
                 f"held has the shape {self.held.shape}",
@@ -51,6 +56,30 @@ class Structure(Lean):
                 f"it has to be {self.poses.angles.shape}: one a joint",
                 "held_joints",
             )
+
+    def _check_poses(self) -> None:
+        """Refuse poses that are no numbers or no rotations, and beams on what is not there."""
+        points, frames, on = self.poses.points, self.poses.frames, self.beams.attachment
+        bad = np.flatnonzero(~np.isfinite(points).all(1))
+        if len(bad):
+            raise InputError(f"node {bad[0]} is at {points[bad[0]].tolist()}", "coordinates have to be finite", "poses")
+        off = np.abs(np.swapaxes(frames, 1, 2) @ frames - np.eye(3)).max(axis=(1, 2), initial=0.0)
+        wrong = np.flatnonzero(~((off < NOT_A_ROTATION) & (np.linalg.det(frames) > 0)))
+        if len(wrong):
+            raise InputError(
+                f"the frame of node {wrong[0]} is no rotation",
+                "its columns are t, u = n x t and n, of unit length",
+                "poses",
+            )
+        for what, numbers, count in (("node", on.nodes, len(points)), ("joint", on.joints, len(self.poses.angles))):
+            least = 0 if what == "node" else -1
+            missing = np.flatnonzero(((numbers < least) | (numbers >= count)).any(1))
+            if len(missing):
+                raise InputError(
+                    f"element {missing[0]} is on {what} {numbers[missing[0]].tolist()}",
+                    f"there are {count}, the first is 0",
+                    "beams",
+                )
 
     @cached_property
     def size(self) -> float:
@@ -79,15 +108,15 @@ class Structure(Lean):
         number[self.free] = np.arange(len(self.free))
         pairs = []
         for unknowns in self.unknowns:
-            first, second = np.tril_indices(unknowns.shape[1])
+            first, second = np.tril_indices(len(unknowns))
             numbers = number[unknowns]
-            pairs.append((numbers[:, first].ravel(), numbers[:, second].ravel()))
+            pairs.append((numbers[first].ravel(), numbers[second].ravel()))
         one, other = (np.concatenate(side) for side in zip(*pairs, strict=True))
         return SymmetricPattern.from_pairs(one, other, len(self.free))
 
     def entries(self, blocks: list[Floats]) -> Floats:
         """Entries in `pattern` of a matrix of element blocks, in the groups of `Beams.unknowns`."""
-        return self.pattern.assemble(np.concatenate([packed(block).ravel() for block in blocks]))
+        return self.pattern.assemble(np.concatenate([block[np.tril_indices(len(block))].ravel() for block in blocks]))
 
     def vector(self, parts: list[Floats]) -> Floats:
         """Sum of element vectors, in the groups of `Beams.unknowns`, (6 n + k,)."""
@@ -106,7 +135,7 @@ class Structure(Lean):
 
     def multiplied(self, blocks: list[Floats], motion: Floats) -> Floats:
         """Product of a matrix of element blocks with a motion (6 n + k,), (6 n + k,)."""
-        parts = [np.einsum("mij,mj->mi", b, q) for b, q in zip(blocks, self.gathered(motion), strict=True)]
+        parts = [product(b, q) for b, q in zip(blocks, self.gathered(motion), strict=True)]
         return self.vector(parts)
 
 

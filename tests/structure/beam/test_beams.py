@@ -109,15 +109,15 @@ def test_rigid_motions_change_nothing():
     moved = Poses(poses.points @ turn.T + shift, turn @ poses.frames, poses.angles)
     one, other = structure.beams.at(poses), structure.beams.at(moved)
     assert np.allclose(one.strains.values, other.strains.values, rtol=0, atol=1e-13)
-    forces = one.on_ends(one.stress).reshape(-1, 4, 3) @ turn.T
-    assert np.allclose(other.on_ends(other.stress).reshape(-1, 4, 3), forces, rtol=0, atol=1e-9)
+    forces = one.on_ends(one.stress).T.reshape(-1, 4, 3) @ turn.T
+    assert np.allclose(other.on_ends(other.stress).T.reshape(-1, 4, 3), forces, rtol=0, atol=1e-9)
 
 
 def test_forces_on_an_element_balance():
     structure, _ = tangle()
     state = structure.beams.at(structure.poses)
     points, _ = structure.beams.attachment.ends(structure.poses)
-    force_a, moment_a, force_b, moment_b = np.moveaxis(state.on_ends(state.stress).reshape(-1, 4, 3), 1, 0)
+    force_a, moment_a, force_b, moment_b = np.moveaxis(state.on_ends(state.stress).T.reshape(-1, 4, 3), 1, 0)
     moments = moment_a + moment_b + np.cross(points[:, 1] - points[:, 0], force_b)
     assert np.abs(force_a + force_b).max() < 1e-12 * np.abs(force_a).max()
     assert np.abs(moments).max() < 1e-12 * np.abs(moment_a).max()
@@ -129,6 +129,7 @@ def test_forces_on_an_element_balance():
         (lambda: make_beams([[0, 1]], 0.0, STRIP), "lengths"),
         (lambda: make_beams([[0, 1], [1, 2]], [1.0, np.nan], STRIP), "lengths"),
         (lambda: make_beams([[2, 2]], 1.0, STRIP), "nodes"),
+        (lambda: make_beams([[0, 1]], 1.0, [STRIP, STRIP], section=2), "section"),
         (lambda: flat_strip(STEEL, 0.1, 0.1), "thickness"),
         (lambda: flat_strip(STEEL, -0.1, 0.001), "height"),
         (lambda: rod(torsion=0.0), "torsion"),

@@ -8,6 +8,7 @@ from mpmath import cos, cosh, diff, mp, mpf, sin, sinh, sqrt
 from lamella.strip.plate import Plate
 from lamella.structure.beam.plate_action import SERIES_UP_TO, root_share
 from lamella.structure.beam.strains import StrainLaw, Strains
+from strip.plate_strip import plate_strip
 from structure.strips import HEIGHT, STEEL, STRIP, THICKNESS
 
 
@@ -30,6 +31,26 @@ def test_a_strip_that_is_not_bent_has_all_of_its_energy():
     assert root_share(np.zeros(1)).value[0] ** 2 == pytest.approx(4 / 45, rel=1e-15)
 
 
+@pytest.mark.parametrize("bend", [0.1, 0.3, 1.0, 3.0])
+@pytest.mark.parametrize(("reach", "off"), [(3, 1e-3), (7, 1e-3), (15, 8e-3)])
+def test_against_a_strip_with_all_of_its_strain(reach, off, bend):
+    """Edge stress and helix torque of a strip with h^2 tg / t = 3, 7, 15 and kg = bend tg, against von Karman's strip
+    solved anew with the part of the strain that is left out, tg^2 f^2 / 2: within 0.1 % of what they are flat across,
+    0.8 % at 15 (630 MPa)."""
+    tg = reach * THICKNESS / HEIGHT**2
+    kg = bend * tg
+    nu = STRIP.poisson
+    solved = plate_strip(HEIGHT, THICKNESS, kg, tg, held=False, youngs_modulus=STEEL.youngs_modulus, nu=nu)
+    edge = Plate(STEEL, HEIGHT, THICKNESS, kg * np.ones(1), tg * np.ones(1)).across(1.0, False).stress[0]
+    scale = STEEL.youngs_modulus * HEIGHT**2 / 12 * (tg**2 + nu * kg**2)
+    assert abs(edge - solved.stress[-1]) < off * scale
+    torque = 2 * np.trapezoid(solved.stress * tg * (solved.z**2 + solved.deflection**2) * THICKNESS, solved.z)
+    share = root_share(np.array([STRIP.plate_rate * kg**2])).value[0] ** 2
+    element = STRIP.helix * (tg**2 + nu * kg**2) * 2 * tg * share
+    flat = STRIP.helix * 4 / 45 * 2 * tg**3
+    assert abs(element - torque) < off * flat
+
+
 @pytest.mark.parametrize(("kg", "tg"), [(0.3, 0.9), (1.0, 0.5), (4.0, 1.0), (-2.0, 0.4)])
 def test_moments_are_integrals_of_the_strips_stresses(kg, tg):
     """With f the deflection across, sigma = E (tg^2 (z^2 - h^2/12) / 2 - kg f): the helix part of the torsion moment is
@@ -40,13 +61,13 @@ def test_moments_are_integrals_of_the_strips_stresses(kg, tg):
     law = StrainLaw(
         length * one,
         np.zeros((1, 3)),
-        length * np.array([[0, 0, 0, 0, 0, STRIP.bending_n, STRIP.helix]]),
+        length * np.array([[0, 0, 0, 0, 0, STRIP.bending_n, STRIP.helix]]).T,
         STRIP.gyration * one,
         STRIP.poisson * one,
         STRIP.plate_rate * one,
     )
-    strains = Strains.of(law, np.array([[length, 0, 0]]), length * np.array([[tg, 0, kg]]))
-    moments = np.einsum("mi,mij->j", law.stiffness * strains.values, strains.first)[[3, 5]]
+    strains = Strains.of(law, np.array([[length, 0, 0]]).T, length * np.array([[tg, 0, kg]]).T)
+    moments = np.einsum("im,ijm->j", law.stiffness * strains.values, strains.first)[[3, 5]]
     place, weight = np.polynomial.legendre.leggauss(60)
     young, nu = STEEL.youngs_modulus, STRIP.poisson
     plate = young * THICKNESS**3 / (12 * (1 - nu**2))

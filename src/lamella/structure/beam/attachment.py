@@ -19,9 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
-from lamella.base.vectors import crosses, dots
+from lamella.structure.beam.columns import add_unit, cross, crossing, dot, element_last, outer, symmetric
 from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
-from lamella.structure.beam.rotations import crossing, exponential
+from lamella.structure.beam.rotations import exponential
 
 END_UNKNOWNS = 2 * NODE_UNKNOWNS
 """Of the two ends of an element; with the angles of their joints two more."""
@@ -52,12 +52,11 @@ class Attachment:
         return np.flatnonzero((self.joints >= 0).any(1) | (self.offsets != 0).any((1, 2)))
 
     def unknowns(self, elements: Integers, nodes: int) -> Integers:
-        """Unknowns of elements (e,) of a structure of so many nodes, (e, 14); -1: the end has no joint."""
+        """Unknowns of elements (e,) of a structure of so many nodes, (14, e); -1: the end has no joint."""
         ends = NODE_UNKNOWNS * self.nodes[elements][:, :, None] + np.arange(NODE_UNKNOWNS)
         joints = self.joints[elements]
-        return np.concatenate(
-            (ends.reshape(-1, END_UNKNOWNS), np.where(joints >= 0, NODE_UNKNOWNS * nodes + joints, -1)), 1
-        )
+        turning = np.where(joints >= 0, NODE_UNKNOWNS * nodes + joints, -1)
+        return np.ascontiguousarray(np.concatenate((ends.reshape(-1, END_UNKNOWNS), turning), 1).T)
 
     def turned(self, poses: Poses) -> Floats:
         """R Z, the nodes' frames turned by the joints, (m, 2, 3, 3)."""
@@ -79,39 +78,38 @@ class Attachment:
         turned = self.turned(poses)[elements]
         lever = np.einsum("mkij,mkj->mki", turned, self.offsets[elements])
         axis = np.where(self.joints[elements][..., None] >= 0, turned[..., 2], 0.0)
-        return Levers(lever, axis)
+        return Levers(element_last(lever), element_last(axis))
 
 
 @dataclass(frozen=True)
 class Levers:
-    """r and a of the module, both (e, 2, 3); a is 0 where an end has no joint."""
+    """r and a of the module, both (2, 3, e); a is 0 where an end has no joint."""
 
     lever: Floats
     axis: Floats
 
     def first(self) -> Floats:
-        """Motion of the ends by that of nodes and joints, (e, 12, 14)."""
-        result = np.zeros((len(self.lever), END_UNKNOWNS, END_UNKNOWNS + 2))
-        result[:, np.arange(END_UNKNOWNS), np.arange(END_UNKNOWNS)] = 1
+        """Motion of the ends by that of nodes and joints, (12, 14, e)."""
+        result = np.zeros((END_UNKNOWNS, END_UNKNOWNS + 2, self.lever.shape[-1]))
+        result[np.arange(END_UNKNOWNS), np.arange(END_UNKNOWNS)] = 1
         for end in (0, 1):
             shift, turn = slice(6 * end, 6 * end + 3), slice(6 * end + 3, 6 * end + 6)
-            result[:, shift, turn] = -crossing(self.lever[:, end])
-            result[:, shift, END_UNKNOWNS + end] = crosses(self.axis[:, end], self.lever[:, end])
-            result[:, turn, END_UNKNOWNS + end] = self.axis[:, end]
+            result[shift, turn] = -crossing(self.lever[end])
+            result[shift, END_UNKNOWNS + end] = cross(self.axis[end], self.lever[end])
+            result[turn, END_UNKNOWNS + end] = self.axis[end]
         return result
 
     def second(self, on_ends: Floats) -> Floats:
-        """Second derivatives by which forces and moments (e, 12) on the ends add to the stiffness, (e, 14, 14)."""
-        result = np.zeros((len(self.lever), END_UNKNOWNS + 2, END_UNKNOWNS + 2))
+        """Second derivatives by which forces and moments (12, e) on the ends add to the stiffness, (14, 14, e)."""
+        result = np.zeros((END_UNKNOWNS + 2, END_UNKNOWNS + 2, self.lever.shape[-1]))
         for end in (0, 1):
-            force, moment = on_ends[:, 6 * end : 6 * end + 3], on_ends[:, 6 * end + 3 : 6 * end + 6]
-            lever, axis = self.lever[:, end], self.axis[:, end]
+            force, moment = on_ends[6 * end : 6 * end + 3], on_ends[6 * end + 3 : 6 * end + 6]
+            lever, axis = self.lever[end], self.axis[end]
             turn, joint = slice(6 * end + 3, 6 * end + 6), END_UNKNOWNS + end
-            outer = force[:, :, None] * lever[:, None, :]
-            result[:, turn, turn] = 0.5 * (outer + np.swapaxes(outer, 1, 2))
-            result[:, turn, turn] -= dots(force, lever)[:, None, None] * np.eye(3)
-            round_axis = crosses(axis, lever)
-            mixed = crosses(round_axis, force) + 0.5 * crosses(axis, moment)
-            result[:, turn, joint] = result[:, joint, turn] = mixed
-            result[:, joint, joint] = dots(force, crosses(axis, round_axis))
+            result[turn, turn] = symmetric(outer(force, lever))
+            add_unit(result[turn, turn], -dot(force, lever))
+            round_axis = cross(axis, lever)
+            mixed = cross(round_axis, force) + 0.5 * cross(axis, moment)
+            result[turn, joint] = result[joint, turn] = mixed
+            result[joint, joint] = dot(force, cross(axis, round_axis))
         return result

@@ -18,6 +18,7 @@ from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.result import Lean
 from lamella.structure.beam.attachment import END_UNKNOWNS, Attachment, Levers
+from lamella.structure.beam.columns import element_last, product, turned_product
 from lamella.structure.beam.cross_section import CrossSection
 from lamella.structure.beam.line_loads import LineLoads
 from lamella.structure.beam.poses import Poses
@@ -57,9 +58,12 @@ class Beams(Lean):
         return np.setdiff1d(np.arange(len(self)), self.indirect)
 
     def unknowns(self, nodes: int) -> list[Integers]:
-        """Unknowns of a structure of so many nodes that each element has, of `direct` (12) and of `indirect` (14)."""
+        """Unknowns of a structure of so many nodes, of elements `direct` (12, d) and of `indirect` (14, i).
+
+        Vectors and matrices of elements come in the same two groups, the element last: (12, d), (12, 12, d) and so on.
+        """
         return [
-            self.attachment.unknowns(self.direct, nodes)[:, :END_UNKNOWNS],
+            self.attachment.unknowns(self.direct, nodes)[:END_UNKNOWNS],
             self.attachment.unknowns(self.indirect, nodes),
         ]
 
@@ -79,9 +83,8 @@ class Beams(Lean):
         points, frames = self.attachment.ends(poses)
         motion = RelativeMotion.between(points, frames)
         levers = self.attachment.levers(poses, self.indirect) if len(self.indirect) else None
-        strains = Strains.of(self.law, motion.rho, motion.theta)
-        tangents = np.ascontiguousarray(frames[..., 0])
-        return BeamState(self, motion, strains, levers, LineLoads(self.law.length, tangents, lines))
+        strains = Strains.of(self.law, motion.local_rho, motion.local_theta)
+        return BeamState(self, motion, strains, levers, LineLoads(self.law.length, element_last(frames[..., 0]), lines))
 
 
 @dataclass(frozen=True)
@@ -96,74 +99,78 @@ class BeamState(Lean):
 
     @cached_property
     def stress(self) -> Floats:
-        """Stiffness times strain, times length, (m, 7): what is conjugate to `Strains.values`."""
+        """Stiffness times strain, times length, (7, m): what is conjugate to `Strains.values`."""
         return np.asarray(self.beams.law.stiffness * self.strains.values)
 
     @property
     def energy(self) -> Floats:
         """Elastic energy of each element, J, (m,)."""
-        return np.asarray(0.5 * np.einsum("mi,mi->m", self.stress, self.strains.values))
+        return np.asarray(0.5 * (self.stress * self.strains.values).sum(0))
 
     @cached_property
-    def _relative_first(self) -> Floats:
-        return self.motion.first()
+    def _first(self) -> Floats:
+        """Derivative of the strains with respect to rho and theta in global axes, (7, 6, m)."""
+        local = self.strains.first.reshape(2 * len(self.strains.first), 3, -1)
+        turned = np.einsum("ajm,ijm->aim", local, self.motion.frame)
+        return np.asarray(turned.reshape(self.strains.first.shape))
 
     def on_ends(self, stress: Floats) -> Floats:
-        """Forces (N) and moments (N m) that hold the ends under a stress (m, 7) and the line loads, global, (m, 12)."""
-        on_motion = np.einsum("mij,mi->mj", self.strains.first, stress)
-        elastic = self.motion.on_ends(np.einsum("mij,mi->mj", self._relative_first, on_motion))
-        return elastic - self.lines.on_ends()
+        """Forces (N) and moments (N m) that hold the ends under a stress (7, m) and the line loads, global, (12, m)."""
+        by_motion = turned_product(self._first, stress)
+        return self.motion.on_ends(by_motion[:3], by_motion[3:]) - self.lines.on_ends()
 
     def forces(self) -> list[Floats]:
         """Derivative of elastic energy and line loads' potential with respect to the unknowns, by `Beams.unknowns`."""
         return self.on_nodes(self.on_ends(self.stress))
 
     def on_nodes(self, on_ends: Floats) -> list[Floats]:
-        """Forces and moments on the ends (m, 12) as the unknowns have them, in the groups of `Beams.unknowns`."""
+        """Forces and moments on the ends (12, m) as the unknowns have them, in the groups of `Beams.unknowns`."""
         if self.levers is None:
-            return [on_ends, np.zeros((0, END_UNKNOWNS + 2))]
-        indirect = np.einsum("mij,mi->mj", self.levers.first(), on_ends[self.beams.indirect])
-        return [on_ends[self.beams.direct], indirect]
+            return [on_ends, np.zeros((END_UNKNOWNS + 2, 0))]
+        indirect = turned_product(self.levers.first(), on_ends[:, self.beams.indirect])
+        return [on_ends[:, self.beams.direct], indirect]
 
     def stiffness(self, stress: Floats) -> list[Floats]:
-        """Tangent stiffness with a stress (m, 7), symmetric, in the groups of `Beams.unknowns`.
+        """Tangent stiffness with a stress (7, m), symmetric, in the groups of `Beams.unknowns`.
 
         With `stress` of this state it is the second derivative of the energy along exp(w) R; another stress near it is
         what Newton's method takes, see `lamella.structure.newton`.
         """
-        first = self.strains.first
-        elastic = np.swapaxes(first, 1, 2) @ (self.beams.law.stiffness[:, :, None] * first)
+        first = self._first
+        elastic = turned_product(first, self.beams.law.stiffness[:, None] * first)
         return self._stiffness(elastic, stress)
 
     def geometric_stiffness(self, stress: Floats) -> list[Floats]:
-        """The part of `stiffness` that a stress (m, 7) and the line loads make, linear in them."""
-        return self._stiffness(np.zeros((len(stress), 6, 6)), stress)
+        """The part of `stiffness` that a stress (7, m) and the line loads make, linear in them."""
+        return self._stiffness(np.zeros((6, 6, len(self.beams))), stress)
 
     def _stiffness(self, elastic: Floats, stress: Floats) -> list[Floats]:
-        by_motion = np.einsum("mij,mi->mj", self.strains.first, stress)
-        inner = elastic + self.strains.second(stress)
-        first = self._relative_first
-        relative = np.swapaxes(first, 1, 2) @ inner @ first
-        relative += self.motion.second(by_motion[:, :3], by_motion[:, 3:])
-        ends = self.motion.stiffness_on_ends(relative)
+        by_motion = turned_product(self._first, stress)
+        ends = self.motion.stiffness(elastic + self._turned(stress), by_motion[:3], by_motion[3:])
         self.lines.add_stiffness(ends)
         direct, indirect = self.beams.direct, self.beams.indirect
         if self.levers is None:
-            return [ends, np.zeros((0, END_UNKNOWNS + 2, END_UNKNOWNS + 2))]
+            return [ends, np.zeros((END_UNKNOWNS + 2, END_UNKNOWNS + 2, 0))]
         lever = self.levers.first()
-        nodes = np.swapaxes(lever, 1, 2) @ ends[indirect] @ lever
-        nodes += self.levers.second(self.on_ends(stress)[indirect])
-        return [ends[direct], nodes]
+        nodes = turned_product(lever, product(ends[..., indirect], lever))
+        nodes += self.levers.second(self.on_ends(stress)[:, indirect])
+        return [ends[..., direct], nodes]
+
+    def _turned(self, stress: Floats) -> Floats:
+        """Second derivative of the strains under a stress, with respect to rho and theta in global axes, (6, 6, m)."""
+        local, frame = self.strains.second(stress), self.motion.frame
+        for part in (slice(0, 3), slice(3, 6)):
+            local[part, part] = np.einsum("iam,jam->ijm", product(frame, local[part, part]), frame)
+        return local
 
     def strain_rate(self, motions: list[Floats]) -> Floats:
-        """First derivative of the strains along a motion given in the groups of `Beams.unknowns`, (m, 7)."""
+        """First derivative of the strains along a motion given in the groups of `Beams.unknowns`, (7, m)."""
         ends = motions[0]
         if self.levers is not None:
-            ends = np.empty((len(self.beams), END_UNKNOWNS))
-            ends[self.beams.direct] = motions[0]
-            ends[self.beams.indirect] = np.einsum("mij,mj->mi", self.levers.first(), motions[1])
-        relative = np.einsum("mij,mj->mi", self._relative_first, self.motion.relative(ends))
-        return np.asarray(np.einsum("mij,mj->mi", self.strains.first, relative))
+            ends = np.empty((END_UNKNOWNS, len(self.beams)))
+            ends[:, self.beams.direct] = motions[0]
+            ends[:, self.beams.indirect] = product(self.levers.first(), motions[1])
+        return product(self._first, np.concatenate(self.motion.strain_motion(ends)))
 
 
 def make_beams(
@@ -201,7 +208,7 @@ def make_beams(
     Raises
     ------
     InputError
-        A length that is not above 0; an element from a node to itself.
+        A length that is not above 0; an element from a node to itself; a section that is not there.
     """
     pairs = np.array(nodes, np.int64).reshape(-1, 2)
     m = len(pairs)
@@ -222,6 +229,8 @@ def make_beams(
         np.broadcast_to(np.asarray(offsets, float), (m, 2, 3)).copy(),
         np.broadcast_to(np.asarray(joints, np.int64), (m, 2)).copy(),
     )
+    if m and not 0 <= which.min() <= which.max() < len(kinds):
+        raise InputError(f"section goes from {which.min()} to {which.max()}", f"there are {len(kinds)}", "section")
     curvature = np.broadcast_to(np.asarray(natural, float), (m, 3)).copy()
     return Beams(attachment, _law(kinds, which, length, curvature), kinds, which)
 
@@ -235,5 +244,5 @@ def _law(kinds: tuple[CrossSection, ...], which: Integers, length: Floats, natur
     shear_u = 1 / (1 / of("shear_u") + bend / of("bending_n"))
     shear_n = 1 / (1 / of("shear_n") + bend / of("bending_u"))
     columns = (of("axial"), shear_u, shear_n, of("torsion"), of("bending_u"), of("bending_n"), of("helix"))
-    stiffness = np.stack(columns, 1) * length[:, None]
+    stiffness = np.stack(columns) * length
     return StrainLaw(length, natural, stiffness, of("gyration"), of("poisson"), of("plate_rate"))

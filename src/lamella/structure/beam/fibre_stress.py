@@ -22,12 +22,12 @@ def curvatures_at_ends(state: BeamState) -> Floats:
     :math:`M_n' = -Q_u`, :math:`M_u' = Q_n`.
     """
     law = state.beams.law
-    mean = state.motion.theta / law.length[:, None]
+    mean = state.motion.local_theta / law.length
     # Q L / 2 over E I; stress and stiffness both hold the length
     half = law.length / 2
-    about_u, about_n = (half * state.stress[:, i] / law.stiffness[:, j] for i, j in ((2, 4), (1, 5)))
-    change = np.stack((np.zeros_like(half), about_u, -about_n), 1)
-    return np.stack((mean - change, mean + change), 1)
+    about_u, about_n = (half * state.stress[i] / law.stiffness[j] for i, j in ((2, 4), (1, 5)))
+    change = np.stack((np.zeros_like(half), about_u, -about_n))
+    return np.stack(((mean - change).T, (mean + change).T), 1)
 
 
 def strip_stresses(state: BeamState, material: Material, height: float, thickness: float) -> Stresses:
@@ -49,7 +49,7 @@ def strip_stresses(state: BeamState, material: Material, height: float, thicknes
     law = state.beams.law
     at_ends = curvatures_at_ends(state)
     tg, kn, kg = at_ends.reshape(-1, 3).T
-    axial = state.stress[:, 0] / law.length / (height * thickness)
+    axial = state.stress[0] / law.length / (height * thickness)
     return stresses(
         material,
         height,

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Floats
-from lamella.base.vectors import crosses, dots
+from lamella.structure.beam.columns import add_unit, cross, dot, outer, symmetric
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class LineLoads:
     ----------
     length : (m,)
         m.
-    tangents : (m, 2, 3)
+    tangents : (2, 3, m)
         Of the ends.
     loads : (m, 3) or None
         N/m, global; None: no loads.
@@ -37,22 +37,21 @@ class LineLoads:
     loads: Floats | None
 
     def on_ends(self) -> Floats:
-        """Forces (N) and moments (N m) on the ends, (m, 12)."""
-        result = np.zeros((len(self.length), 12))
+        """Forces (N) and moments (N m) on the ends, (12, m)."""
+        result = np.zeros((12, len(self.length)))
         if self.loads is not None:
-            half = self.loads * (self.length / 2)[:, None]
-            result[:, :3] = result[:, 6:9] = half
+            half = self.loads.T * (self.length / 2)
+            result[:3] = result[6:9] = half
             for end, sign in ((0, 1.0), (1, -1.0)):
-                arm = self.tangents[:, end] * (sign * self.length / 6)[:, None]
-                result[:, 6 * end + 3 : 6 * end + 6] = crosses(arm, half)
+                result[6 * end + 3 : 6 * end + 6] = cross(self.tangents[end] * (sign * self.length / 6), half)
         return result
 
     def add_stiffness(self, blocks: Floats) -> None:
-        """Add their part of the tangent stiffness to matrices (m, 12, 12) of the ends."""
+        """Add their part of the tangent stiffness to matrices (12, 12, m) of the ends."""
         if self.loads is None or not self.loads.any():
             return
         for end, sign in ((0, -1.0), (1, 1.0)):
-            tangent, turn = self.tangents[:, end], slice(6 * end + 3, 6 * end + 6)
-            outer = self.loads[:, :, None] * tangent[:, None, :]
-            lean = 0.5 * (outer + np.swapaxes(outer, 1, 2)) - dots(self.loads, tangent)[:, None, None] * np.eye(3)
-            blocks[:, turn, turn] += (sign * self.length**2 / 12)[:, None, None] * lean
+            tangent, turn = self.tangents[end], slice(6 * end + 3, 6 * end + 6)
+            load = self.loads.T * (sign * self.length**2 / 12)
+            blocks[turn, turn] += symmetric(outer(load, tangent))
+            add_unit(blocks[turn, turn], -dot(load, tangent))

@@ -32,7 +32,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Floats
-from lamella.base.vectors import lengths
+from lamella.structure.beam.columns import add_unit, dot, outer, symmetric
 from lamella.structure.beam.plate_action import Share, root_share
 
 COUNT = 7
@@ -41,7 +41,7 @@ COUNT = 7
 
 @dataclass(frozen=True)
 class StrainLaw:
-    """What the strains of m elements depend on beside their motion, each (m,) or (m, 3) or (m, 7).
+    """What the strains of m elements depend on beside their motion.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class StrainLaw:
         L0, m.
     natural : (m, 3)
         tg0, -kn0, kg0, 1/m.
-    stiffness : (m, 7)
+    stiffness : (7, m)
         Times length, N m.
     gyration, poisson, plate_rate : (m,)
         See `CrossSection`.
@@ -65,86 +65,68 @@ class StrainLaw:
 
 @dataclass(frozen=True)
 class Strains:
-    """Strains and their derivatives with respect to (rho, theta).
+    """Strains and their derivatives with respect to rho and theta in the frame at a; the element is the last axis.
 
     Attributes
     ----------
-    values : (m, 7)
+    values : (7, m)
         Without dimension, 1/m, and 1/m^2 of the last.
-    first : (m, 7, 6)
+    first : (7, 6, m)
     """
 
     law: StrainLaw
     values: Floats
     first: Floats
-    _direction: Floats  # (m, 3) rho over its length
+    _direction: Floats  # (3, m) rho over its length
     _size: Floats  # (m,)
     _share: Share
-    _curvature: Floats  # (m, 3)
+    _curvature: Floats  # (3, m)
+    _across: Floats  # (m,) the last strain over the share's root
 
     @classmethod
     def of(cls, law: StrainLaw, rho: Floats, theta: Floats) -> Strains:
-        """Of relative motions (m, 3), (m, 3)."""
+        """Of relative motions (3, m), (3, m)."""
         length, (tg0, kn0, kg0) = law.length, law.natural.T
-        size = lengths(rho)
-        direction = rho / size[:, None]
-        curvature = theta / length[:, None]
-        tg, kn, kg = curvature.T
+        size = np.sqrt(dot(rho, rho))
+        direction, curvature = rho / size, theta / length
+        tg, kn, kg = curvature
         share = root_share(law.plate_rate * kg**2)
         twisted = tg**2 - tg0**2
         across = twisted + law.poisson * kg * (kg - kg0)
-        values = np.stack(
-            (
-                size / length - 1 + law.gyration * twisted / 2,
-                direction[:, 1],
-                direction[:, 2],
-                tg - tg0,
-                kn - kn0,
-                kg - kg0,
-                across * share.value,
-            ),
-            1,
-        )
-        first = np.zeros((len(size), COUNT, 6))
-        first[:, 0, :3] = direction / length[:, None]
-        first[:, 0, 3] = law.gyration * tg / length
+        values = np.empty((COUNT, len(length)))
+        values[0] = size / length - 1 + law.gyration * twisted / 2
+        values[1:3] = direction[1:]
+        values[3], values[4], values[5], values[6] = tg - tg0, kn - kn0, kg - kg0, across * share.value
+        first = np.zeros((COUNT, 6, len(length)))
+        first[0, :3] = direction / length
+        first[0, 3] = law.gyration * tg / length
         for i in (1, 2):
-            first[:, i, :3] = -direction * direction[:, i, None] / size[:, None]
-            first[:, i, i] += 1 / size
+            first[i, :3] = -direction * (direction[i] / size)
+            first[i, i] += 1 / size
         for i in (3, 4, 5):
-            first[:, i, i] = 1 / length
-        first[:, 6, 3] = 2 * tg * share.value / length
-        first[:, 6, 5] = (
-            law.poisson * (2 * kg - kg0) * share.value + across * share.first * 2 * law.plate_rate * kg
-        ) / length
-        return cls(law, values, first, direction, size, share, curvature)
+            first[i, i] = 1 / length
+        first[6, 3] = 2 * tg * share.value / length
+        slope = law.poisson * (2 * kg - kg0) * share.value + across * share.first * 2 * law.plate_rate * kg
+        first[6, 5] = slope / length
+        return cls(law, values, first, direction, size, share, curvature, across)
 
     def second(self, stress: Floats) -> Floats:
-        """Second derivative of the sum of stress (m, 7) times strain with respect to (rho, theta), (m, 6, 6)."""
-        law, d, size = self.law, self._direction, self._size
-        result = np.zeros((len(size), 6, 6))
-        eye, square = np.eye(3), d[:, :, None] * d[:, None, :]
-        pull = stress[:, 0] / (law.length * size)
+        """Second derivative of the sum of stress (7, m) times strain with respect to rho and theta, (6, 6, m)."""
+        law, d, size, share = self.law, self._direction, self._size, self._share
+        result = np.zeros((6, 6, len(size)))
+        pull = stress[0] / (law.length * size)
         side = np.zeros_like(d)
-        side[:, 1:] = stress[:, 1:3] / (size**2)[:, None]
-        lean = np.einsum("mi,mi->m", side, d)[:, None, None]
-        skew = side[:, :, None] * d[:, None, :]
-        result[:, :3, :3] = pull[:, None, None] * (eye - square) - skew - np.swapaxes(skew, 1, 2)
-        result[:, :3, :3] -= lean * (eye - 3 * square)
-        (tg, _, kg), (tg0, _, kg0), nu, rate = self._curvature.T, law.natural.T, law.poisson, law.plate_rate
-        share, across = self._share, tg**2 - tg0**2 + law.poisson * kg * (kg - kg0)
-        slope = nu * (2 * kg - kg0)
-        turn = 2 * rate * kg * share.first
+        side[1:] = stress[1:3] / size**2
+        lean = dot(side, d)
+        # the unit matrix, the square of the direction, and what leans to the side
+        result[:3, :3] = outer((3 * lean - pull) * d, d) - 2 * symmetric(outer(side, d))
+        add_unit(result[:3, :3], pull - lean)
+        (tg, _, kg), (_, _, kg0), nu, rate = self._curvature, law.natural.T, law.poisson, law.plate_rate
+        turn, slope = 2 * rate * kg * share.first, nu * (2 * kg - kg0)
+        bent = 2 * nu * share.value + 2 * slope * turn
+        bent += self._across * (2 * rate * share.first + 4 * (rate * kg) ** 2 * share.second)
         by_square = 1 / law.length**2
-        result[:, 3, 3] = (stress[:, 0] * law.gyration + stress[:, 6] * 2 * share.value) * by_square
-        result[:, 3, 5] = result[:, 5, 3] = stress[:, 6] * 2 * tg * turn * by_square
-        result[:, 5, 5] = (
-            stress[:, 6]
-            * by_square
-            * (
-                2 * nu * share.value
-                + 2 * slope * turn
-                + across * (2 * rate * share.first + 4 * (rate * kg) ** 2 * share.second)
-            )
-        )
+        result[3, 3] = (stress[0] * law.gyration + stress[6] * 2 * share.value) * by_square
+        result[3, 5] = result[5, 3] = stress[6] * 2 * tg * turn * by_square
+        result[5, 5] = stress[6] * bent * by_square
         return result
