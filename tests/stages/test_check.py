@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lamella import compute, parse_project
+from lamella import Memory, compute, parse_project
 from lamella.stages.check import COARSE, MOST_TRACED, check_project
 from network.adjust.test_adjust import sketch
 from network.streamlines.test_kept_lines import hypar, write_grid
@@ -16,11 +16,16 @@ from refusals import check_stated, keys, refused
 
 TURNS = 2 * np.pi * np.arange(12) / 12
 SADDLE = np.stack([5 * np.cos(TURNS), 4 * np.sin(TURNS), 0.8 * np.cos(2 * TURNS)], 1).tolist()
+# of runs: a quarter of that of checks
+TOLERANCE = 5e-3
+MEMORY = Memory()
+"""Of surfaces that several cases have: found once."""
 
 
 def film(tables: dict[str, Any] | None = None, **surface: Any) -> dict[str, Any]:
     return {
-        "surface": {"kind": "form-found", "boundary": [{"name": "rim", "points": SADDLE}], **surface},
+        "surface": {"kind": "form-found", "tolerance": TOLERANCE, "boundary": [{"name": "rim", "points": SADDLE}]}
+        | surface,
         **(tables or {}),
     }
 
@@ -31,7 +36,7 @@ SMALL = {"lamella": {"height": 1e-3, "thickness": 1e-4}, "fabrication": {"end_di
 
 def annulus(**network: Any) -> dict[str, Any]:
     tables = sketch(3)
-    return {"surface": tables["surface"] | {"tolerance": 5e-3}, "network": network} | SMALL
+    return {"surface": tables["surface"] | {"tolerance": TOLERANCE}, "network": network} | SMALL
 
 
 @pytest.mark.parametrize(
@@ -48,14 +53,13 @@ def annulus(**network: Any) -> dict[str, Any]:
 )
 def test_cells_and_nodes_are_those_of_the_run(tables: dict[str, Any]) -> None:
     project, steps = parse_project(tables), []
-    checked = check_project(project, progress=lambda report: steps.append(str(report)))
-    network = compute(project, until="network").network
+    checked = check_project(project, progress=lambda report: steps.append(str(report)), memory=MEMORY)
+    network = compute(project, until="network", memory=MEMORY).network
     assert network is not None
     assert checked.cells == network.cells
     assert checked.nodes == pytest.approx(len(network.node_points), rel=0.15)
     assert f"{checked.cells} cells, about {checked.nodes:,} nodes" in str(checked)
-    tolerance = tables["surface"].get("tolerance", 2e-3)
-    assert checked.left == (f"whether 100,000 nodes keep tolerance = {tolerance:g} (checked: 0.02)",)
+    assert checked.left == (f"whether 100,000 nodes keep tolerance = {TOLERANCE:g} (checked: 0.02)",)
 
 
 FOLD = 1.3254868387  # DESIGN section 9: coaxial rings need a distance of at most so many radii
@@ -75,7 +79,7 @@ def rings(distance: float) -> list[dict[str, Any]]:
         (film({"network": {"normal_curvature": 9.0}}), "network.normal_curvature", [9]),
         (annulus(cells=25, every=2), "network.cells", [25, 2]),
         (film(boundary=rings(1.001 * FOLD * 3.0)), "surface.boundary", [1.001 * FOLD * 3.0]),
-        (film(boundary=rings(3.9), most_nodes=500), "surface.tolerance", [0.002, 500]),
+        (film(boundary=rings(3.9), most_nodes=500, tolerance=2e-3), "surface.tolerance", [0.002, 500]),
         (film(mean_curvature=2.0), "surface.mean_curvature", [2]),
     ],
 )
@@ -83,12 +87,12 @@ def test_what_a_run_refuses(tables: dict[str, Any], key: str, numbers: list[floa
     project = parse_project(tables)
     for compute_or_check in (check_project, compute):
         with refused(key, numbers):
-            compute_or_check(project)
+            compute_or_check(project, memory=MEMORY)
 
 
 def test_what_is_left_to_the_run() -> None:
     project = parse_project(film({"network": {"cells": 90}}, tolerance=COARSE))
-    checked = check_project(project)
+    checked = check_project(project, memory=MEMORY)
     assert checked.nodes is not None
     assert checked.nodes > MOST_TRACED
     (left,) = checked.left
@@ -96,11 +100,11 @@ def test_what_is_left_to_the_run() -> None:
     assert str(checked).endswith(left)
     # of a net that is adjusted it is one thing more
     rim = {"name": "rim", "points": SADDLE, "adjust": {"points": 0.1}}
-    adjusted = film({"network": {"cells": 10, "closing": "adjust"}}, boundary=[rim], tolerance=5e-3)
-    assert len(check_project(parse_project(adjusted)).left) == 2
-    low = check_project(parse_project(film(SMALL, order=2)))
+    adjusted = film({"network": {"cells": 10, "closing": "adjust"}}, boundary=[rim])
+    assert len(check_project(parse_project(adjusted), memory=MEMORY).left) == 2
+    low = check_project(parse_project(film(SMALL, boundary=rings(1.0), order=2, tolerance=2e-3)), memory=MEMORY)
     check_stated(low.left[0], [2, 500_000], ["order"])
-    assert check_project(parse_project(film(SMALL, tolerance=COARSE))).left == ()
+    assert check_project(parse_project(film(SMALL, tolerance=COARSE)), memory=MEMORY).left == ()
 
 
 @pytest.mark.parametrize("height", [0.0, 1.0, 3.0])
@@ -136,7 +140,8 @@ UNDULOID = {"kind": "unduloid", "neck_radius": 1.6, "bulge_radius": 2.8, "height
 def test_what_a_run_warns_of(tables: dict[str, Any], of: list[str]) -> None:
     """All of it: from closed forms to the letter, from coarse elements the same but for the figures."""
     project = parse_project(tables)
-    checked, run = check_project(project), compute(project).summary["warnings"]
+    checked = check_project(project, memory=MEMORY)
+    run = compute(project, memory=MEMORY).summary["warnings"]
     assert set(of) <= set(keys(checked.warnings))
     assert keys(checked.warnings) == keys(run)
     if not checked.coarse:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lamella import compute, parse_project
+from lamella import Memory, compute, parse_project
 from lamella.base.material import MATERIALS
 from lamella.stages.check import check_project
 from refusals import check_stated, keys, refused
@@ -23,6 +23,8 @@ NODOID = {"kind": "nodoid", "neck_radius": 3.0, "bulge_radius": 9.0}
 RIM = [[0, 0, 0], [2, 0, 0.35], [4, 0, 1.2], [4, 2, 0.35], [4, 4, 0], [2, 4, 0.35], [0, 4, 1.2], [0, 2, 0.35]]
 SADDLE = {"kind": "form-found", "tolerance": 2e-2, "boundary": [{"points": RIM}]}
 ONE = {"layers": 1}
+MEMORY = Memory()
+"""Of surfaces that several cases have: found once."""
 
 
 def numbers(text: str) -> list[float]:
@@ -60,7 +62,7 @@ def without(key: str) -> Callable[[Tables, str], Tables]:
 
 
 def accepted(tables: Tables) -> None:
-    check_project(parse_project(tables))
+    check_project(parse_project(tables), memory=MEMORY)
 
 
 REFUSED: list[tuple[str, Tables, str, list[Callable[[Tables, str], Tables]]]] = [
@@ -187,14 +189,14 @@ SLOW = ("curvature of lines from seeds", "all too short from seeds")
 )
 def test_what_is_refused(tables: Tables, key: str, ways: list[Callable[[Tables, str], Tables]]) -> None:
     with refused(key) as error:
-        check_project(parse_project(tables))
+        check_project(parse_project(tables), memory=MEMORY)
     for way in ways:
         accepted(way(tables, error.value.remedy))
 
 
 def warning(tables: Tables, *keys: str) -> str:
     """The first warning of some keys; "" where there is none."""
-    messages = compute(parse_project(tables)).summary["warnings"]
+    messages = compute(parse_project(tables), memory=MEMORY).summary["warnings"]
     return next((message for message in messages if message.key in keys), "")
 
 

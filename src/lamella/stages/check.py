@@ -70,7 +70,9 @@ class Checked:
         return reported
 
 
-def check_project(project: Project, *, folder: Path = Path(), progress: Progress = silent) -> Checked:
+def check_project(
+    project: Project, *, folder: Path = Path(), progress: Progress = silent, memory: Memory | None = None
+) -> Checked:
     """Look for everything that a run would refuse or warn of, as far as that takes seconds.
 
     Parameters
@@ -79,6 +81,8 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
     folder : Path
         Where the files a project names are looked for.
     progress : callable
+    memory : Memory, optional
+        Of earlier checks and runs: what it holds is not computed again.
 
     Raises
     ------
@@ -88,9 +92,10 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
     stages, messages = wanted_stages(project, None)
     left: list[str] = []
     coarse = _coarse(project, left)
+    memory = Memory() if memory is None else memory
     begun = None
     try:
-        begun = _begun(project, coarse, stages, folder, progress)
+        begun = _begun(project, coarse, stages, folder, progress, memory)
     except InputError as error:
         if coarse is project or error.where != "surface.tolerance":
             raise
@@ -102,7 +107,7 @@ def check_project(project: Project, *, folder: Path = Path(), progress: Progress
         # in the project's own numbers
         coarse = project
         left.clear()
-        begun = _begun(project, coarse, stages, folder, progress)
+        begun = _begun(project, coarse, stages, folder, progress, memory)
     estimates = [begun.estimate(stage, progress) for stage in stages[1:]]
     sizes = {key: value for estimate in estimates for key, value in estimate.figures.items()}
     left += [unknown for estimate in estimates for unknown in estimate.unknown]
@@ -126,14 +131,14 @@ def _adjusts(project: Project) -> bool:
 
 
 def _begun(
-    project: Project, coarse: Project, stages: Sequence[Stage[Any]], folder: Path, progress: Progress
+    project: Project, coarse: Project, stages: Sequence[Stage[Any]], folder: Path, progress: Progress, memory: Memory
 ) -> Computation:
     """A computation of the stages whose surface is there; what can be refused without a net has been."""
     files = coarse.files.model_copy(update={"mesh_tolerance": max(COARSE_MESH, coarse.files.mesh_tolerance)})
     light = coarse.model_copy(update={"files": files})
     # a computation of the surface alone leaves the boundary as it is
     wanted = stages[:1] if _adjusts(project) else stages
-    begun = Computation(light, wanted, folder, Memory(), Clock(silent), finer=_finer(project, coarse), checked=stages)
+    begun = Computation(light, wanted, folder, memory, Clock(silent), finer=_finer(project, coarse), checked=stages)
     begun.run(stages[0], progress)
     return begun
 

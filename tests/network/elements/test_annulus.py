@@ -9,11 +9,14 @@ import numpy as np
 import pytest
 
 from conftest import run_of_example
-from lamella import compute, parse_project
+from lamella import Memory, compute, parse_project
 from lamella.network.elements.element_network import element_network
 from lamella.network.network import SEAM, SINGULAR, Network
 from lamella.surface.element.surface import ElementSurface
 from network.elements.test_element_network import check_combinatorics, ruler
+
+MEMORY = Memory()
+"""The film is found once for both densities."""
 
 
 def test_annulus_with_two_hexagonal_nodes() -> None:
@@ -67,7 +70,7 @@ def test_annulus_of_ten_thousand_nodes(cells: int) -> None:
     # strips so low that no other number of cells is searched for them
     low = {"height": 1e-3, "thickness": 1e-4}
     tables = {"surface": {"kind": "form-found", "boundary": loops}, "network": {"cells": cells}, "lamella": low}
-    results = compute(parse_project(tables), until="network")
+    results = compute(parse_project(tables), until="network", memory=MEMORY)
     network, told = results.network, results.summary["network"]
     assert network is not None
     assert results.summary["surface"]["surface_nodes"] <= 10_000

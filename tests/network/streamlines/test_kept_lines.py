@@ -11,10 +11,13 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_simpson
 
-from lamella import InputError, compute, parse_project
+from lamella import InputError, Memory, compute, parse_project
 from lamella.network.network import BOUNDARY, REGULAR
 from lamella.stages.results import Results
 from network.streamlines.test_streamline_network import is_sound, lamellas, ruled
+
+MEMORY = Memory()
+"""Of meshes on which several nets are made, by the content of their files: fitted once."""
 
 Map = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, ...]]
 
@@ -62,7 +65,9 @@ def write_grid(
 
 def run_on(path: Path, until: str | None = "network", surface: dict[str, Any] | None = None, **network: Any) -> Results:
     table = {"kind": "mesh", "file": path.name, "mean_curvature": "varying"} | (surface or {})
-    return compute(parse_project({"surface": table, "network": network}), until=until, folder=path.parent)
+    return compute(
+        parse_project({"surface": table, "network": network}), until=until, folder=path.parent, memory=MEMORY
+    )
 
 
 def crookedness(points: np.ndarray) -> float:
@@ -76,7 +81,7 @@ def crookedness(points: np.ndarray) -> float:
 def test_asymptotic_lines_of_a_hyperbolic_paraboloid(tmp_path: Path) -> None:
     """They are its straight rulings; the error falls by more than h^2.5 with the mesh, from 10 to 40 quads a side."""
     errors = []
-    for n in (10, 20, 40):
+    for n in (10, 40):
         write_grid(tmp_path / "m.obj", hypar, (-2, 2), (-2, 2), n, n)
         results = run_on(tmp_path / "m.obj", normal_curvature=0.0, cells=10)
         network = results.network
@@ -110,7 +115,7 @@ def test_asymptotic_lines_of_a_hyperbolic_paraboloid(tmp_path: Path) -> None:
             # cos of the angle of the rulings at (x, y): x y / sqrt((16 + x^2) (16 + y^2)), at the outermost nodes 1.8
             most = np.degrees(np.arccos(1.8**2 / (16 + 1.8**2)))
             assert reported["node_angle_min_deg"] == pytest.approx(most, abs=0.1)
-    assert np.log(errors[0] / errors[2]) / np.log(4) > 2.5
+    assert np.log(errors[0] / errors[1]) / np.log(4) > 2.5
 
 
 @pytest.mark.slow
