@@ -148,7 +148,9 @@ def test_the_comments_of_a_new_project_are_its_defaults(
     text = capsys.readouterr().out
     plain = tomllib.loads(text)
     # all keys active but those that exclude another, and the ones without a default
-    others = "spacing|slot_width|end_distance|hub_radius|volume|unit|origin|normal_curvature|washer_length"
+    others = (
+        "spacing|slot_width|end_distance|hub_radius|volume|unit|origin|normal_curvature|washer_length|splice_thickness"
+    )
     uncommented = re.sub(rf"^# (?!{others})([a-z]\w* = )", r"\1", text, flags=re.M)
     uncommented = uncommented.replace('# [materials."my steel"]', '[materials."my steel"]')
     uncommented = re.sub(r"^# (\[(?:joint|cables)\])", r"\1", uncommented, flags=re.M)

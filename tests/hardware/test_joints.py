@@ -198,3 +198,16 @@ def test_cables_are_cut_to_their_way_less_turnbuckle_and_stretch(strips) -> None
     with pytest.raises(InputError) as refused:
         cables(strips.network, frames, strips.section, top, rules, CableRules(diameter=0.002, prestress=1e5))
     assert refused.value.where == "prestress"
+
+
+def test_a_splice_with_a_slot_beside_it_is_refused() -> None:
+    strips = lamella.net(lamella.Cylinder(1.0, (0.0, 2.0)), cells=44).strips(Section(0.05, 0.001, 2, 0.02))
+    rules = JointRules(washer=False, block_spacing=0, block_bolt=0.005)
+    with pytest.raises(InputError, match="next slot") as refused:
+        make_hardware(strips, strips.parts(sheet=(1.2, 1.0)), rules)
+    assert refused.value.where == "splice"
+    # where the gap is too narrow for plates and heads
+    strips = lamella.net(lamella.Cylinder(1.0, (0.0, 2.0)), cells=8).strips(Section(0.05, 0.001, 2, 0.012))
+    with pytest.raises(InputError) as refused:
+        make_hardware(strips, strips.parts(sheet=(1.2, 1.0)), JointRules(washer=False, block_spacing=0))
+    assert refused.value.where == "splice_thickness"

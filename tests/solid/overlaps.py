@@ -11,7 +11,7 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.fabrication.part import Parts
 from lamella.hardware.item import Item
-from lamella.solid.extrusion import item_solid
+from lamella.solid.extrusion import item_solids
 from lamella.solid.solid import Solid
 from lamella.solid.strip import layer_rows, strip_solid
 from lamella.strip.lamellas import Lamellas
@@ -19,7 +19,7 @@ from lamella.strip.lamellas import Lamellas
 # m: how far around a place solids are looked at
 AROUND = 0.06
 # mm3: what flat triangles on twisted faces make of two that touch
-TOUCHING = 0.05
+TOUCHING = 0.1
 
 
 def manifold(solid: Solid) -> manifold3d.Manifold:
@@ -42,9 +42,8 @@ class Structure:
                 # for its bounds
                 self._add(f"{part.id} layer {row}", strip_solid(part, lamellas, row, step=0.05))
         for item in items:
-            own = item_solid(item)
-            for label, vertices in zip(item.places.labels, item.places.world(own.vertices), strict=True):
-                self._add(f"{item.id} {label}", Solid(vertices, own.triangles))
+            for label, solid in item_solids(item):
+                self._add(f"{item.id} {label}", solid)
         self.low = np.array([solid.vertices.min(axis=0) for solid in self.solids])
         self.high = np.array([solid.vertices.max(axis=0) for solid in self.solids])
         self._made: dict[int, manifold3d.Manifold] = {}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 import pytest
 
@@ -99,6 +101,23 @@ def test_no_two_solids_overlap(layout: str) -> None:
     structure = Structure(lamellas, made.parts, made.hardware.items)
     found = [pair for place in structure.places(8) for pair in structure.overlaps(place)]
     assert found == []
+
+
+@pytest.mark.parametrize("layers", [2, 4])
+def test_splices_are_clear_of_everything(layers: int) -> None:
+    lamellas = lamella.net(lamella.Cylinder(1.5, (0.0, 3.0)), cells=6).strips(Section(0.08, 0.0015, layers, 0.025))
+    parts = lamellas.parts(sheet=(3.0, 1.0))
+    made = make_hardware(lamellas, parts, JointRules())
+    structure = Structure(lamellas, made.parts, made.hardware.items, step=0.002)
+    plates = structure.of("splice-1")
+    pieces = Counter(part.lamella for part in parts.parts)
+    assert len(plates) == layers * sum(number - 1 for number in pieces.values()) > 0
+    middles = (structure.low[plates] + structure.high[plates]) / 2
+    assert [pair for place in middles[:: len(plates) // 3] for pair in structure.overlaps(place)] == []
+    # eight screws through each plate, half of them in either piece
+    assert sum(item.quantity for item in made.hardware.of("screw") if item.id.startswith("splice")) == 8 * len(plates)
+    at_ends = sum((part.holes[:, 1] != 0).sum() * part.quantity for part in made.parts.parts)
+    assert at_ends == 8 * len(plates)
 
 
 def test_cables_and_clamps_are_clear_of_the_joints() -> None:

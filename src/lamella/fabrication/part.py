@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -147,6 +147,15 @@ class Part(Shown):
     def place(self, stations: Floats, heights: Floats | float) -> Floats:
         """Points of the strip in the part's own frame, (..., 2), m; see `Axis.develop`."""
         return self.axis.develop(stations, heights)
+
+    def drilled(self, holes: Floats) -> Part:
+        """The part with further holes, (b, 3) as `holes`."""
+        if not len(holes):
+            return self
+        every = np.concatenate([self.holes, holes])
+        every = every[np.lexsort((every[:, 1], every[:, 0]))]
+        area = self.area - float(np.pi / 4 * np.sum(holes[:, 2] ** 2))
+        return replace(self, holes=every, area=area, mass=self.mass * area / self.area)
 
     def hole_outlines(self) -> tuple[Floats, ...]:
         """Closed outlines of the holes in the part's own frame, (2, 3) as `outline`: two half circles each."""

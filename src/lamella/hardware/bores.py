@@ -70,9 +70,4 @@ def _drilled(part: Part, lamellas: Lamellas, bores: Bores, some: Integers) -> Pa
     stations = layer_stations(lamellas, part.lamella, max(part.layer - 1, 0), bores.arclengths[some])
     reach = bores.diameters[some] / 2
     on_it = (stations - reach > part.start) & (stations + reach < part.end)
-    if not on_it.any():
-        return part
-    holes = np.column_stack([stations, bores.heights[some], bores.diameters[some]])[on_it]
-    holes = holes[np.lexsort((holes[:, 1], holes[:, 0]))]
-    area = part.area - float(np.pi / 4 * np.sum(holes[:, 2] ** 2))
-    return replace(part, holes=holes, area=area, mass=part.mass * area / part.area)
+    return part.drilled(np.column_stack([stations, bores.heights[some], bores.diameters[some]])[on_it])

@@ -11,7 +11,7 @@ from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.message import Message
 from lamella.base.result import Result
 from lamella.base.wording import counted
-from lamella.hardware.shape import Prism, Sweep
+from lamella.hardware.shape import Bent, Prism, Sweep
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +72,8 @@ class Item(Result):
         Whether it is cut from a sheet and drawn for the laser.
     length : float
         Of what is bought by the metre, m; 0 where that says nothing.
+    bent : tuple of Bent
+        Plates that are bent into place: each one as it is built; else empty.
     """
 
     id: str
@@ -83,6 +85,7 @@ class Item(Result):
     places: Places
     plate: bool = False
     length: float = 0.0
+    bent: tuple[Bent, ...] = ()
 
     def _line(self) -> str:
         return f"{self.id}: {self.quantity} x {self.description}, {self.mass:.4g} kg each"

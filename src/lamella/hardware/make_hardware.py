@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.wording import counted
@@ -19,6 +20,7 @@ from lamella.hardware.item import Hardware, Item
 from lamella.hardware.node_frames import NodeFrames
 from lamella.hardware.rules import MM, CableRules, JointRules
 from lamella.hardware.shear_blocks import shear_blocks
+from lamella.hardware.splices import cuts, splice_length, splices
 from lamella.network.network import SINGULAR
 from lamella.strip.lamellas import Lamellas
 
@@ -90,11 +92,15 @@ def make_hardware(lamellas: Lamellas, parts: Parts, rules: JointRules, cable_rul
         network.node_kinds[network.stop_nodes] == SINGULAR, np.maximum(keep_clear, hub_radius), keep_clear
     )
     if rules.block_spacing and section.layers > 1:
-        blocks = shear_blocks(lamellas, rules, keep_clear)
+        blocks = shear_blocks(lamellas, rules, keep_clear, _spliced(parts, lamellas, rules))
         items += blocks.items
         bores.append(blocks.bores)
         notes += _without(blocks.cells_without, len(network.cell_edges), rules)
     drilled_parts = drilled(parts, lamellas, Bores.of(bores))
+    if rules.splice:
+        joined = splices(drilled_parts, lamellas, rules)
+        items += joined.items
+        drilled_parts = joined.parts
     return Joined(Hardware(tuple(items), tuple(notes)), drilled_parts)
 
 
@@ -105,6 +111,13 @@ def _hub_radius(parts: Parts) -> float:
         if len(part.nodes):
             ends += [part.start - float(part.nodes[0]), float(part.nodes[-1]) - part.end]
     return max(ends)
+
+
+def _spliced(parts: Parts, lamellas: Lamellas, rules: JointRules) -> Floats:
+    """Lamella, arc length and half length of every splice, (c, 3)."""
+    reach = splice_length(rules) / 2
+    found = [(cut.lamella, cut.arclength(lamellas), reach) for cut in cuts(parts, lamellas)] if rules.splice else []
+    return np.array(found, float).reshape(-1, 3)
 
 
 def _room(lamellas: Lamellas, half_joint: float) -> dict[int, float]:

@@ -91,6 +91,10 @@ class JointRules:
         Whether singular nodes have hubs.
     hub_thickness : float
         Of a hub's plates.
+    splice : bool
+        Whether pieces of a lamella are joined by splice plates.
+    splice_thickness : float or None
+        Of a splice plate; None: twice a strip's.
     material : str
         Of plates, blocks and bolts.
     density : float
@@ -107,6 +111,8 @@ class JointRules:
     block_bolt: float = 0.006
     hub: bool = True
     hub_thickness: float = 0.005
+    splice: bool = True
+    splice_thickness: float | None = None
     material: str = "1.4301"
     density: float = 7900.0
 
@@ -178,6 +184,10 @@ class JointRules:
     def star_width(self, section: Section) -> float:
         """Of a star washer's arms: over the outer layers, and as much on each side as it is thick, m."""
         return (section.layers - 1) * section.offset + section.thickness + 2 * self.washer_thickness
+
+    def plate_thickness(self, section: Section) -> float:
+        """Of a splice plate, m."""
+        return 2 * section.thickness if self.splice_thickness is None else self.splice_thickness
 
     def block_height(self, section: Section) -> float:
         """Of a shear block along the surface normal, m."""

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from lamella.base.arrays import Floats
 from lamella.fabrication.flat import circle, outline_area
 
-__all__ = ["Prism", "Sweep", "circle", "crossed", "hexagon", "polygon", "rectangle", "rhombus", "slot"]
+__all__ = ["Bent", "Prism", "Sweep", "circle", "crossed", "hexagon", "polygon", "rectangle", "rhombus", "slot"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +86,24 @@ class Sweep:
     def volume(self) -> float:
         """m3."""
         return self.area * self.length
+
+
+@dataclass(frozen=True, eq=False)
+class Bent:
+    """A plate in its place, bent and twisted.
+
+    Attributes
+    ----------
+    rings : tuple of (n, 2)
+        Corners of its flat outline, counter-clockwise, and of its holes, clockwise; their heights are scaled down,
+        so that triangles between them are short along the strip.
+    low, high : (v, 3)
+        Where the corners, one ring after the other, lie on either face, m; seen from `high` it is not mirrored.
+    """
+
+    rings: tuple[Floats, ...]
+    low: Floats
+    high: Floats
 
 
 def polygon(points: ArrayLike) -> Floats:

@@ -45,7 +45,9 @@ class ShearBlocks:
     cells_without: int
 
 
-def shear_blocks(lamellas: Lamellas, rules: JointRules, keep_clear: Floats) -> ShearBlocks:
+def shear_blocks(
+    lamellas: Lamellas, rules: JointRules, keep_clear: Floats, splices: Floats | None = None
+) -> ShearBlocks:
     """Blocks along every lamella, at equal distances in every cell.
 
     Parameters
@@ -55,12 +57,14 @@ def shear_blocks(lamellas: Lamellas, rules: JointRules, keep_clear: Floats) -> S
         At most `block_spacing` is between blocks where there is room for them.
     keep_clear : (q,)
         How far from each stop no block may reach, m.
+    splices : (c, 3), optional
+        Lamella, arc length (m) and half length (m) of what joins its pieces: no block lies there.
 
     Returns
     -------
     ShearBlocks
     """
-    owner, arclengths, without = _positions(lamellas, rules, keep_clear)
+    owner, arclengths, without = _positions(lamellas, rules, keep_clear, splices)
     ids = lamellas.network.ids
     labels = tuple(f"{ids[k]} at {MM * s:.0f} mm" for k, s in zip(owner.tolist(), arclengths.tolist(), strict=True))
     items = (
@@ -71,7 +75,9 @@ def shear_blocks(lamellas: Lamellas, rules: JointRules, keep_clear: Floats) -> S
     return ShearBlocks(items, Bores(owner, arclengths, np.zeros(len(owner)), hole), without)
 
 
-def _positions(lamellas: Lamellas, rules: JointRules, keep_clear: Floats) -> tuple[Integers, Floats, int]:
+def _positions(
+    lamellas: Lamellas, rules: JointRules, keep_clear: Floats, splices: Floats | None
+) -> tuple[Integers, Floats, int]:
     """Lamella and arc length of every block, and the number of cells without."""
     network = lamellas.network
     owner, arc = network.stop_owner, network.stop_arclengths
@@ -84,6 +90,8 @@ def _positions(lamellas: Lamellas, rules: JointRules, keep_clear: Floats) -> tup
     at = begin[of_cell] + share * (end - begin)[of_cell]
     half = rules.block_length / 2
     fits = (at - half >= (begin + keep_clear[cell])[of_cell]) & (at + half <= (end - keep_clear[cell + 1])[of_cell])
+    for lamella, place, reach in [] if splices is None else splices.tolist():
+        fits &= (owner[cell][of_cell] != lamella) | (np.abs(at - place) > reach + half)
     without = len(cell) - len(np.unique(of_cell[fits]))
     return owner[cell][of_cell[fits]], at[fits], without
 

@@ -60,6 +60,12 @@ class JointTable(Table):
         description="Hubs of fins and star plates at singular nodes, which the layers of every ray are bolted to.",
     )
     hub_thickness: float = number("Of the plates of a hub.", "m", ge=0.001, le=0.1, default=0.005)
+    splice: bool = Field(
+        default=True, description="Splice plates on every layer where a lamella is made of several pieces."
+    )
+    splice_thickness: float | None = number(
+        "Of a splice plate; twice that of a strip when not given.", "m", gt=0, le=0.1, default=None, examples=[0.003]
+    )
     material: Name = Field(
         default="1.4301",
         max_length=100,

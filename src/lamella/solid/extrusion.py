@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import pythoncdt
@@ -74,6 +74,17 @@ def prism_solid(prism: Prism) -> Solid:
 def item_solid(item: Item) -> Solid:
     """A piece of hardware in its own axes."""
     return Solid.of([prism_solid(one) if isinstance(one, Prism) else sweep_solid(one) for one in item.shape])
+
+
+def item_solids(item: Item) -> Iterator[tuple[str, Solid]]:
+    """Every piece in its place, with its label."""
+    if item.bent:
+        for label, bent in zip(item.places.labels, item.bent, strict=True):
+            yield label, between(bent.rings, bent.low, bent.high)
+        return
+    own = item_solid(item)
+    for label, vertices in zip(item.places.labels, item.places.world(own.vertices), strict=True):
+        yield label, Solid(vertices, own.triangles)
 
 
 def sweep_solid(sweep: Sweep) -> Solid:

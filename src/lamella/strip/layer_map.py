@@ -63,9 +63,11 @@ class LayerMap:
 
     def surfaces(self, stations: Floats, heights: Floats, thickness: float) -> tuple[Floats, Floats]:
         """Points of the built strip's right and left face, half a thickness beside its middle, (n, 3) each, m."""
+        return self.beside(stations, heights, -thickness / 2), self.beside(stations, heights, thickness / 2)
+
+    def beside(self, stations: Floats, heights: Floats, offset: float) -> Floats:
+        """Points at a distance to the left of the strip's middle, perpendicular to it, (n, 3), m."""
         point, along, normal, turning = self.frames(stations)
         z = heights[:, None]
         left = np.cross(normal, along + z * turning)
-        left *= thickness / 2 / np.linalg.norm(left, axis=1)[:, None]
-        middle = point + z * normal
-        return middle - left, middle + left
+        return np.asarray(point + z * normal + offset / np.linalg.norm(left, axis=1)[:, None] * left)

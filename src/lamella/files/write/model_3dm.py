@@ -139,7 +139,7 @@ class _Model:
             mesh.Faces.AddFace(a, b, c)
         definition = self.rhino.identity("block", solid.name)
         add_block(self.file, solid.name, mesh, definition, self.rhino.attributes(layer, f"{solid.name} block"))
-        text = {**solid.text, "id": solid.name, "version": self.version}
+        text = {"id": solid.name, **solid.text, "version": self.version}
         for place, axes, label in zip(
             self.rhino.placed(solid.origins).tolist(), solid.axes.tolist(), solid.labels, strict=True
         ):

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
 from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
@@ -30,6 +32,7 @@ COLOURS = {
     "bolt": (70, 70, 80),
     "nut": (70, 70, 80),
     "screw": (70, 70, 80),
+    "splice": (120, 120, 130),
     "clamp": (120, 120, 130),
     "cable": (40, 40, 40),
     "block": (190, 170, 110),
@@ -126,20 +129,26 @@ class FabricationStage(Stage[FabricationOutput]):
 
     def scene(self, out: FabricationOutput, up: Upstream) -> Iterator[DrawnLayer]:
         for kind in dict.fromkeys(item.kind for item in out.hardware):
-            yield DrawnLayer(
-                kind, colour=COLOURS.get(kind, OTHER), repeated=tuple(map(_repeated, out.hardware.of(kind)))
-            )
+            repeated = tuple(one for item in out.hardware.of(kind) for one in _repeated(item))
+            yield DrawnLayer(kind, colour=COLOURS.get(kind, OTHER), repeated=repeated)
 
 
-def _repeated(item: Item) -> Repeated:
-    """A kind of hardware as a block of the model."""
-    from lamella.solid.extrusion import item_solid
+def _repeated(item: Item) -> Iterator[Repeated]:
+    """A kind of hardware as a block of the model, or each piece as one of its own where pieces are bent."""
+    from lamella.solid.extrusion import item_solid, item_solids
 
-    solid, places = item_solid(item), item.places
+    places = item.places
     text = {
         "kind": item.kind,
         "description": item.description,
         "material": item.material,
         "mass_kg": f"{item.mass:.6g}",
     }
-    return Repeated(item.id, solid.vertices, solid.triangles, places.origins, places.axes, places.labels, text)
+    if item.bent:
+        here, axes = np.zeros((1, 3)), np.eye(3)[None]
+        for number, (label, solid) in enumerate(item_solids(item)):
+            inside = text | {"id": item.id}
+            yield Repeated(f"{item.id} {number + 1}", solid.vertices, solid.triangles, here, axes, (label,), inside)
+        return
+    solid = item_solid(item)
+    yield Repeated(item.id, solid.vertices, solid.triangles, places.origins, places.axes, places.labels, text)
