@@ -18,6 +18,7 @@ from lamella import (
     Cylinder,
     Enneper,
     Helicoid,
+    Memory,
     Nodoid,
     Results,
     Scherk,
@@ -37,10 +38,14 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 KINDS = ("unduloid", "nodoid", "catenoid", "cylinder", "helicoid", "enneper", "enneper3", "scherk")
 
 
+MEMORY = Memory()
+"""Of examples: what is computed up to a stage is not computed again for a later one."""
+
+
 @cache
-def run_of_example(name: str) -> Results:
-    """An example's run, computed once for all tests."""
-    return compute(read_project(EXAMPLES / f"{name}.toml"), folder=EXAMPLES)
+def run_of_example(name: str, until: str | None = None) -> Results:
+    """An example's run, computed once for all tests of a process."""
+    return compute(read_project(EXAMPLES / f"{name}.toml"), until=until, folder=EXAMPLES, memory=MEMORY)
 
 
 @pytest.fixture

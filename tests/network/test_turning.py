@@ -54,7 +54,7 @@ def boundary_turns(surface: ElementSurface) -> float:
 
 def of_example(name: str) -> Callable[[], ElementSurface]:
     def surface() -> ElementSurface:
-        found = run_of_example(name).surface
+        found = run_of_example(name, "surface").surface
         assert isinstance(found, ElementSurface)
         return found
 

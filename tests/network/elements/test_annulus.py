@@ -23,7 +23,7 @@ def test_annulus_with_two_hexagonal_nodes() -> None:
     """DESIGN section 4: periods whole to 1e-4, singular nodes within 1 mm of the converged (0, +-2.253137, 2.865947) m,
     |tg|^(1/2) ds alike in all cells to 1e-3, faces a disc with one hole.
     """
-    results = run_of_example("13_oculus")
+    results = run_of_example("13_oculus", "network")
     network = results.network
     assert network is not None
     assert results.summary["network"]["closed"]
@@ -118,7 +118,7 @@ def cell_spread(network: Network) -> float:
 
 def test_an_odd_number_of_cells_leaves_an_umbilic_between_the_nodes() -> None:
     """Of the annulus the period is twice the distance of its two zeros: 25 cells put one of them between nodes."""
-    surface = run_of_example("13_oculus").surface
+    surface = run_of_example("13_oculus", "network").surface
     assert isinstance(surface, ElementSurface)
     net = element_network(surface, cells=25, loop_names=("rim", "oculus"))
     told = [umbilic["node"] for umbilic in net.describe()["umbilics"]]

@@ -91,7 +91,7 @@ def test_asymptotic_lines_of_a_catenoid_on_elements() -> None:
 
 def test_the_net_of_a_film_is_that_of_its_lattice() -> None:
     """On a minimal surface lines of kn = 0 are its lamellas."""
-    results = run_of_example("10_saddle")
+    results = run_of_example("10_saddle", "network")
     surface, lattice = results.surface, results.network
     assert isinstance(surface, ElementSurface)
     size = float(np.linalg.norm(np.ptp(surface.nodes, axis=0)))

@@ -108,7 +108,8 @@ def test_a_normal_curvature_is_offered_where_its_lines_cover_the_surface(tmp_pat
     remedy = refusal(tmp_path / "m.obj", WAIST)
     value = re.search(r"normal_curvature = (-?[\d.]+)", remedy)
     assert value
-    results = compute(project(tmp_path / "m.obj", WAIST, normal_curvature=float(value[1])), folder=tmp_path)
+    there = project(tmp_path / "m.obj", WAIST, normal_curvature=float(value[1]))
+    results = compute(there, until="network", folder=tmp_path)
     figures = results.summary["network"]
     assert figures["inner_ends"] == 0
     assert figures["unreal_area_share"] == figures["flat_area_share"] == 0

@@ -35,7 +35,7 @@ def end_of_meridian(inner: float, mean_curvature: float, psi: float, length: flo
             2 * np.pi * r,
         ]
 
-    return solve_ivp(slopes, (0, length), [inner, 0, psi, 0, 0], rtol=1e-11, atol=1e-12).y[:, -1]
+    return solve_ivp(slopes, (0, length), [inner, 0, psi, 0, 0], "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
 
 
 @lru_cache
