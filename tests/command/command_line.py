@@ -25,6 +25,7 @@ FILES = {
         "fabrication/B.dxf",
         "fabrication/sheets.dxf",
         "fabrication/schedule.csv",
+        "fabrication/parts.xlsx",
     },
 }
 

@@ -8,6 +8,7 @@ from collections import Counter
 from pathlib import Path
 
 import ezdxf
+import openpyxl
 import pytest
 import rhino3dm
 
@@ -101,9 +102,28 @@ def test_holes_of_the_strips_are_cut(written: tuple[lamella.Results, Path]) -> N
 def test_the_same_bytes_twice(written: tuple[lamella.Results, Path], tmp_path: Path) -> None:
     _, folder = written
     write(compute(parse_project(PROJECT)), tmp_path / "again")
-    for name in ("hardware.csv", "places.csv", "plates.dxf", "A.dxf"):
+    for name in ("parts.xlsx", "hardware.csv", "places.csv", "plates.dxf", "A.dxf"):
         assert (tmp_path / "again" / "fabrication" / name).read_bytes() == (folder / "fabrication" / name).read_bytes()
     assert (tmp_path / "again" / "model.3dm").read_bytes() == (folder / "model.3dm").read_bytes()
+
+
+def test_the_workbook_has_what_the_lists_have(written: tuple[lamella.Results, Path]) -> None:
+    results, folder = written
+    book = openpyxl.load_workbook(folder / "fabrication" / "parts.xlsx")
+    assert book.sheetnames == ["strips", "hardware", "cut plan", "totals"]
+    for page, file in (("strips", "schedule.csv"), ("hardware", "hardware.csv")):
+        table = [[cell.value for cell in row] for row in book[page].iter_rows()]
+        listed = rows(folder / "fabrication" / file)
+        assert table[0] == list(listed[0])
+        assert len(table) - 1 == len(listed)
+        for cells, row in zip(table[1:], listed, strict=True):
+            for cell, text in zip(cells, row.values(), strict=True):
+                assert cell == (float(text) if isinstance(cell, int | float) else text or None)
+    plan = list(book["cut plan"].iter_rows(min_row=2, values_only=True))
+    assert len(plan) == len(results.nesting.parts) == results.summary["fabrication"]["parts"]
+    total = {row[0]: row[1:] for row in book["totals"].iter_rows(min_row=2, values_only=True)}
+    assert total["all"][2] == pytest.approx(results.summary["fabrication"]["mass"], rel=1e-12)
+    assert total["strips"][1] == results.summary["fabrication"]["parts_different"]
 
 
 def test_without_the_table_nothing_is_added() -> None:

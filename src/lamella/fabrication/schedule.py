@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -163,28 +163,33 @@ def write_schedule(
     OSError
         Where the file cannot be written whole.
     """
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        file.write(f"# lamella {csv_comment(version)} · project {csv_comment(name)}\n")
+        writer.writerow([column.name for column in COLUMNS])
+        writer.writerows(schedule_rows(parts, nesting, network, lamellas))
+
+
+def schedule_rows(parts: Parts, nesting: Nesting, network: Network, lamellas: Lamellas) -> Iterator[list[object]]:
+    """Rows of the part list, a value for each of `COLUMNS`."""
     sheets: list[list[int]] = [[] for _ in parts.parts]
     for part, sheet in zip(nesting.parts.tolist(), nesting.sheets.tolist(), strict=True):
         if sheet + 1 not in sheets[part]:
             sheets[part].append(sheet + 1)
     values = _along_samples(network, lamellas)
     same = congruent_parts(parts)
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        file.write(f"# lamella {csv_comment(version)} · project {csv_comment(name)}\n")
-        writer.writerow([column.name for column in COLUMNS])
-        for index, part in enumerate(parts.parts):
-            largest = values[:, _samples(part, network, lamellas)].max(axis=1)
-            row = Row(
-                part,
-                largest[:3],
-                largest[3:9],
-                float(largest[9]),
-                _net_section(part, network, lamellas),
-                tuple(sorted(sheets[index])),
-                "" if same[index] == index else parts.parts[same[index]].id,
-            )
-            writer.writerow([column.value(row) for column in COLUMNS])
+    for index, part in enumerate(parts.parts):
+        largest = values[:, _samples(part, network, lamellas)].max(axis=1)
+        row = Row(
+            part,
+            largest[:3],
+            largest[3:9],
+            float(largest[9]),
+            _net_section(part, network, lamellas),
+            tuple(sorted(sheets[index])),
+            "" if same[index] == index else parts.parts[same[index]].id,
+        )
+        yield [column.value(row) for column in COLUMNS]
 
 
 def _along_samples(network: Network, lamellas: Lamellas) -> Floats:

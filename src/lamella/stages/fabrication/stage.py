@@ -53,6 +53,7 @@ class FabricationStage(Stage[FabricationOutput]):
         ("fabrication/A.dxf, fabrication/B.dxf", "the parts of either family"),
         ("fabrication/sheets.dxf", "all pieces on their sheets"),
         ("fabrication/schedule.csv", "the part list"),
+        ("fabrication/parts.xlsx", "strips, hardware, cut plan and totals as a workbook"),
         (
             "fabrication/hardware.csv, fabrication/places.csv, fabrication/plates.dxf",
             "where `[joint]` is given: the hardware, the place of every piece, and what of it is cut from plates",
@@ -108,6 +109,7 @@ class FabricationStage(Stage[FabricationOutput]):
         from lamella.fabrication.schedule import write_schedule
         from lamella.hardware.lists import write_hardware, write_places
         from lamella.hardware.plates_drawing import write_plates
+        from lamella.hardware.workbook import write_workbook
 
         signed: Any = {"name": up.project.name, "version": __version__}
         network = in_drawing(up.outputs["network"].network, drawing_origin(up.surface))
@@ -120,6 +122,10 @@ class FabricationStage(Stage[FabricationOutput]):
         yield File(
             "fabrication/schedule.csv",
             lambda path: write_schedule(path, out.parts, out.nesting, network, lamellas, **signed),
+        )
+        yield File(
+            "fabrication/parts.xlsx",
+            lambda path: write_workbook(path, out.parts, out.nesting, network, lamellas, out.hardware, **signed),
         )
         if out.hardware.items:
             drawn: Any = signed | {"origin": drawing_origin(up.surface)}
