@@ -8,7 +8,7 @@ ONE := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1
 NUMERICS := tests/surface/element tests/surface/form_finding/test_last_bits.py tests/surface/form_finding/test_rings.py \
 	tests/surface/from_mesh/test_last_bits.py tests/projection/test_star_measures.py tests/base/test_sparse.py
 
-.PHONY: demo test slow kernels lint types bench docs api clean
+.PHONY: demo test slowest slow kernels lint types bench docs api clean
 
 demo: .venv/ready
 	$(BIN)/lamella run examples/01_unduloid.toml
@@ -16,6 +16,10 @@ demo: .venv/ready
 
 test: .venv/ready
 	$(ONE) $(BIN)/python -m pytest -m "not slow" -n auto --dist loadfile
+
+# the same, and docs/slowest-tests.md
+slowest: .venv/ready
+	$(ONE) $(BIN)/python -m pytest -p slowest -m "not slow" -n auto --dist loadfile
 
 slow: .venv/ready
 	$(ONE) $(BIN)/python -m pytest -m slow -n auto

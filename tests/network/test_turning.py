@@ -74,6 +74,7 @@ def of_example(name: str) -> Callable[[], ElementSurface]:
 def test_orders_add_up_to_the_turning_of_the_boundary(
     surface: Callable[[], ElementSurface], chi: int, rays: list[int]
 ) -> None:
+    """Orders of umbilics that are found add up to the turns of the boundary less twice its Euler number."""
     found = surface()
     turns = boundary_turns(found)
     assert turns == pytest.approx(round(turns), abs=1e-6)

@@ -99,6 +99,7 @@ def _ring(**network: Any) -> dict[str, Any]:
     ],
 )
 def test_reported_figures_are_no_less_than_those_measured(project) -> None:
+    """Deviations in summary.json are no less than those measured on the written points, and at most what they are."""
     results = compute(parse_project(project), until="network")
     network, told = results.network, results.summary["network"]
     content = json.loads(network_bytes(network, name="x", version="0"))

@@ -52,6 +52,7 @@ def annulus(**network: Any) -> dict[str, Any]:
     ids=["cells", "spacing", "lines", "principal", "annulus"],
 )
 def test_cells_and_nodes_are_those_of_the_run(tables: dict[str, Any]) -> None:
+    """On coarse elements a check counts the cells of a run, and its nodes to 15 %."""
     project, steps = parse_project(tables), []
     checked = check_project(project, progress=lambda report: steps.append(str(report)), memory=MEMORY)
     network = compute(project, until="network", memory=MEMORY).network
@@ -84,6 +85,7 @@ def rings(distance: float) -> list[dict[str, Any]]:
     ],
 )
 def test_what_a_run_refuses(tables: dict[str, Any], key: str, numbers: list[float]) -> None:
+    """A check refuses what a run refuses, by the same key and with the same numbers."""
     project = parse_project(tables)
     for compute_or_check in (check_project, compute):
         with refused(key, numbers):
@@ -91,6 +93,7 @@ def test_what_a_run_refuses(tables: dict[str, Any], key: str, numbers: list[floa
 
 
 def test_what_is_left_to_the_run() -> None:
+    """What a check did not look at is said, each thing on its own."""
     project = parse_project(film({"network": {"cells": 90}}, tolerance=COARSE))
     checked = check_project(project, memory=MEMORY)
     assert checked.nodes is not None
@@ -161,6 +164,7 @@ def test_adjusting_what_may_not_change() -> None:
 
 
 def test_a_mesh_kept_as_it_is(tmp_path: Path) -> None:
+    """Cells and nodes of lines on a mesh that is no surface of constant mean curvature, and what is refused there."""
     write_grid(tmp_path / "m.obj", hypar, (-2, 2), (-2, 2), 24, 24)
     table = {"kind": "mesh", "file": "m.obj", "mean_curvature": "varying"}
     good = parse_project({"surface": table, "network": {"cells": 10, "normal_curvature": 0.0}})

@@ -65,6 +65,7 @@ def example(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
 
 
 def test_summaries_of_examples_have_every_key_with_finite_values(example: tuple[Path, Path]) -> None:
+    """summary.json of examples has the keys of the file interface, all numbers finite."""
     path, out = example
     summary = json.loads((out / "summary.json").read_bytes())
     assert summary["schema"] == "lamella/summary/1"
@@ -126,6 +127,7 @@ def test_examples_warn_of_nothing_a_designer_must_mend(example: tuple[Path, Path
 
 
 def test_the_copy_of_the_project_runs_to_the_same_result(example: tuple[Path, Path], tmp_path: Path) -> None:
+    """project.toml of a run, all defaults filled in, gives the same bytes of every file."""
     _, out = example
     again = tmp_path / "again"  # as deep as the first one, so that relative names of files read alike
     assert main(["run", str(out / "project.toml"), "--out", str(again), "--quiet"]) == 0

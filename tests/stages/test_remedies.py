@@ -188,6 +188,7 @@ SLOW = ("curvature of lines from seeds", "all too short from seeds")
     [pytest.param(*case[1:], id=case[0], marks=pytest.mark.slow if case[0] in SLOW else ()) for case in REFUSED],
 )
 def test_what_is_refused(tables: Tables, key: str, ways: list[Callable[[Tables, str], Tables]]) -> None:
+    """A remedy written into the project to the letter: the project is accepted."""
     with refused(key) as error:
         check_project(parse_project(tables), memory=MEMORY)
     for way in ways:

@@ -185,6 +185,7 @@ def test_a_loop_that_is_adjusted_far_from_the_origin(tmp_path: Path) -> None:
 
 
 def test_every_file_and_message_is_in_the_drawings_coordinates(tmp_path: Path) -> None:
+    """Everything written or said of a drawing far from its origin is in its own coordinates."""
     project = {}
     for name, at in (("here", np.zeros(3)), ("there", FAR)):
         folder = tmp_path / name

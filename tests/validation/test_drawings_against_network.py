@@ -11,6 +11,8 @@ import pytest
 from conftest import load
 from lamella.fabrication.read_back import read_slots
 
+# how far slots are from one another does not hang on how many there are
+CELLS = 12
 SURFACES = [
     {"kind": "unduloid", "neck_radius": 1.1, "bulge_radius": 2.3, "height": [-1.3, 2.2]},
     {"kind": "nodoid", "neck_radius": 3.0, "bulge_radius": 8.0, "height": [-1.1, 0.8]},
@@ -46,8 +48,9 @@ def _crossings(network):
 @pytest.mark.parametrize("surface", SURFACES, ids=lambda s: s["kind"])
 @pytest.mark.parametrize("layers", [1, 2])
 def test_slot_distances_are_the_arc_lengths(run, surface, layers):
+    """Distances of slots in the .dxf along the cut arcs are those of nodes in network.json, to 0.01 mm."""
     lamella = {"layers": layers, "height": 0.08, "thickness": 0.001}
-    folder = run(surface=surface, network={"cells": 18}, lamella=lamella)
+    folder = run(surface=surface, network={"cells": CELLS}, lamella=lamella)
     network = load(folder, "network.json")
     curvature = network["surface"]["mean_curvature"] / 1000
     crossing = _crossings(network)
@@ -76,14 +79,14 @@ def test_slot_distances_are_the_arc_lengths(run, surface, layers):
                     compared += len(arc)
                 at += len(feet) // layers
             assert at == len(told[name])
-    assert compared > 100
+    assert compared > 3 * CELLS
 
 
 @pytest.mark.parametrize("surface", SURFACES, ids=lambda s: s["kind"])
 def test_layers_of_their_own_have_their_own_distances(run, surface):
     """Slots of every layer's part against lamellas.json; their mean over the two layers is the centre line's."""
     lamella = {"layers": 2, "height": 0.08, "thickness": 0.001, "layer_lengths": "own"}
-    folder = run(surface=surface, network={"cells": 18}, lamella=lamella)
+    folder = run(surface=surface, network={"cells": CELLS}, lamella=lamella)
     told = {item["id"]: item for item in load(folder, "lamellas.json")["lamellas"]}
     crossing = _crossings(load(folder, "network.json"))
     compared = 0

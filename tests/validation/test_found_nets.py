@@ -48,6 +48,7 @@ def rim(form: ClosedForm, middle: complex, axes: tuple[float, float]) -> ArcLeng
 
 @pytest.mark.parametrize("name", PIECES)
 def test_nodes_converge_to_those_of_the_closed_form(name: str) -> None:
+    """Nodes of a net on found elements converge to those of the closed form with order 3 at least."""
     form, middle, axes = PIECES[name]
     loop = rim(form, middle, axes)
     film = find_equilibrium(start([loop], 4), form.mean_curvature).film

@@ -190,6 +190,7 @@ def test_the_skew_ring_has_seams() -> None:
 
 @pytest.mark.parametrize(("case", "motion"), MOVED)
 def test_a_moved_surface_has_the_moved_net(case: str, motion: str) -> None:
+    """A film found in a turned, mirrored, moved or scaled boundary has the net moved alike, lamella by lamella."""
     _, network = woven(case)
     move = MOTIONS[motion]
     there = element_network(film(CASES[case], motion=move), cells=CASES[case].cells).network
@@ -208,6 +209,7 @@ def test_a_moved_surface_has_the_moved_net(case: str, motion: str) -> None:
     ],
 )
 def test_finer_elements_have_the_same_net(case: str) -> None:
+    """The same nodes and ids on elements found to a tenth of the tolerance."""
     _, network = woven(case)
     finer = film(CASES[case], 5e-4 if case == "six beams" else 2e-3)
     assert finer.connectivity.node_count > woven(case)[0].connectivity.node_count

@@ -91,6 +91,7 @@ def check(seed: int) -> str:
 
 @pytest.mark.parametrize("seed", [1, 9, 24])
 def test_random_networks(seed: int) -> None:
+    """A random film has a sound net: degrees of nodes, faces, the Euler number, no lamella twice."""
     check(seed)
 
 

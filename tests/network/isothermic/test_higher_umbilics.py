@@ -40,6 +40,7 @@ def results_in(corners: np.ndarray, cells: int, until: str) -> Results:
     [(3, 0.02), *(pytest.param(m, 0.05, marks=pytest.mark.slow) for m in (1, 2, 4))],
 )
 def test_one_umbilic_in_a_skew_polygon(order, limit) -> None:
+    """One umbilic of that order: as many rays as it has, in the middle, nodes square beside it."""
     results = results_in(skew_polygon(order), 20, "network")
     net = results.network
     assert net is not None

@@ -200,6 +200,7 @@ def test_strips_and_parts_of_it(tmp_path: Path) -> None:
 
 
 def test_what_is_refused(tmp_path: Path) -> None:
+    """Lines that a mesh does not have are refused with the range it has; rough and flat meshes are refused."""
     write_grid(tmp_path / "m.obj", ellipsoid, (-0.6, 0.6), (0.2, 1.4), 10, 10)
     with pytest.raises(InputError, match="no direction of the surface has it") as refused:
         run_on(tmp_path / "m.obj", normal_curvature=0.0)

@@ -105,6 +105,7 @@ ROUND = polar_dome(lambda r: -0.12 * r**2 - 0.0015 * r**4, 4.0)
 
 
 def test_a_normal_curvature_is_offered_where_its_lines_cover_the_surface(tmp_path: Path) -> None:
+    """Principal lines that wind are refused with a normal curvature; its lines cover the surface."""
     remedy = refusal(tmp_path / "m.obj", WAIST)
     value = re.search(r"normal_curvature = (-?[\d.]+)", remedy)
     assert value

@@ -108,6 +108,7 @@ def off_curve(loop: Any, points: np.ndarray) -> float:
 
 
 def test_rhino_curves_of_all_kinds_are_evaluated_as_rhino_does(tmp_path: Path) -> None:
+    """Points of NURBS, polylines and joined curves are where Rhino's own evaluation puts them."""
     periodic = rhino3dm.NurbsCurve.Create(
         True, 3, points_of((0, 0, 0), (4, 0, 1), (5, 3, 0), (2, 5, 2), (-1, 3, 0), (-2, 1, 1))
     )

@@ -57,6 +57,7 @@ def edges_of(mesh: SurfaceMesh) -> set[tuple[int, int]]:
 @pytest.mark.parametrize("order", [2, 3, 4])
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
 def test_rims_keep_their_tolerance_and_meshes_have_no_t_junctions(kind: str, order: int, tolerance: float) -> None:
+    """Meshes of curved elements: closed rims within the tolerance, each inner edge in two triangles."""
     surface = SURFACES[kind](order)
     mesh = surface.mesh(tolerance)
     edges = edges_of(mesh)

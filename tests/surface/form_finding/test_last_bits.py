@@ -64,6 +64,7 @@ CASES = {
     "name", [pytest.param(name, marks=pytest.mark.slow if "octagon" in name else []) for name in CASES]
 )
 def test_elements_do_not_hang_on_the_last_bits(name: str) -> None:
+    """Loops that differ by rounding have the same triangles, with nodes as near as the loops."""
     build, curvature = CASES[name]
     loops = build()
     exact = find_film(loops, curvature, tolerance=3e-2).equilibrium.film

@@ -29,6 +29,7 @@ def roof_with_hole(points: int, scatter: float, seed: int):
     [(6, 0.0, 0), *(pytest.param(*one, marks=pytest.mark.slow) for one in ((5, 0.0, 0), (5, 0.12, 1), (6, 0.15, 2)))],
 )
 def test_hole_of_few_points_takes_few_nodes(points, scatter, seed) -> None:
+    """A spline through few points is met to the tolerance with under 20,000 nodes, its points vertices."""
     loops = roof_with_hole(points, scatter, seed)
     found = find_film(loops)
     film = found.equilibrium.film

@@ -113,6 +113,7 @@ def test_half_cylinder_of_given_volume(length, drawn) -> None:
 
 @pytest.mark.parametrize("part", [0.7, SLOW(0.9), 1.3])
 def test_vault_of_given_volume_is_half_an_unduloid(part) -> None:
+    """A vault with both sides free on the ground is the half of an unduloid, by its volume."""
     length = 10.0
     tube = unduloid_of_volume(R, length, part * np.pi * R**2 * length, about_bulge=part > 1)
     found = find_film(vault(length), volume=-tube.volume / 2)

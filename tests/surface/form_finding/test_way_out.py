@@ -117,6 +117,7 @@ SADDLE = np.stack([3 * np.cos(TURNS), 2.5 * np.sin(TURNS), 0.3 * np.cos(2 * TURN
 
 @pytest.mark.parametrize("boundary", [[{"points": SADDLE}], [ring(0, 2.0)]], ids=["convex in plan", "flat"])
 def test_unstable_films_where_there_is_the_stable_one_alone(boundary: list[dict[str, Any]]) -> None:
+    """Refused, with the H at which there is an unstable film too; it is found there."""
     error = refused(film(boundary, branch="unstable"))
     assert error.where == "surface.branch"
     assert make_surface(parse_project(film(boundary))).describe()["stability"] == "stable"

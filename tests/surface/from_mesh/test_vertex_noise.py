@@ -175,6 +175,7 @@ def test_too_much_noise_is_refused_with_a_noise_that_is_accepted(tmp_path: Path)
 
 @pytest.mark.parametrize("noise", [0.02, 0.15])
 def test_what_is_offered_in_place_of_a_fit_is_accepted(tmp_path: Path, noise: float) -> None:
+    """Where a noisy mesh is refused, what the remedy says is accepted."""
     points, faces = quads(saddle, 6, 7, 8.0, 10.0)
     written(tmp_path, noisy(points, noise, 1), faces)
     with pytest.raises(InputError) as refused:
