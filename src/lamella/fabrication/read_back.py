@@ -35,6 +35,8 @@ class SlotReadBack:
         Of the centre line, 1/mm, > 0 where it bends towards the +n side; the mean where it varies.
     outline : (v, 3)
         x, y (mm) and bulge.
+    holes : (b, 3)
+        Distance along the centre line, height over it and diameter of round holes, mm.
     """
 
     slots: Floats
@@ -43,6 +45,7 @@ class SlotReadBack:
     height: float
     curvature: float
     outline: Floats
+    holes: Floats
 
 
 def read_slots(path: Path) -> dict[str, SlotReadBack]:
@@ -62,15 +65,21 @@ def read_slots(path: Path) -> dict[str, SlotReadBack]:
         By part id; the second and further copies of a part on the sheets are told as "A1#2", "A1#3", ...
     """
     outlines: dict[str, Floats] = {}
+    circles: dict[str, list[Floats]] = defaultdict(list)
     lines: dict[str, list[tuple[float, float]]] = defaultdict(list)
     for entity in ezdxf.readfile(str(path)).modelspace():
         layer = entity.dxf.layer
         if layer == "CUT":
-            outlines[_name(entity)] = np.array(entity.get_points("xyb"), float)
+            points = np.array(entity.get_points("xyb"), float)
+            # two half circles are a hole
+            if len(points) == 2:
+                circles[_name(entity)].append(points)
+            else:
+                outlines[_name(entity)] = points
         elif layer == "MARK" and entity.dxftype() == "LINE":
             middle = 0.5 * (entity.dxf.start + entity.dxf.end)
             lines[_name(entity)].append((middle.x, middle.y))
-    return {name: _measure(outline, lines[name]) for name, outline in outlines.items()}
+    return {name: _measure(outline, lines[name], circles[name]) for name, outline in outlines.items()}
 
 
 def _name(entity: ezdxf.entities.DXFGraphic) -> str:
@@ -79,8 +88,8 @@ def _name(entity: ezdxf.entities.DXFGraphic) -> str:
     return str(tags[1000]) if tags[1071] == 1 else f"{tags[1000]}#{tags[1071]}"
 
 
-def _measure(outline: Floats, marks: list[tuple[float, float]]) -> SlotReadBack:
-    """Stations of an outline's notches and of marks."""
+def _measure(outline: Floats, marks: list[tuple[float, float]], circles: list[Floats]) -> SlotReadBack:
+    """Stations of an outline's notches, of marks and of holes."""
     points, bulges = outline[:, :2], outline[:, 2]
     ahead = np.roll(points, -1, axis=0) - points
     behind = np.roll(ahead, 1, axis=0)
@@ -107,19 +116,31 @@ def _measure(outline: Floats, marks: list[tuple[float, float]]) -> SlotReadBack:
     axis = Axis.of(knots, angle / steps)
     # from the axis' own frame into the drawing
     middle = axis.develop(knots[[0, -1]], 0.0)
-    end = 0.5 * (points[corner] + points[corner + 1])
     turn = _angle(points[-1] - points[0]) - _angle(_upwards(axis, knots[0]))
-    places = np.concatenate((feet, np.array(marks).reshape(-1, 2), end[None]))
-    stations = axis.stations(_turned(places - start, -turn) + middle[0])
+    holes = np.array(circles).reshape(-1, 2, 3)[:, :, :2]
+    places = np.concatenate((feet, np.array(marks).reshape(-1, 2), holes.mean(axis=1)))
+    flat = _turned(places - start, -turn) + middle[0]
+    stations = axis.stations(flat)
     length = float(knots[-1])
+    first = len(feet) + len(marks)
     return SlotReadBack(
         np.sort(stations[: len(feet)]),
-        np.sort(stations[len(feet) : -1]),
+        np.sort(stations[len(feet) : first]),
         length,
         height,
         float(angle.sum() / length),
         outline,
+        _holes(axis, flat[first:], np.linalg.norm(holes[:, 1] - holes[:, 0], axis=1)),
     )
+
+
+def _holes(axis: Axis, centres: Floats, diameters: Floats) -> Floats:
+    """Station, height and diameter of holes, by their stations, then their heights, (b, 3)."""
+    stations = axis.stations(centres)
+    away, heading = centres - axis.develop(stations, 0.0), axis.heading(stations)
+    holes = np.column_stack([stations, away[:, 1] * np.cos(heading) - away[:, 0] * np.sin(heading), diameters])
+    # rounded, so that holes above each other come in the order of their heights
+    return np.asarray(holes[np.lexsort((holes[:, 1], np.round(holes[:, 0], 6)))])
 
 
 def _upwards(axis: Axis, station: float) -> Floats:

@@ -114,9 +114,9 @@ def _hub_radius(parts: Parts) -> float:
 
 
 def _spliced(parts: Parts, lamellas: Lamellas, rules: JointRules) -> Floats:
-    """Lamella, arc length and half length of every splice, (c, 3)."""
-    reach = splice_length(rules) / 2
-    found = [(cut.lamella, cut.arclength(lamellas), reach) for cut in cuts(parts, lamellas)] if rules.splice else []
+    """Lamella, arc length and half length of every splice, (c, 3); of every cut where there are none."""
+    reach = splice_length(rules) / 2 if rules.splice else 0.0
+    found = [(cut.lamella, cut.arclength(lamellas), reach) for cut in cuts(parts, lamellas)]
     return np.array(found, float).reshape(-1, 3)
 
 
