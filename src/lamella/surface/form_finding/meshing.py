@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from lamella.base.arrays import Floats
-from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.geometry import smooth_normals
 from lamella.surface.element.lagrange import local_faces
@@ -138,11 +137,14 @@ def facets(film: Film, parts: int) -> TriangleMesh:
     return TriangleMesh(points, grid.elements[:, local_faces(parts)].reshape(-1, 3), loop, parameter)
 
 
-def _remeshed(film: Film, size: Callable[[Floats], Floats], loops: Sequence[Rim]) -> TriangleMesh:
+def _remeshed(
+    film: Film, size: Callable[[Floats], Floats], loops: Sequence[Rim], planes: TangentPlanes | None = None
+) -> TriangleMesh:
+    planes = planes or TangentPlanes(film.connectivity, film.nodes)
     # the curved elements' own shape, which their corners alone do not tell
     parts = 1 if film.connectivity.basis.order == 1 else FACETS
     try:
-        return remesh(facets(film, parts), size=size, project=TangentPlanes(film.connectivity, film.nodes), rims=loops)
+        return remesh(facets(film, parts), size=size, project=planes, rims=loops)
     except ValueError as error:
         raise NoFilmError(f"its elements cannot be made anew: {error}", film) from None
 
@@ -150,16 +152,11 @@ def _remeshed(film: Film, size: Callable[[Floats], Floats], loops: Sequence[Rim]
 def with_sizes(film: Film, size: Callable[[Floats], Floats], order: int | None = None) -> Film:
     """The same surface with elements of wanted sizes."""
     film = settled_rims(film)
-    mesh = _remeshed(film, size, film.loops)
-    new = Film.on_mesh(mesh, film.loops, order or film.connectivity.basis.order)
-    inside = np.setdiff1d(np.arange(new.connectivity.node_count), new.connectivity.rim_nodes)
-    places, position = ClosestPoint(film.connectivity, film.nodes)(new.nodes[inside])
-    normals = smooth_normals(film.connectivity, film.nodes)
-    basis = film.connectivity.basis.basis(places.local)
-    along = np.einsum("nk,nkc->nc", basis, normals[film.connectivity.elements[places.element]])
-    along /= np.linalg.norm(along, axis=1)[:, None]
+    planes = TangentPlanes(film.connectivity, film.nodes)
+    new = Film.on_mesh(_remeshed(film, size, film.loops, planes), film.loops, order or film.connectivity.basis.order)
+    inside = new.connectivity.inner_unknowns >= 0
     nodes = new.nodes.copy()
-    nodes[inside] += ((position - nodes[inside]) * along).sum(1)[:, None] * along
+    nodes[inside] = planes.curved(nodes[inside])
     return new.at(nodes)
 
 

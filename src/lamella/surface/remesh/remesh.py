@@ -64,7 +64,7 @@ def remesh(
     size: Callable[[Floats], Floats],
     project: Callable[[Floats], Floats],
     rims: Sequence[Rim],
-    rounds: int = 8,
+    rounds: int = 5,
 ) -> TriangleMesh:
     """Replace the triangles of a surface by well-shaped ones of a wanted size.
 

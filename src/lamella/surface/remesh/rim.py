@@ -112,16 +112,18 @@ def plan(rim: Rim, start: float, size: Callable[[Floats], Floats]) -> Plan:
     pieces: list[Floats] = []
     spans: list[Floats] = []
     for low, high in pairwise(stops):
-        samples = 65
+        t = np.linspace(low, high, 65)
+        density = rim.length / size(rim.at(np.mod(t, 1.0)))
         while True:
-            t = np.linspace(low, high, samples)
-            density = rim.length / size(rim.at(np.mod(t, 1.0)))
             steps = 0.5 * (density[1:] + density[:-1]) * np.diff(t)
             # Several samples to an edge, or a small size between two samples is missed. Even steps along a whole number
             # of edges are never near the limit.
-            if steps.max() < 0.13 or samples > 100_000:
+            if steps.max() < 0.13 or t.size > 100_000:
                 break
-            samples = 2 * samples - 1
+            between = 0.5 * (t[1:] + t[:-1])
+            there = rim.length / size(rim.at(np.mod(between, 1.0)))
+            gaps = np.arange(1, t.size)
+            t, density = np.insert(t, gaps, between), np.insert(density, gaps, there)
         pieces.append(t)
         spans.append(np.concatenate([[0.0], np.cumsum(steps)]))
     ideal = np.array([span[-1] for span in spans])
