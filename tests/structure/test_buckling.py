@@ -5,9 +5,12 @@ import pytest
 from scipy.optimize import brentq
 
 from lamella import InputError
+from lamella.structure.beam.beams import make_beams
+from lamella.structure.beam.poses import Poses, straight_poses
 from lamella.structure.buckling import critical_point, linear_buckling
 from lamella.structure.loads import make_loads
 from lamella.structure.static import at_rest, equilibrium
+from lamella.structure.structure import make_structure
 from structure.strips import STRIP, orders, rod, strip
 
 LENGTH = 2.0
@@ -46,6 +49,28 @@ def test_several_modes_of_a_column():
     shape = found.modes[1].reshape(-1, 6)[:, 1]
     sine = np.sin(2 * np.pi * np.linspace(0, 1, elements + 1))
     assert np.abs(shape / np.abs(shape).max()) == pytest.approx(np.abs(sine), abs=1e-3)
+
+
+def test_many_columns_that_are_nearly_alike():
+    """Forty columns side by side, each longer by 1e-5 than the one before: the three longest buckle first, at the loads
+    that each of them has alone."""
+    section, elements, count = rod(), 4, 40
+    lengths = LENGTH * (1 + 1e-5 * np.arange(count))
+    alone = []
+    for length in lengths[-3:]:
+        column = strip(elements, length, section, {0: "all"})
+        start = at_rest(column, make_loads(column, forces={elements: (-1, 0, 0, 0, 0, 0)}))
+        alone.append(linear_buckling(start).factors[0])
+    poses = [straight_poses(length, elements) for length in lengths]
+    points = np.concatenate([p.points + np.array([0, k, 0]) for k, p in enumerate(poses)])
+    frames = np.concatenate([p.frames for p in poses])
+    first = (elements + 1) * np.arange(count)
+    nodes = first[:, None, None] + np.stack((np.arange(elements), np.arange(1, elements + 1)), 1)
+    beams = make_beams(nodes.reshape(-1, 2), np.repeat(lengths / elements, elements), section)
+    structure = make_structure(Poses(points, frames, np.zeros(0)), beams, dict.fromkeys(first.tolist(), "all"))
+    loads = make_loads(structure, forces=dict.fromkeys((first + elements).tolist(), (-1, 0, 0, 0, 0, 0)))
+    found = linear_buckling(at_rest(structure, loads), 3)
+    assert found.factors == pytest.approx(sorted(alone), rel=1e-8)
 
 
 def test_column_under_its_own_weight():

@@ -138,7 +138,8 @@ def test_stresses_are_those_of_the_strip():
     state = beams.at(Poses(points, frames, np.zeros(0)))
     assert np.abs(state.stress[0]).max() < 1e-3 * STRIP.axial * STRIP.gyration * tg**2
     curvature = np.array([tg, 0, kg]) * length / elements / shortened
-    assert np.allclose(curvatures_at_ends(state), curvature, rtol=0, atol=1e-12)
+    # to the second order of an element's twist, here 0.1
+    assert np.allclose(curvatures_at_ends(state), curvature, rtol=0, atol=1e-3)
     found = strip_stresses(state, STEEL, HEIGHT, THICKNESS)
     one, zero = np.ones(1), np.zeros(1)
     axial = state.stress[0, :1] / shortened / (HEIGHT * THICKNESS)
@@ -154,7 +155,7 @@ def test_stresses_are_those_of_the_strip():
         axial=axial,
     )
     for name in ("bending", "torsion", "helix_edge", "helix_centre", "von_mises", "utilisation"):
-        assert np.allclose(getattr(found, name), getattr(expected, name), rtol=1e-10), name
+        assert np.allclose(getattr(found, name), getattr(expected, name), rtol=1e-3), name
 
 
 def test_curvature_changes_linearly_along_an_element():

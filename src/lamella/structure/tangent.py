@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
@@ -25,14 +24,14 @@ class Tangent:
     equilibrium : Equilibrium
     blocks : list of (m, k, k)
         Of the elements, in the groups of `Beams.unknowns`.
-    matrix : sparse (f, f)
-        In the free unknowns.
+    entries : (nnz,)
+        Of the matrix in the free unknowns, see `Structure.pattern`.
     factor : Factor
     """
 
     equilibrium: Equilibrium
     blocks: list[Floats]
-    matrix: sp.csc_matrix
+    entries: Floats
     factor: Factor
 
     @classmethod
@@ -56,7 +55,7 @@ class Tangent:
                 "hold what moves freely, or start below a critical load",
                 "structure",
             ) from None
-        return cls(equilibrium, blocks, structure.pattern.matrix(entries), factor)
+        return cls(equilibrium, blocks, entries, factor)
 
     def motion(self) -> Floats:
         """Motion by one unit of load factor, (6 n + k,)."""
@@ -82,8 +81,8 @@ class Tangent:
         """
         structure = self.equilibrium.structure
         require_stable(self.factor.negative, self.equilibrium.factor)
-        matrix = structure.pattern.matrix(structure.entries(other))
-        ratios, vectors = least_ratios(self.matrix, self.factor, matrix, count)
+        pattern = structure.pattern
+        ratios, vectors = least_ratios(pattern, self.entries, self.factor, structure.entries(other), count)
         motions = np.zeros((len(ratios), structure.poses.unknowns))
         motions[:, structure.free] = vectors.T
         largest = np.take_along_axis(motions, np.abs(motions).argmax(1)[:, None], 1)

@@ -13,21 +13,30 @@ from lamella.base.arrays import Floats
 from lamella.base.material import Material
 from lamella.strip.stress import Stresses, stresses
 from lamella.structure.beam.beams import BeamState
+from lamella.structure.beam.columns import turned_product
 
 
 def curvatures_at_ends(state: BeamState) -> Floats:
     """tg, -kn, kg at both ends of each element, 1/m, (m, 2, 3).
 
-    The mean of the element, and what its shear forces make bending moments change by:
-    :math:`M_n' = -Q_u`, :math:`M_u' = Q_n`.
+    The mean of the element, and for bending what the moments at the ends differ from its mean moment: those balance the
+    loads at the nodes, which makes them more exact than the element's own change of curvature where a strip is under
+    tension.
     """
-    law = state.beams.law
+    law, frame = state.beams.law, state.motion.frame
     mean = state.motion.local_theta / law.length
-    # Q L / 2 over E I; stress and stiffness both hold the length
-    half = law.length / 2
-    about_u, about_n = (half * state.stress[i] / law.stiffness[j] for i, j in ((2, 4), (1, 5)))
-    change = np.stack((np.zeros_like(half), about_u, -about_n))
-    return np.stack(((mean - change).T, (mean + change).T), 1)
+    mean_moment = turned_product(state.strains.first, state.stress)[3:]
+    on_ends = state.on_ends(state.stress)
+    frame_b = state.motion.frame_at_b()
+    moments = (-turned_product(frame, on_ends[3:6]), turned_product(frame_b, on_ends[9:]))
+    ends = []
+    for moment in moments:
+        curvature = mean.copy()
+        for axis in (1, 2):
+            # stiffness holds the length
+            curvature[axis] += (moment - mean_moment)[axis] * law.length / law.stiffness[axis + 3]
+        ends.append(curvature.T)
+    return np.stack(ends, 1)
 
 
 def strip_stresses(state: BeamState, material: Material, height: float, thickness: float) -> Stresses:

@@ -39,7 +39,7 @@ from lamella.structure.beam.columns import (
     transposed,
     turned_product,
 )
-from lamella.structure.beam.rotations import inverse_tangent_coefficient, logarithm
+from lamella.structure.beam.rotations import exponential, inverse_tangent_coefficient, logarithm
 
 
 @dataclass(frozen=True)
@@ -86,6 +86,10 @@ class RelativeMotion:
         bent = 0.5 * crossing(v) + c * (outer(theta, v) - 2 * outer(v, theta)) + 2 * c1 * outer(turned, theta)
         add_unit(bent, c * along)
         return cls(first, turned_product(first, rho), local_theta, theta, v, (c, c1, c2), matrix, bent)
+
+    def frame_at_b(self) -> Floats:
+        """R_b, (3, 3, m)."""
+        return product(self.frame, element_last(exponential(self.local_theta.T)))
 
     def on_ends(self, by_rho: Floats, by_theta: Floats) -> Floats:
         """Forces and moments on the ends, (12, m), of x_a, w_a, x_b, w_b, by what is conjugate to rho and theta."""
