@@ -21,6 +21,9 @@ from lamella.surface.element.carried_umbilics import carried_umbilics
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
 
+# small triangles for lines that are only drawn reach over at most this many cells
+LINE_CELLS = 1.0
+
 
 @dataclass(frozen=True, eq=False)
 class KeptCoordinates(Lean):
@@ -71,8 +74,8 @@ class KeptCoordinates(Lean):
         return {}
 
     def grid(self, cells: IntegerGridMap) -> SmallGrid:
-        """Small triangles of coordinates that are not cut straight."""
-        parts = parts_of(cells)
+        """Small triangles for the lines of coordinates that are not cut straight."""
+        parts = parts_of(cells, LINE_CELLS)
         if parts not in self._grids:
             self._grids[parts] = SmallGrid.of(cells.mesh.connectivity, self.cut.cut, cells.across, parts)
         return self._grids[parts]

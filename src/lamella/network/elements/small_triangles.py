@@ -97,11 +97,11 @@ class SmallGrid:
         )
 
 
-def parts_of(cells: IntegerGridMap) -> int:
-    """Into how many parts the edges of elements are cut."""
+def parts_of(cells: IntegerGridMap, reach: float = SMALL_TRIANGLE_CELLS) -> int:
+    """Into how many parts the edges of elements are cut for small triangles that reach over so many cells at most."""
     corner = cells.value[:, :3]
     span = np.abs(corner - np.roll(corner, 1, 1)).max()
-    return int(np.clip(np.ceil(span / SMALL_TRIANGLE_CELLS), EDGE_PARTS_MIN, EDGE_PARTS_MAX))
+    return int(np.clip(np.ceil(span / reach), EDGE_PARTS_MIN, EDGE_PARTS_MAX))
 
 
 def small_triangles(
@@ -117,13 +117,12 @@ def small_triangles(
     umbilics : (z,) int
         Vertices that may be singular nodes.
     grid : SmallGrid, optional
-        Of these elements, where it is at hand.
+        Of these elements; as small as the net's combinatorics want it when not given.
     """
     connectivity = cells.mesh.connectivity
-    parts = parts_of(cells)
-    if grid is None or grid.parts != parts:
-        grid = SmallGrid.of(connectivity, cut, cells.across, parts)
-    local, point = grid.local, grid.point
+    if grid is None:
+        grid = SmallGrid.of(connectivity, cut, cells.across, parts_of(cells))
+    local, point, parts = grid.local, grid.point, grid.parts
     values = cells.value @ connectivity.basis.basis(local).T
     for vertex in umbilics.tolist():
         _straighten(values, cells, local, vertex)

@@ -74,6 +74,8 @@ class _Patch:
         A vertex of the ring.
     argument : float
         Of c in D = c z^m + ... where z is real towards that vertex, on the reference, rad.
+    circle : Places
+        On the reference, where c is measured.
     """
 
     umbilic: int
@@ -83,6 +85,7 @@ class _Patch:
     gaps: int
     axis: int
     argument: float
+    circle: Places
 
 
 @dataclass(frozen=True)
@@ -146,7 +149,7 @@ class MeshLayout:
         around = []
         for patch in self.patches:
             plane, radius = planes[patch.umbilic], float(self.radii[patch.umbilic])
-            leading = _leading(surface, plane, patch.order, MEASURED * radius)
+            leading, _ = _leading(surface, plane, patch.order, MEASURED * radius, patch.circle if known else None)
             argument = float(np.angle(leading))
             turns = (patch.argument - _towards(plane, positions[patch.axis], patch.order, argument)) / (2 * np.pi)
             # two wedges further on it is the same rosette, with other numbers
@@ -210,14 +213,15 @@ def lay_out(surface: ElementSurface, umbilics: Umbilics) -> MeshLayout:
     faces = [parts.faces]
     at = np.full(len(zeros), -1)
     count = len(parts.points)
-    laid: list[tuple[int, int, int, int, float]] = []
+    laid: list[tuple[int, int, int, int, float, Places]] = []
     nodes_of_parts = _positions(parts, surface)
     for number in np.flatnonzero(inside).tolist():
         plane, radius = planes[number], float(radii[number])
         hole = _hole(parts, nodes_of_parts, zeros[number], (1 + PATCH_GAP) * radius)
         kept &= ~hole
         order = int(umbilics.orders[number])
-        argument = float(np.angle(_leading(surface, plane, order, MEASURED * radius)))
+        leading, circle = _leading(surface, plane, order, MEASURED * radius)
+        argument = float(np.angle(leading))
         rose = umbilic_patch(order, argument, radius, INTEGRATION_ORDER)
         ring = _ring(parts.faces[hole])
         gap = _between(plane.down(parts.points[ring]), rose.vertices[rose.rim])
@@ -225,7 +229,7 @@ def lay_out(surface: ElementSurface, umbilics: Umbilics) -> MeshLayout:
         at[number] = count
         faces += [count + rose.faces, names[gap]]
         towards = _towards(plane, parts.points[ring[0]], order, argument)
-        laid.append((number, len(rose.faces), len(gap), int(ring[0]), towards))
+        laid.append((number, len(rose.faces), len(gap), int(ring[0]), towards, circle))
         count += len(rose.vertices)
     faces[0] = parts.faces[kept]
     used, all_faces = np.unique(np.concatenate(faces), return_inverse=True)
@@ -241,10 +245,10 @@ def lay_out(surface: ElementSurface, umbilics: Umbilics) -> MeshLayout:
     start = len(mine)
     patch = np.full(len(new.faces), -1)
     patches = []
-    for number, petals, gaps, axis, towards in laid:
+    for number, petals, gaps, axis, towards, circle in laid:
         patch[start : start + petals + gaps] = number
         order = int(umbilics.orders[number])
-        patches.append(_Patch(number, order, start, petals, gaps, int(np.searchsorted(used, axis)), towards))
+        patches.append(_Patch(number, order, start, petals, gaps, int(np.searchsorted(used, axis)), towards, circle))
         start += petals + gaps
     return MeshLayout(
         new, np.unique(target), Places(element, local), loop, at, umbilics.orders, radii, patch, tuple(patches)
@@ -295,12 +299,14 @@ def _radii(surface: ElementSurface, umbilics: Umbilics, to_rim: Floats) -> Float
     return np.asarray(radii)
 
 
-def _leading(surface: ElementSurface, plane: TangentPlane, order: int, radius: float) -> complex:
-    """c in D dz^2 = (c z^m + ...) dz^2 around an umbilic, by the mean over a circle."""
+def _leading(
+    surface: ElementSurface, plane: TangentPlane, order: int, radius: float, start: Places | None = None
+) -> tuple[complex, Places]:
+    """c in D dz^2 = (c z^m + ...) dz^2 around an umbilic, by the mean over a circle; the places on it."""
     turn = np.exp(2j * np.pi * np.arange(24) / 24)
-    places, _ = plane.up(radius * turn, surface)
+    places, _ = plane.up(radius * turn, surface, start)
     frames, _, deviator = surface.shape_at(places)
-    return complex((deviator / plane.turn(frames.e_u) * turn ** (-order)).mean() / radius**order)
+    return complex((deviator / plane.turn(frames.e_u) * turn ** (-order)).mean() / radius**order), places
 
 
 def _without_noise(

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from lamella.base.arrays import Booleans, Complexes, Floats, Integers
 from lamella.base.result import Lean
@@ -66,13 +67,24 @@ class Unknowns(Lean):
         return SymmetricPattern.from_elements(*self._numbers)
 
     @cached_property
-    def fixed(self) -> tuple[Floats, ...]:
-        """Of each parameter: the elements' own values (m, k) for c = 1 where the free unknowns are 0."""
+    def gathering(self) -> csr_matrix:
+        """What adds up values of elements' own nodes at the free unknowns, with their signs, (size, m k)."""
+        flat = self.number.ravel()
+        inside = np.flatnonzero(flat >= 0)
+        return csr_matrix((self.signs.ravel()[inside], (flat[inside], inside)), (self.pattern.size, len(flat)))
+
+    @cached_property
+    def fixed_rows(self) -> tuple[Integers, Floats]:
+        """Elements (f,), and their own values (t, f, k) for 1 of each parameter where the free unknowns are 0.
+
+        Of all other elements these are 0.
+        """
         at = np.zeros((int(self.home.max()) + 1, self.offset.shape[1]))
         for index, row in self.held.items():
             at[index] = row
-        unknown = self.home[self.sector]
-        return tuple(self.signs * at[unknown, t] + self.offset[self.sector, t] for t in range(self.offset.shape[1]))
+        values = self.signs[..., None] * at[self.home[self.sector]] + self.offset[self.sector]
+        moved = np.flatnonzero(values.any((1, 2)))
+        return moved, np.ascontiguousarray(values[moved].transpose(2, 0, 1))
 
 
 @dataclass(frozen=True)
@@ -171,20 +183,19 @@ class Poisson:
         s, number, pattern = unknowns.signs, unknowns.number, unknowns.pattern
         one, other = np.tril_indices(number.shape[1])
         blocks = packed(self.blocks) * (s.take(one, 1) * s.take(other, 1))
-        flat = number.ravel()
-        inside = flat >= 0
-
-        def gathered(part: Floats) -> Floats:
-            return np.bincount(flat[inside], (s * part).ravel()[inside], pattern.size).astype(np.float64)
-
+        moved, fixed = unknowns.fixed_rows
         # what the held unknowns and the offsets make of c = 1 without the free unknowns
-        right = [gathered(self.pull.real), gathered(self.pull.imag)]
-        right += [-gathered(np.matmul(self.blocks, part[..., None])[..., 0]) for part in unknowns.fixed]
-        solved = pattern.factor(pattern.assemble(blocks)).solve(np.stack(right, 1))
+        pulls = np.zeros((*number.shape, 2 + len(fixed)))
+        pulls[..., 0], pulls[..., 1] = self.pull.real, self.pull.imag
+        for column, part in enumerate(fixed, 2):
+            pulls[moved, :, column] = -np.matmul(self.blocks[moved], part[..., None])[..., 0]
+        right = unknowns.gathering @ pulls.reshape(number.size, -1)
+        solved = pattern.factor(pattern.assemble(blocks)).solve(right)
         padded = np.vstack([solved, np.zeros((1, solved.shape[1]))])[number]
         base = s * (padded[..., 0] + 1j * padded[..., 1])
-        moves = np.array([s * padded[..., 2 + t] + part for t, part in enumerate(unknowns.fixed)])
-        return np.asarray(base), moves.reshape(-1, *number.shape)
+        moves = np.ascontiguousarray(s * padded[..., 2:].transpose(2, 0, 1))
+        moves[:, moved] += fixed
+        return np.asarray(base), np.asarray(moves)
 
     def quadratic(self, base: Complexes, moves: Floats) -> tuple[Floats, Complexes]:
         """Matrix (t, t) and right side (t,) of the parameters' least squares."""
