@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.blocks import blocks
@@ -193,13 +193,61 @@ def _segments(
 
 
 class _Spots(NamedTuple):
-    """Tangents in order along the curves (k, 3), and all else element by element: that is in `order` (k,) of those."""
+    """Places in order along the curves, with unit tangents, and the elements near which they were looked for."""
 
-    tangents: Floats
-    order: Integers
+    near: Integers
     places: Places
     points: Floats
-    directions: Floats
+    tangents: Floats
+
+
+class _Sampler:
+    """Samples of segments; those of pieces that are divided as before are taken over."""
+
+    def __init__(self, segments: ElementSegments, arcs: ElementArcs) -> None:
+        self._segments, self._arcs = segments, arcs
+        self._before: tuple[Division, _Spots] | None = None
+
+    def __call__(self, division: Division) -> _Spots:
+        """Places that divide the segments evenly."""
+        if self._before is None:
+            made = self._made(division.piece, division.fraction)
+        else:
+            before, known = self._before
+            anew = (division.counts != before.counts)[division.piece]
+            kept = (division.counts == before.counts)[before.piece]
+            fresh = self._made(division.piece[anew], division.fraction[anew])
+
+            def merged(old: NDArray[Any], new: NDArray[Any]) -> NDArray[Any]:
+                whole = np.empty((len(anew), *old.shape[1:]), old.dtype)
+                whole[anew], whole[~anew] = new, old[kept]
+                return whole
+
+            made = _Spots(
+                merged(known.near, fresh.near),
+                Places(
+                    merged(known.places.element, fresh.places.element), merged(known.places.local, fresh.places.local)
+                ),
+                merged(known.points, fresh.points),
+                merged(known.tangents, fresh.tangents),
+            )
+        self._before = division, made
+        return made
+
+    def _made(self, piece: Integers, fraction: Floats) -> _Spots:
+        parameter, near = self._arcs.parameter(piece, fraction)
+        # element by element
+        order = _by_element(near.element, len(self._segments.cells.value))
+        back = _inverse(order)
+        spots = self._segments.spots(piece, parameter)[order]
+        places, points, velocity = self._segments.velocity(spots, near[order])
+        directions = velocity / lengths(velocity)[:, None]
+        return _Spots(near.element, places[back], points.take(back, 0), directions.take(back, 0))
+
+
+def _by_element(element: Integers, count: int) -> Integers:
+    """Order of places by their elements (n,) of so many; -1: unknown, first."""
+    return counted(element + 1, count + 1).astype(np.int64)
 
 
 def _sampled(
@@ -211,13 +259,13 @@ def _sampled(
     # a lamella shorter than a cell is sampled as finely as a whole cell
     whole = np.minimum(np.bincount(owner, segments.reach), 1.0)[owner]
     parts = parts_of(segments.reach / whole, len(curves.kinds))
-    division, spots = divide(parts, owner, partial(_spots, segments, arcs))
+    division, spots = divide(parts, owner, _Sampler(segments, arcs))
     sampled = SampledCurves(curves, division)
-    points = onto(spots.places.element, spots.points)
-    normals, tangents, bend, twist = _frames(segments.cells, spots.places, spots.directions)
-    back = _inverse(spots.order)
-    places, bend, twist = spots.places[back], bend[back], twist[back]
-    points, normals, tangents = (t.take(back, 0) for t in (points, normals, tangents))
+    places, points = spots.places, onto(spots.places.element, spots.points)
+    order = _by_element(spots.near, len(segments.cells.value))
+    back = _inverse(order)
+    normals, tangents, bend, twist = _frames(segments.cells, places[order], spots.tangents.take(order, 0))
+    bend, twist, normals, tangents = bend[back], twist[back], normals.take(back, 0), tangents.take(back, 0)
     begun = np.cumsum(arcs.length) - arcs.length
     begun -= begun[np.searchsorted(owner, owner)]
     arclengths = begun[division.piece] + division.fraction * arcs.length[division.piece]
@@ -228,17 +276,6 @@ def _sampled(
     where = np.column_stack([places.element, places.local])
     mean = np.full(len(bend), mean_curvature)
     return sampled, CurveSamples(points, normals, tangents, darboux, mean, slopes, where, arclengths)
-
-
-def _spots(segments: ElementSegments, arcs: ElementArcs, division: Division) -> _Spots:
-    """Places that divide the segments evenly."""
-    parameter, near = arcs.parameter(division.piece, division.fraction)
-    # element by element
-    order = counted(near.element + 1, len(segments.cells.value) + 1).astype(np.int64)
-    spots = segments.spots(division.piece, parameter)[order]
-    places, points, velocity = segments.velocity(spots, near[order])
-    directions = velocity / lengths(velocity)[:, None]
-    return _Spots(directions.take(_inverse(order), 0), order, places, points, directions)
 
 
 def _inverse(order: Integers) -> Integers:
