@@ -12,7 +12,7 @@ import pytest
 from lamella import Memory, compute, parse_project
 from lamella.network.elements import net_coordinates
 from lamella.stages.all_stages import STAGES
-from lamella.surface.form_finding import find
+from lamella.surface.form_finding import find, followed_film
 
 RINGS = [{"circle": {"center": [0.0, 0.0, z], "radius": 2.0, "normal": [0, 0, 1]}} for z in (0.0, 1.2)]
 FILM = {
@@ -124,3 +124,25 @@ def test_nothing_is_kept_of_what_failed(runs: Counter[str]) -> None:
             compute(parse_project(UNDULOID), memory=memory, progress=fail)
     assert runs["surface"] == 1
     assert compute(parse_project(UNDULOID), memory=memory).parts
+
+
+def test_a_memory_that_follows_finds_one_film(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Films and nets of changed boundaries are those found from nothing, to the tolerance; runs do not follow."""
+    found: list[Any] = []
+    original = followed_film.find_film
+    monkeypatch.setattr(followed_film, "find_film", lambda *a, **k: found.append(a) or original(*a, **k))
+    memory, plain = Memory(follow=True), Memory()
+    assert not plain.follow
+    for height in (1.2, 1.25, 1.3):
+        rings = [RINGS[0], {"circle": RINGS[1]["circle"] | {"center": [0.0, 0.0, height]}}]
+        project = parse_project(changed(FILM, "surface.boundary", rings))
+        followed = compute(project, until="network", memory=memory)
+        wanted = compute(project, until="network", memory=plain)
+        assert followed.summary["surface"]["area"] == pytest.approx(wanted.summary["surface"]["area"], rel=1e-5)
+        assert followed.summary["surface"]["stability"] == "stable"
+        assert followed.network.node_points == pytest.approx(wanted.network.node_points, abs=2e-3)
+        assert followed.summary["network"]["closed"]
+    assert len(found) == 1
+    # another request is another film
+    compute(parse_project(changed(FILM, "surface.tolerance", 0.03)), until="surface", memory=memory)
+    assert len(found) == 2

@@ -20,6 +20,13 @@ KEPT = 6
 class Memory:
     """Outputs of stages by what decides them; pass one to several calls of `lamella.compute`.
 
+    Parameters
+    ----------
+    follow : bool
+        Whether the film of a changed boundary, H or volume, and the isothermic coordinates on it, follow from those
+        before (`lamella.follow`), several times sooner: as good to the tolerance, but on other elements than those of a
+        film found from nothing, and so other in the last digits. Files of runs never come of it.
+
     Examples
     --------
     >>> import lamella
@@ -30,12 +37,14 @@ class Memory:
     ...     results = lamella.compute(project, until="network", memory=memory)
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, follow: bool = False) -> None:
+        self.follow = follow
         self._made: dict[str, OrderedDict[str, Any]] = {}
+        self._last: dict[str, Any] = {}
 
     def __getstate__(self) -> dict[str, Any]:
         # pickles and copies begin empty: what is kept can be computed again
-        return {"_made": {}}
+        return {"follow": self.follow, "_made": {}, "_last": {}}
 
     def __repr__(self) -> str:
         kept = ", ".join(f"{len(made)} of {name}" for name, made in self._made.items())
@@ -61,6 +70,19 @@ class Memory:
             made.popitem(last=False)
         kept: Made = made[key]
         return kept
+
+    def followed(self, name: str, advance: Callable[[Made | None], Made]) -> Made:
+        """What follows from the last one of a name, and replaces it.
+
+        Parameters
+        ----------
+        name : str
+        advance : callable
+            Makes it from the last one, None at first. Where it raises the last one stays.
+        """
+        made = advance(self._last.get(name))
+        self._last[name] = made
+        return made
 
 
 def content_key(project: Project, reads: Iterable[str], needs: Iterable[str], folder: Path) -> str:

@@ -83,7 +83,7 @@ def test_level_lines_lie_on_the_lamellas() -> None:
         mine = mine[~np.isin(mine + 1, lines.offsets)]
         begin, end = lines.points[mine], lines.points[mine + 1]
         # between the corners as well
-        share = np.linspace(0, 1, 5)[:, None, None]
+        share = np.linspace(0, 1, 33)[:, None, None]
         along = (begin + share * (end - begin)).reshape(-1, 3)
         samples = network.sample_points[np.repeat(network.families == which, np.diff(network.sample_offsets))]
         assert cKDTree(along).query(samples)[0].max() < 0.05

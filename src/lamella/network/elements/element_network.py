@@ -393,12 +393,17 @@ def plan_net(
     assert surface.has_lattice(pattern.normal_curvature)
     known = coordinates or net_coordinates(surface, seams=seams, progress=progress)
     iso, around = known.iso, known.around
-    names = loop_names or tuple(f"border {k}" if k else "outer" for k in range(int(iso.mesh.loop.max()) + 1))
+    names = loop_names or border_names(iso)
     choose = partial(choose_lattice, iso, around, request, step=step, pattern=pattern, names=names, seams=seams)
     laid = NetPlan(surface, known.umbilics, iso.mesh, iso, around, choose(), pattern, names)
     if spacing is None or step is not None:
         return laid
     return _tried_out(laid, spacing, choose, "open" if seams else "round", minimum_length)
+
+
+def border_names(iso: Isothermic) -> tuple[str, ...]:
+    """Names of boundary loops that have none of their own."""
+    return tuple(f"border {k}" if k else "outer" for k in range(int(iso.mesh.loop.max()) + 1))
 
 
 def _tried_out(

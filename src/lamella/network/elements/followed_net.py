@@ -12,13 +12,11 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import numpy as np
-
 from lamella.base.errors import InputError
 from lamella.base.result import Result
 from lamella.network.density_request import DensityRequest
 from lamella.network.elements.cell_count import CellCount
-from lamella.network.elements.element_network import Closing, ElementNetwork, NetPlan, plan_net
+from lamella.network.elements.element_network import Closing, ElementNetwork, NetPlan, border_names, plan_net
 from lamella.network.elements.integer_grid_map import IntegerGridMap
 from lamella.network.elements.kept_coordinates import KeptCoordinates, coordinates_of
 from lamella.network.elements.lattice import choose_lattice
@@ -28,7 +26,6 @@ from lamella.network.isothermic.lattice_origin import lattice_origin
 from lamella.network.isothermic.mesh_layout import LayoutError
 from lamella.network.network import Network
 from lamella.network.pattern import NetKind, Pattern
-from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.umbilic import refuse_umbilic
@@ -42,7 +39,6 @@ class NetRequest:
     minimum_length: float
     pattern: Pattern
     closing: Closing
-    names: tuple[str, ...] = ()
 
     @property
     def seams(self) -> bool:
@@ -66,11 +62,6 @@ class NetReference:
     kept: KeptCoordinates
     cells: int
     step: float | None
-
-    @property
-    def connectivity(self) -> Connectivity:
-        """Of the surface's elements."""
-        return self.kept.surface.connectivity
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -136,7 +127,7 @@ class FollowedNet(Result):
         """
         reason = "the surface has other elements"
         for reference in dict.fromkeys((self.home, self.reference)):
-            if not _alike(reference.connectivity, surface.connectivity):
+            if not reference.kept.serves(surface):
                 continue
             try:
                 umbilics, iso = reference.kept.on(surface)
@@ -159,7 +150,7 @@ class FollowedNet(Result):
         """The net's curves as polylines.
 
         Those of the lattice with all their short pieces, to the size of the small triangles that they are looked for
-        on; where the net closes by less than a thousandth of a cell they are not moved.
+        on; neither rounded nor moved where the net closes by less than a thousandth of a cell.
         """
         iso, pattern = self.coordinates, self.request.pattern
         cells = IntegerGridMap.of(iso, lattice_origin(iso, self.step, pattern), self.step, pattern)
@@ -187,12 +178,12 @@ class FollowedNet(Result):
             with suppress(LayoutError):
                 iso = kept.straightened(iso, self.surface)
         coordinates = coordinates_of(self.umbilics, iso)
-        names = request.names or _names(iso)
+        names = border_names(iso)
         lattice = choose_lattice(
             iso,
             coordinates.around,
             request.density,
-            step=self.step,
+            step=self.reference.step,
             pattern=request.pattern,
             names=names,
             seams=request.seams,
@@ -264,23 +255,9 @@ def _laid(kept: KeptCoordinates, request: NetRequest) -> NetReference:
         cells=request.density.cells,
         spacing=request.density.spacing,
         pattern=request.pattern,
-        loop_names=request.names,
         seams=request.seams,
         minimum_length=request.minimum_length,
         coordinates=coordinates_of(kept.umbilics, iso),
     )
     spaced = request.density.spacing is not None
     return NetReference(kept, plan.lattice.cells, plan.lattice.step if spaced else None)
-
-
-def _names(iso: Isothermic) -> tuple[str, ...]:
-    return tuple(f"border {k}" if k else "outer" for k in range(int(iso.mesh.loop.max()) + 1))
-
-
-def _alike(one: Connectivity, other: Connectivity) -> bool:
-    """Whether elements are the same, also where one of them has been pickled."""
-    return one is other or (
-        one.basis.order == other.basis.order
-        and one.elements.shape == other.elements.shape
-        and bool(np.array_equal(one.elements, other.elements))
-    )

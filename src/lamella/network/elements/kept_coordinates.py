@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
+
+import numpy as np
 
 from lamella.base.arrays import Booleans
 from lamella.base.result import Lean
@@ -20,6 +23,7 @@ from lamella.network.isothermic.straight_cuts import CrossedError
 from lamella.surface.element.carried_umbilics import carried_umbilics
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.element.umbilics import Umbilics
+from lamella.surface.umbilic import refuse_umbilic
 
 # small triangles for lines that are only drawn reach over at most this many cells
 LINE_CELLS = 1.0
@@ -80,6 +84,15 @@ class KeptCoordinates(Lean):
             self._grids[parts] = SmallGrid.of(cells.mesh.connectivity, self.cut.cut, cells.across, parts)
         return self._grids[parts]
 
+    def serves(self, surface: ElementSurface) -> bool:
+        """Whether a surface has the elements of the reference, also where one of them has been pickled."""
+        one, other = self.surface.connectivity, surface.connectivity
+        return one is other or (
+            one.basis.order == other.basis.order
+            and one.elements.shape == other.elements.shape
+            and bool(np.array_equal(one.elements, other.elements))
+        )
+
     def on(self, surface: ElementSurface) -> tuple[Umbilics, Isothermic]:
         """Umbilics and isothermic coordinates of another surface.
 
@@ -117,3 +130,41 @@ class KeptCoordinates(Lean):
 def coordinates_of(umbilics: Umbilics, iso: Isothermic) -> NetCoordinates:
     """Umbilics and isothermic coordinates as a net is planned from."""
     return NetCoordinates(umbilics, iso, holonomies(iso))
+
+
+@dataclass(frozen=True, eq=False)
+class FollowedCoordinates:
+    """Isothermic coordinates of a surface, and what those of changed ones take over.
+
+    Attributes
+    ----------
+    coordinates : NetCoordinates
+    home, last : KeptCoordinates
+        Of the first surface, and of the last one that they were made anew for.
+    """
+
+    coordinates: NetCoordinates
+    home: KeptCoordinates
+    last: KeptCoordinates
+
+    @classmethod
+    def of(cls, surface: ElementSurface, seams: bool, before: FollowedCoordinates | None = None) -> FollowedCoordinates:
+        """Of a surface, from those before where these hold.
+
+        Parameters
+        ----------
+        surface : ElementSurface
+        seams : bool
+            See `lamella.network.elements.net_coordinates.net_coordinates`.
+        before : FollowedCoordinates, optional
+        """
+        for kept in dict.fromkeys((before.home, before.last)) if before else ():
+            if before and kept.serves(surface):
+                with suppress(LayoutError):
+                    umbilics, iso = kept.on(surface)
+                    iso = kept.straightened(iso, surface) if seams else iso
+                    return cls(coordinates_of(umbilics, iso), before.home, before.last)
+        refuse_umbilic(surface)
+        kept = KeptCoordinates.of(surface)
+        iso = kept.straightened(kept.iso, surface) if seams else kept.iso
+        return cls(coordinates_of(kept.umbilics, iso), before.home if before else kept, kept)

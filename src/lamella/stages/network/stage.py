@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from lamella import __version__
@@ -181,17 +182,22 @@ def _plan(up: Upstream, step: float | None, progress: Progress) -> NetPlan:
 
 def _coordinates(up: Upstream, progress: Progress) -> NetCoordinates:
     """Isothermic coordinates of a surface of elements."""
+    from lamella.network.elements.kept_coordinates import FollowedCoordinates
     from lamella.network.elements.net_coordinates import net_coordinates
     from lamella.surface.element.surface import ElementSurface
 
     surface, seams = up.surface, up.project.network.closing == "open"
     assert isinstance(surface, ElementSurface)
+
+    def make() -> NetCoordinates:
+        if up.memory.follow and surface.has_boundary_curves:
+            of = partial(FollowedCoordinates.of, surface, seams)
+            followed: FollowedCoordinates = up.memory.followed("coordinates", of)
+            return followed.coordinates
+        return net_coordinates(surface, seams=seams, progress=progress)
+
     with keys("network", surface="surface"):
-        return up.remembered(
-            "isothermic coordinates",
-            (up.outputs["surface"].key, seams),
-            lambda: net_coordinates(surface, seams=seams, progress=progress),
-        )
+        return up.remembered("isothermic coordinates", (up.outputs["surface"].key, seams), make)
 
 
 def other_cells(out: NetworkOutput, up: Upstream) -> OtherCells:

@@ -105,7 +105,7 @@ def _found(up: Upstream, progress: Progress) -> tuple[Surface[Any], AdjustedTabl
     """The surface, with its boundary adjusted where the project wants that."""
     project, table = up.project, up.project.surface
     if not _adjusts(project, up.wanted):
-        return make_surface(project, up.folder, progress), None
+        return make_surface(project, up.folder, progress, up.memory), None
     from lamella.stages.surface.adjusted_table import adjust_table
 
     assert isinstance(table, FormFoundTable)

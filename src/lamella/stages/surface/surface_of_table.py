@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,12 +13,15 @@ from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
 from lamella.project.tables import FormFoundTable, MeshTable, Project
 from lamella.stages.keys import keys
+from lamella.stages.memory import Memory
 from lamella.stages.surface.warnings import order_warning
 from lamella.surface.closed_forms.kinds import CLOSED_FORMS
 from lamella.surface.surface import Surface
 
 if TYPE_CHECKING:
+    from lamella.surface.boundary.curve import Loop
     from lamella.surface.element.surface import ElementSurface
+    from lamella.surface.form_finding.followed_film import FollowedFilm
     from lamella.surface.from_mesh.fit_options import FitOptions
     from lamella.surface.from_mesh.raw_mesh import RawMesh
 
@@ -28,7 +32,9 @@ KEEP = (
 )
 
 
-def make_surface(project: Project, folder: str | Path = Path(), progress: Progress = silent) -> Surface[Any]:
+def make_surface(
+    project: Project, folder: str | Path = Path(), progress: Progress = silent, memory: Memory | None = None
+) -> Surface[Any]:
     """The surface a project describes.
 
     Parameters
@@ -38,6 +44,8 @@ def make_surface(project: Project, folder: str | Path = Path(), progress: Progre
         Where the files a project names are looked for: the folder of the project file.
     progress : callable
         Is told of the steps where a surface has to be found.
+    memory : Memory, optional
+        One that follows takes a film from the last one that was made with it.
 
     Raises
     ------
@@ -61,7 +69,7 @@ def make_surface(project: Project, folder: str | Path = Path(), progress: Progre
     try:
         if isinstance(table, FormFoundTable):
             progress(Report.step("finding the surface between its curves"))
-            return film_of_table(table, folder, progress)
+            return film_of_table(table, folder, progress, memory)
         progress(Report.step("reading the mesh"))
         return surface_of_mesh_table(table, folder, progress)
     except InputError as error:
@@ -70,8 +78,10 @@ def make_surface(project: Project, folder: str | Path = Path(), progress: Progre
         raise
 
 
-def film_of_table(table: FormFoundTable, folder: Path, progress: Progress = silent) -> ElementSurface:
-    """The film in the boundary of a table, see `make_surface`."""
+def film_of_table(
+    table: FormFoundTable, folder: Path, progress: Progress = silent, memory: Memory | None = None
+) -> ElementSurface:
+    """The film in the boundary of a table, see `make_surface`; with a memory that follows, from the last one."""
     # heavy, and closed forms do without
     from lamella.stages.surface.boundary_of_tables import boundary_loops, with_origin
     from lamella.surface.boundary.corner_cost import corner_cost
@@ -87,6 +97,9 @@ def film_of_table(table: FormFoundTable, folder: Path, progress: Progress = sile
             if remark:
                 progress(Report.step(remark))
         with keys("surface", loops="surface.boundary"):
+            if memory and memory.follow:
+                film: FollowedFilm = memory.followed("film", partial(_followed, table, loops, progress))
+                return film.assessed
             found = find_film(
                 loops,
                 table.mean_curvature or 0.0,
@@ -99,6 +112,21 @@ def film_of_table(table: FormFoundTable, folder: Path, progress: Progress = sile
             )
         notes = remarks + notes_on(found, given_curvature=table.volume is None)
         return found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
+
+
+def _followed(
+    table: FormFoundTable, loops: tuple[Loop, ...], progress: Progress, last: FollowedFilm | None
+) -> FollowedFilm:
+    """The film of a table from the last one; from nothing where that was another request."""
+    from lamella.surface.form_finding.followed_film import FilmRequest, FollowedFilm
+    from lamella.surface.form_finding.kept_elements import Boundary
+
+    boundary = Boundary(loops, table.mean_curvature or 0.0, table.volume)
+    request = FilmRequest(table.order, table.tolerance, table.branch, table.most_nodes)
+    origin = table.origin or NOWHERE
+    if last is None or (last.request, last.origin) != (request, origin):
+        return FollowedFilm.first(boundary, request, origin=origin, progress=progress)
+    return last.moved(boundary, progress=progress)
 
 
 def surface_of_mesh_table(table: MeshTable, folder: Path, progress: Progress = silent) -> ElementSurface:
