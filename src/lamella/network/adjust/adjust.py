@@ -37,12 +37,17 @@ from lamella.surface.element.surface import ElementSurface
 CLOSED = 1e-4
 # cells: with misses below it, half of what counts as closed, the search ends too where it leads no further
 NEARLY = CLOSES / 2
-# tolerance of the film on which the boundary is looked for, before a finer one that was asked for: the periods of a
-# coarser one are off by more than the misses that end the search
+# tolerances of the film on which the boundary is looked for, until misses are below so many cells, and of the final
+# one, unless a finer one was asked for: a coarser one's periods are off by more than the misses that end the search
+COARSE_TOLERANCE, COARSE_CLOSED = 2e-2, 2e-3
 ADJUSTING_TOLERANCE = 5e-3
 ADJUSTING_STEPS_MAX, MOST_POLISHING, ADJUSTING_HALVINGS_MAX = 20, 6, 5
+# elements made anew for the final film, at most
+REFINEMENTS_MAX = 3
 # steps towards all the whole numbers that are tried
 MOST_IN_ALL = 50
+# cells: with misses below it the boundary is next to one whose net closes
+NEXT_TO_CLOSED = 0.1
 # of the misses left by a step: with more, the next step's rates are found anew and not carried on
 CARRIED = 0.5
 # of the film's size: what the boundary moves in a step, at most
@@ -122,7 +127,7 @@ def adjust_boundary(
     progress = patient(progress)
     films = Films(freedom, pattern, progress)
     progress(Report.step(f"adjusting {', '.join(freedom.names)}: {freedom.count} parameters"))
-    first = films.first(ADJUSTING_TOLERANCE)
+    first = films.first(COARSE_TOLERANCE)
     names = tuple(curve.name for curve in film.curves)
     around = holonomies(first.iso)
     lattice = choose_lattice(
@@ -143,7 +148,7 @@ def adjust_boundary(
         "steps": search.steps,
     }
     progress(Report.step(f"adjusted: the boundary moved by at most {1000 * farthest:.3g} mm, misses {after:.1e} cells"))
-    return Adjusted(final, state.surface, step, figures)
+    return Adjusted(final, films.finished(state), step, figures)
 
 
 class _Search:
@@ -282,7 +287,7 @@ class _Search:
                 return count
         return 0
 
-    def descend(self, aim: Aim, *, hasty: bool = False, goal: float = CLOSED) -> Aim:
+    def descend(self, aim: Aim, *, hasty: bool = False, goal: float = COARSE_CLOSED) -> Aim:
         """Steps on the coarse film, until misses are below a goal, cells; in haste, until one leaves most of them."""
         self._tell(aim)
         for _ in range(ADJUSTING_STEPS_MAX):
@@ -330,7 +335,9 @@ class _Search:
     def _moved(self, aim: Aim, sensitivities: Complexes, halvings: int) -> tuple[Aim, str]:
         """See `_step`, with given rates and so many tries."""
         net = aim.net
-        change = self._solved(net, sensitivities, aim.residuals)[0]
+        # next to a boundary whose net closes the nearest such one: what the film is not linear in stays least
+        near = net.shares if worst(aim.residuals) < NEXT_TO_CLOSED else None
+        change = self._solved(net, sensitivities, aim.residuals, near)[0]
         if net.whole.size(aim.residuals - sensitivities @ change) > (1 - LEAST_GAIN) * aim.size:
             beyond = self._solved(net, sensitivities, aim.residuals, kept=-np.inf)[0]
             held = net.whole.size(aim.residuals - sensitivities @ beyond) > (1 - LEAST_GAIN) * aim.size
@@ -380,40 +387,42 @@ class _Search:
         return replace(there, sensitivities=net.whole.basis.T @ found)
 
     def polish(self, aim: Aim) -> tuple[FilmNet, float, float]:
-        """The film as fine as was asked for: its own misses are a little different ones."""
-        sensitivities = self._rates_of(aim)
-        move = np.zeros(len(aim.net.shares) + 1)
-        best: Aim | None = None
-        for _ in range(MOST_POLISHING):
+        """The film as fine as was asked for, from the elements at hand: its own misses are a little different ones."""
+        tolerance = min(self.films.freedom.film.tolerance, ADJUSTING_TOLERANCE)
+        for _ in range(REFINEMENTS_MAX):
             self.progress(Report.detail("the film as fine as asked for"))
             try:
-                found = self.films.found(
-                    aim.net.shares + move[:-1], min(self.films.freedom.film.tolerance, ADJUSTING_TOLERANCE)
-                )
-                there = self._carried(aim, found, sensitivities, move)
+                still = np.zeros(len(aim.net.shares) + 1)
+                aim = self._carried(aim, self.films.refined(aim.net, tolerance), self._rates_of(aim), still)
             except FollowError as error:
                 raise LostError(aim, str(error)) from None
-            self._tell(there)
-            if best is None or worst(there.residuals) < worst(best.residuals):
-                best = there
-            if worst(there.residuals) < CLOSED:
+            self._tell(aim)
+            aim = self._polished(aim)
+            if aim.net.film.deviation.largest <= tolerance:
                 break
-            slow = move.any() and there.size > CARRIED * aim.size
-            # what is left may be the film's own errors
-            if slow and worst(best.residuals) < NEARLY:
+        if worst(aim.residuals) > 0.9 * CLOSES:
+            raise LostError(aim, "the finer surface does not follow")
+        return aim.net, aim.step, worst(aim.residuals)
+
+    def _polished(self, aim: Aim) -> Aim:
+        """Steps on the final elements, until misses are below `CLOSED` or what is left are the film's own errors."""
+        for _ in range(MOST_POLISHING):
+            if worst(aim.residuals) < CLOSED:
                 break
-            aim = there
-            sensitivities = (
-                self.films.cell_sensitivities(aim.net, aim.step)
-                if slow or aim.sensitivities is None
-                else aim.sensitivities
-            )
-            move = self._shortened(aim.net, self._solved(aim.net, sensitivities, aim.residuals)[0])
+            fresh = aim.sensitivities is None
+            try:
+                there, _ = self._step(aim)
+            except LostError:
+                break
             self.steps += 1
-        assert best
-        if worst(best.residuals) > 0.9 * CLOSES:
-            raise LostError(best, "the finer surface does not follow")
-        return best.net, best.step, worst(best.residuals)
+            self._tell(there)
+            if there.size < CARRIED * aim.size:
+                aim = there
+            elif fresh:
+                return min(aim, there, key=lambda one: worst(one.residuals))
+            else:
+                aim = replace(aim, sensitivities=None)
+        return aim
 
     def _solved(
         self,
@@ -451,7 +460,7 @@ class _Search:
     def _shortened(self, net: FilmNet, change: Floats) -> Floats:
         """A change no longer than the linear picture bears."""
         far = farthest_move(self.films.loops(net.shares), self.films.loops(net.shares + change[:-1]))
-        return np.asarray(change * min(1.0, BOUNDARY_MOVE_MAX * net.equilibrium.film.size / max(far, 1e-300)))
+        return np.asarray(change * min(1.0, BOUNDARY_MOVE_MAX * net.film.equilibrium.film.size / max(far, 1e-300)))
 
     def _tell(self, aim: Aim) -> None:
         self.progress(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats
-from lamella.base.drawing_origin import origin_figure
+from lamella.base.errors import InputError
 from lamella.base.progress import Progress, as_details, silent
 from lamella.network.adjust.film_net import FilmNet
 from lamella.network.adjust.transition_sensitivities import (
@@ -17,20 +18,18 @@ from lamella.network.adjust.transition_sensitivities import (
     transition_sensitivities,
 )
 from lamella.network.pattern import Pattern
-from lamella.surface.boundary.curve import Loop, farthest_move
+from lamella.surface.boundary.adjustable_film import AdjustableFilm
+from lamella.surface.boundary.curve import Loop
 from lamella.surface.boundary.freedom import Freedom
 from lamella.surface.element.placing import rim_parameters
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.form_finding.boundary_homotopy import BreakError, along_loops
 from lamella.surface.form_finding.film import Film
-from lamella.surface.form_finding.find import find_film, notes_on, remarks_on
-from lamella.surface.form_finding.newton import Equilibrium
+from lamella.surface.form_finding.followed_film import FilmRequest, FollowedFilm
+from lamella.surface.form_finding.kept_elements import Boundary
 from lamella.surface.umbilic import refuse_umbilic
 
 # difference of shares for the loops' movement
 SHARE = 1e-5
-# of the film's size: how far the boundary moves before the film is found anew on its way
-FILM_STRIDE = 0.02
 
 
 class FollowError(ArithmeticError):
@@ -59,55 +58,49 @@ class Films:
         """The boundary at some shares."""
         return self.freedom.changed(shares).loops()
 
-    def found(self, shares: Floats, tolerance: float) -> FilmNet:
-        """The film of some shares from nothing, to a tolerance."""
-        film = self.freedom.changed(shares)
-        loops = film.loops()
-        found = find_film(
-            loops,
-            film.mean_curvature or 0.0,
-            volume=film.volume,
-            order=film.order,
-            tolerance=tolerance,
-            branch=film.branch,
-            most_nodes=film.most_nodes,
-            progress=self._progress,
-        )
-        notes = remarks_on(loops) + notes_on(found, given_curvature=film.volume is None)
-        surface = found.surface("form-found", notes, tolerance=film.tolerance, **origin_figure(film.origin))
-        return FilmNet.of(shares, found.equilibrium, surface, self.pattern)
-
     def first(self, tolerance: float) -> FilmNet:
-        """The film of the sketch."""
-        net = self.found(np.zeros(self.freedom.count), tolerance)
+        """The film of the sketch, to a tolerance."""
+        film = self.freedom.film
+        request = FilmRequest(film.order, tolerance, film.branch, film.most_nodes)
+        found = FollowedFilm.first(_boundary(film), request, origin=film.origin, progress=self._progress)
+        net = FilmNet.of(np.zeros(self.freedom.count), found, self.pattern)
         refuse_umbilic(net.surface)
         return net
 
     def moved(self, net: FilmNet, shares: Floats) -> FilmNet:
-        """The film followed to other shares; its umbilics stay as many, of the same orders."""
-        start, changed = net.shares, self.freedom.changed(shares)
-        curvature = net.surface.mean_curvature if changed.mean_curvature is None else changed.mean_curvature
-        loops = changed.loops()
-        far = farthest_move(self.loops(start), loops)
+        """The film followed to other shares; its umbilics stay as many, of the same orders.
+
+        Raises
+        ------
+        FollowError
+        """
+        changed = self.freedom.changed(shares)
+        curvature = net.film.equilibrium.mean_curvature
         try:
-            reached = along_loops(
-                Equilibrium(net.equilibrium.film, curvature, 0, 0, ()),
-                lambda share: self.loops(start + share * (shares - start)),
-                0.0,
-                loops,
-                self._progress,
-                volume=changed.volume,
-                stable=changed.branch == "stable",
-                stride=min(1.0, FILM_STRIDE * net.equilibrium.film.size / max(far, 1e-300)),
-            )
-        except BreakError as error:
+            there = net.film.moved(_boundary(changed, curvature), progress=self._progress)
+        except InputError as error:
             raise FollowError(str(error)) from None
-        film, curvature = reached.equilibrium.film, reached.equilibrium.mean_curvature
-        rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
-        surface = ElementSurface(
-            "form-found", curvature, film.connectivity, film.nodes, rim_loop, loop_starts=film.loop_starts()
-        )
-        there = FilmNet.of(shares, reached.equilibrium, surface, self.pattern)
+        return self._checked(net, FilmNet.of(shares, there, self.pattern))
+
+    def refined(self, net: FilmNet, tolerance: float) -> FilmNet:
+        """The same film to another tolerance, from the elements at hand.
+
+        Raises
+        ------
+        FollowError
+        """
+        try:
+            there = net.film.refined(tolerance, progress=self._progress)
+        except InputError as error:
+            raise FollowError(str(error)) from None
+        return self._checked(net, FilmNet.of(net.shares, there, self.pattern))
+
+    def finished(self, net: FilmNet) -> ElementSurface:
+        """The film as later stages see it, with its notes and figures."""
+        surface = net.film.surface
+        return replace(surface, figures=surface.figures | {"tolerance": self.freedom.film.tolerance})
+
+    def _checked(self, net: FilmNet, there: FilmNet) -> FilmNet:
         if there.orders != net.orders:
             raise FollowError("umbilics come or go at the boundary")
         return there
@@ -126,7 +119,7 @@ class Films:
 
     def _found(self, net: FilmNet) -> Sensitivities:
         if net not in self._sensitivities:
-            film, h = net.equilibrium.film, net.surface.mean_curvature
+            film, h = net.film.equilibrium.film, net.surface.mean_curvature
             rim = self.rim_shifts(film, net.shares)
             curvature = self.freedom.curvature_sensitivities()
             if self.freedom.film.volume is not None:
@@ -155,3 +148,9 @@ class Films:
                 there = curve.loop()
                 result[number, nodes[mine]] = (there.at(t[mine]) - here[index]) / SHARE
         return result
+
+
+def _boundary(film: AdjustableFilm, mean_curvature: float = 0.0) -> Boundary:
+    """What a film is found from; with a volume a mean curvature (1/m) to start from."""
+    h = film.mean_curvature if film.mean_curvature is not None else mean_curvature
+    return Boundary(film.loops(), h, film.volume)

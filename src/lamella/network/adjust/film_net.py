@@ -17,7 +17,7 @@ from lamella.network.isothermic.mesh_layout import make_integration_mesh
 from lamella.network.isothermic.seamless_transitions import integrate
 from lamella.network.pattern import Pattern
 from lamella.surface.element.surface import ElementSurface
-from lamella.surface.form_finding.newton import Equilibrium
+from lamella.surface.form_finding.followed_film import FollowedFilm
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,26 +27,28 @@ class FilmNet:
     Attributes
     ----------
     shares : (p,)
-    equilibrium : Equilibrium
+    film : FollowedFilm
     surface : ElementSurface
+        The film, as coordinates are found on it.
     iso : Isothermic
     pattern : Pattern
         Which curves the net has.
     """
 
     shares: Floats
-    equilibrium: Equilibrium
+    film: FollowedFilm
     surface: ElementSurface
     iso: Isothermic
     pattern: Pattern
 
     @classmethod
-    def of(cls, shares: Floats, equilibrium: Equilibrium, surface: ElementSurface, pattern: Pattern) -> FilmNet:
+    def of(cls, shares: Floats, film: FollowedFilm, pattern: Pattern) -> FilmNet:
         """The coordinates of a film."""
+        surface = film.bare_surface
         umbilics = surface.umbilics
         mesh = make_integration_mesh(surface, umbilics)
         odd = mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)]
-        return cls(shares, equilibrium, surface, integrate(mesh, odd), pattern)
+        return cls(shares, film, surface, integrate(mesh, odd), pattern)
 
     @cached_property
     def whole(self) -> IntegerTransitions:

@@ -202,7 +202,6 @@ def along_loops(
     volume: float | None = None,
     stable: bool = True,
     finer: float = 1.0,
-    stride: float = FIRST_STEP,
 ) -> Reached:
     """Follow the films of one H, or of a volume that goes evenly to a given one, from a share of a path to its end.
 
@@ -222,8 +221,6 @@ def along_loops(
         See `find_equilibrium`.
     finer : float
         Share of the sizes of elements that the loops ask for.
-    stride : float
-        The first step, as a share of the whole path; where it is 1 the end is tried at once.
 
     Raises
     ------
@@ -232,7 +229,7 @@ def along_loops(
     first = share
     begin = enclosed_volume(start.film) if volume is not None else 0.0
     film, curvature = start.film, start.mean_curvature
-    step, steps = stride if stride >= 1 else min(stride, (1 - share) / 2), 0
+    step, steps = min(FIRST_STEP, (1 - share) / 2), 0
 
     def found(film: Film, there: Loops, at: float) -> Equilibrium:
         moved = _moved(film, there)

@@ -25,12 +25,15 @@ from lamella.surface.element.surface import ElementSurface
 from lamella.surface.form_finding.adaptivity import Deviation, deviation_of
 from lamella.surface.form_finding.carried_rim import NotKeptError
 from lamella.surface.form_finding.chord import settled
+from lamella.surface.form_finding.enclosed_volume import enclosed_volume
+from lamella.surface.form_finding.film import Film
 from lamella.surface.form_finding.find import Found, find_film, notes_on, remarks_on
 from lamella.surface.form_finding.found_film import surface_of
 from lamella.surface.form_finding.given_loops import given_loops, refuse_both
 from lamella.surface.form_finding.kept_elements import Boundary, Kept, kept
-from lamella.surface.form_finding.newton import Equilibrium
+from lamella.surface.form_finding.newton import Equilibrium, FixedH, Volume, find_equilibrium
 from lamella.surface.form_finding.reference_film import ReferenceFilm
+from lamella.surface.form_finding.refinement import adapted
 from lamella.surface.form_finding.stability import stability_of
 
 
@@ -127,7 +130,11 @@ class FollowedFilm(Result):
             most_nodes=request.most_nodes,
             progress=progress,
         )
-        here = found.equilibrium
+        return cls._of(found.equilibrium, boundary, request, origin)
+
+    @classmethod
+    def _of(cls, here: Equilibrium, boundary: Boundary, request: FilmRequest, origin: Origin) -> FollowedFilm:
+        """A film on elements of its own."""
         try:
             elements = _reference(here, boundary)
             there = kept(elements, boundary, request.tolerance, request.leeway)
@@ -135,6 +142,33 @@ class FollowedFilm(Result):
             deviation = deviation_of(here.film, here.mean_curvature)
             return cls(request, boundary, here, deviation, "", 0, None, None, origin=origin)
         return cls(request, boundary, there.equilibrium, there.deviation, "", 0, elements, elements, origin=origin)
+
+    def refined(self, tolerance: float, *, progress: Progress = silent) -> FollowedFilm:
+        """The same film as the first one of others to another tolerance, on elements that are made from those at hand.
+
+        Parameters
+        ----------
+        tolerance : float
+            See `lamella.surface.form_finding.find.find_film`.
+        progress : callable
+
+        Raises
+        ------
+        InputError
+            See `lamella.surface.form_finding.refinement.adapted`.
+        """
+        here, volume = self.equilibrium, self.boundary.volume
+
+        def settled(film: Film) -> Equilibrium:
+            if volume is None:
+                stable = self.request.branch == "stable"
+                return find_equilibrium(film, here.mean_curvature, FixedH(stable=stable), progress=progress)
+            missing = Volume(volume - enclosed_volume(film))
+            return find_equilibrium(film, here.mean_curvature, missing, progress=progress)
+
+        found = adapted(here, settled, tolerance, self.request.most_nodes, here.steps, True, progress)
+        request = replace(self.request, tolerance=tolerance)
+        return FollowedFilm._of(found.equilibrium, self.boundary, request, self.origin)
 
     def moved(self, boundary: Boundary, *, anew: bool = True, progress: Progress = silent) -> FollowedFilm:
         """The film of another boundary.
@@ -214,6 +248,16 @@ class FollowedFilm(Result):
             made_anew="",
             factorisations=there.factorisations,
             elements=elements,
+        )
+
+    @cached_property
+    def bare_surface(self) -> ElementSurface:
+        """The film as nets are made on it, without notes and figures."""
+        film = self.equilibrium.film
+        rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
+        curvature = self.equilibrium.mean_curvature
+        return ElementSurface(
+            "form-found", curvature, film.connectivity, film.nodes, rim_loop, loop_starts=film.loop_starts()
         )
 
     @cached_property
