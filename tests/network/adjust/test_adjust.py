@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from conftest import EXAMPLES
 from lamella import InputError, compute, parse_project
@@ -23,6 +24,8 @@ from lamella.project.tables import FormFoundTable
 from lamella.stages.surface.adjusted_table import AdjustedTable, adjust_table
 from lamella.stages.surface.boundary_of_tables import adjustable_film, boundary_loops
 from lamella.stages.write import write
+from lamella.surface.boundary.adjustable_film import AdjustableFilm
+from lamella.surface.boundary.boundary_curve import Adjust, BoundaryCurve
 from lamella.surface.boundary.freedom import Freedom
 from lamella.surface.form_finding.enclosed_volume import enclosed_volume
 from lamella.surface.form_finding.find import find_film
@@ -127,6 +130,54 @@ def test_limits_bound_what_moves(keep_height: bool) -> None:
     assert 0.3 < max(farthest) <= 0.4
 
 
+@pytest.mark.parametrize("straight", [False, True])
+def test_limits_are_those_of_the_curve_through_uneven_points(straight: bool) -> None:
+    """Between points that lie unevenly a spline swings farther than any of them is shifted, by twice and more."""
+    rng = np.random.default_rng(5)
+    fine = np.arange(4000) / 4000
+    linear, swings = [], []
+    for count in (11, 14, 17, 23):
+        t = 2 * np.pi * np.cumsum(gaps := rng.uniform(0.15, 1.5, count)) / gaps.sum()
+        rim = np.column_stack([6 * np.cos(t), 4.5 * np.sin(t), 2.5 - 2.5 * np.cos(2 * t)])
+        curve = BoundaryCurve(
+            "rim",
+            points=tuple(map(tuple, rim.tolist())),
+            interpolation="polyline" if straight else "spline",
+            adjust=Adjust(points=0.3),
+        )
+        freedom = Freedom(AdjustableFilm((curve,)))
+        drawn = cKDTree(freedom.film.loops()[0].at(fine))
+        for shares in rng.normal(size=(3, freedom.count)):
+            shares /= freedom.used(shares)
+            changed = freedom.changed(shares)
+            moved = drawn.query(changed.curves[0].loop().at(fine))[0].max() / 0.3
+            at_points = np.linalg.norm(np.array(changed.curves[0].points) - rim, axis=1).max() / 0.3
+            # what the curve does is what is told, and is told nearly by what is linear
+            assert freedom.over(shares).max() == pytest.approx(moved, rel=0.02)
+            linear.append(moved)
+            swings.append(1 / at_points)
+    assert max(linear) < 1.15
+    assert straight or max(swings) > 1.5
+
+
+@pytest.mark.slow
+def test_a_limit_that_is_reached_holds_between_uneven_points() -> None:
+    """The same sketch drawn with points that lie close and far apart: the whole curve keeps the limit."""
+    tables = sketch(1)
+    rim = tables["surface"]["boundary"][0]
+    rng = np.random.default_rng(2)
+    loop = boundary_loops(table_of(tables), HERE)[0]
+    gaps = rng.uniform(0.3, 1.5, 24)
+    rim["points"] = loop.at(np.cumsum(gaps) / gaps.sum()).tolist()
+    rim["adjust"] = {"points": 0.12}
+    drawn = boundary_loops(table_of(tables), HERE)[0]
+    adjusted, _ = closed(tables)
+    fine = np.arange(4000) / 4000
+    moved = cKDTree(drawn.at(fine)).query(boundary_loops(adjusted.table, HERE)[0].at(fine))[0].max()
+    assert 0.06 < moved <= 0.12 * (1 + 1e-6)
+    assert adjusted.figures["moved"]["rim"] == pytest.approx(moved, rel=1e-2)
+
+
 @pytest.mark.slow
 def test_a_limit_that_is_reached_holds() -> None:
     """The sketch takes 0.11 m where it may move by 0.4: with a limit of 0.09 m it closes in another way."""
@@ -197,7 +248,7 @@ def test_rates_are_those_of_films_found_anew(held: str) -> None:
     size = np.abs(sensitivities[:, :-1]).max()
     here = net.cells(step)
     if held == "volume":
-        film, h = net.equilibrium.film, net.surface.mean_curvature
+        film, h = net.film.equilibrium.film, net.surface.mean_curvature
         assert h == pytest.approx(-0.03, rel=1e-6)
         rising = curvature_rates_of_volume(film, h, films.rim_shifts(film, net.shares))
 

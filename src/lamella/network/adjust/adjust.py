@@ -20,7 +20,7 @@ from lamella.base.wording import counted
 from lamella.network.adjust.adjustable_films import Films, FollowError
 from lamella.network.adjust.aim import Aim, LostError, StuckError, worst
 from lamella.network.adjust.film_net import FilmNet
-from lamella.network.adjust.least_squares_within import least_squares_within
+from lamella.network.adjust.least_change import SPACING, LeastChange
 from lamella.network.density_request import DensityRequest
 from lamella.network.elements.closing_steps import CLOSES
 from lamella.network.elements.lattice import Lattice, choose_lattice
@@ -52,8 +52,6 @@ NEXT_TO_CLOSED = 0.1
 CARRIED = 0.5
 # of the film's size: what the boundary moves in a step, at most
 BOUNDARY_MOVE_MAX = 0.04
-# range of the logarithm of the lattice's spacing
-SPACING = 0.1
 # whole numbers that ask for the smallest changes, were there no limits to them; of these are tried, with the limits
 MOST_LOOKED_AT, INTEGERS_TRIED_MAX = 60, 4
 # a whole step has to take this part of the misses away at least
@@ -71,10 +69,10 @@ OFFERED_SHARE = 2e-3
 UNDONE, HOPELESS = 0.02, 3.0
 # the same at a place with misses of up to so many cells and that part of the limits used: first order is nearer there
 NEAR_CLOSED, MOSTLY, STOPPED = 0.3, 0.9, 1.5
+# rounds in which limits are drawn in, by a little more than a curve goes beyond them
+LIMITS_TIGHTENED_MAX, TIGHTENED = 4, 1e-3
 # of a limit: what takes as much has reached it
 AT_LIMIT = 1.0 - 1e-3
-# how much more a miss of a cell (see `Isothermic.dirichlet`) weighs than a full range
-WEIGHT = 1e4
 MOVED_SAMPLES = 2000
 
 
@@ -159,6 +157,8 @@ class _Search:
         self.steps = 0
         # of the limits of what may change: 1, but where it is looked for how much would do
         self.reach = 1.0
+        # what each linear limit is multiplied by, for the curves themselves to keep what was asked for
+        self.tight = np.ones(len(films.freedom.limits))
 
     def closed(self, first: FilmNet, lattice: Lattice) -> tuple[FilmNet, float, float]:
         """The net that closes, with the spacing of its lattice, sqrt(m), and what it still misses, cells.
@@ -275,8 +275,14 @@ class _Search:
         # two umbilics cannot meet in one node
         factors = between_umbilics(net.iso)
         near = [whole for whole in near if keeps_apart(factors, shifts, whole)] or near
-        cost = [self._solved(net, sensitivities, whole - shifts)[1] for whole in near]
-        return [near[k] for k in np.argsort(cost, kind="stable")[:INTEGERS_TRIED_MAX].tolist()]
+        least = [LeastChange.of(net, sensitivities, whole - shifts).least_cost for whole in near]
+        cost: list[tuple[float, int]] = []
+        for k in np.argsort(least, kind="stable").tolist():
+            # with the limits it costs no less than without
+            if len(cost) >= INTEGERS_TRIED_MAX and least[k] > cost[INTEGERS_TRIED_MAX - 1][0]:
+                break
+            cost = sorted([*cost, (self._solved(net, sensitivities, near[k] - shifts)[1], k)])
+        return [near[k] for _, k in cost[:INTEGERS_TRIED_MAX]]
 
     def _counted(self, net: FilmNet, shifts: Complexes, lattice: Lattice) -> int:
         """Cells on a loop around the first hole; 0: no cells are counted there."""
@@ -337,18 +343,21 @@ class _Search:
         net = aim.net
         # next to a boundary whose net closes the nearest such one: what the film is not linear in stays least
         near = net.shares if worst(aim.residuals) < NEXT_TO_CLOSED else None
-        change = self._solved(net, sensitivities, aim.residuals, near)[0]
+        change = self._allowed(net, sensitivities, aim.residuals, near)
         if net.whole.size(aim.residuals - sensitivities @ change) > (1 - LEAST_GAIN) * aim.size:
             beyond = self._solved(net, sensitivities, aim.residuals, kept=-np.inf)[0]
             held = net.whole.size(aim.residuals - sensitivities @ beyond) > (1 - LEAST_GAIN) * aim.size
             raise LostError(aim, "the boundary may not change by more" if held else "umbilics would leave at the rim")
         change = self._shortened(net, change)
         # the least boundary that closes the net may be far from this one: then the nearest, and less and less of it
-        nearest = self._shortened(net, self._solved(net, sensitivities, aim.residuals, net.shares)[0])
+        nearest = self._shortened(net, self._allowed(net, sensitivities, aim.residuals, net.shares))
         parts = 0.5 ** np.arange(halvings - 1)
         moves = [change, *np.outer(parts if net.shares.any() else parts / 2, nearest)]
         reason = ""
         for move in moves[:halvings]:
+            if (self.films.freedom.over(net.shares + move[:-1]) > self.reach).any():
+                reason = "the boundary may not change by more"
+                continue
             share = float(np.linalg.norm(move) / np.linalg.norm(change))
             self.progress(
                 Report.detail(f"following the film over {share:.2g} of a step" + (f" ({reason})" if reason else ""))
@@ -432,30 +441,25 @@ class _Search:
         near: Floats | None = None,
         kept: float = RIM_DISTANCE_KEPT,
     ) -> tuple[Floats, float]:
-        """Change of the shares and of the logarithm of the spacing that undoes misses, to first order; what it costs.
+        """Change of the shares and of the logarithm of the spacing that undoes misses, and what it costs.
 
-        The least squares of the shares themselves, or of what they differ by from those that they shall be near, with
-        what they cannot undo weighing more. Umbilics keep a share of their distance from the rim.
+        Umbilics keep a share of their distance from the rim.
         """
-        measured, missed = net.whole.measured(cell_sensitivities), net.whole.measured(residuals)
-        sensitivities = np.vstack([measured.real, measured.imag])
-        sensitivities[:, -1] *= SPACING
-        wanted = np.concatenate([missed.real, missed.imag])
-        now = np.append(net.shares, 0.0)
-        system = np.vstack([WEIGHT * sensitivities, np.eye(len(now))])
-        middle = np.zeros(len(now)) if near is None else np.append(near, 0.0)
-        right = np.concatenate([WEIGHT * (wanted + sensitivities @ now), middle])
-        limited = self.films.freedom.limits / self.reach
-        limits = np.zeros((len(limited) + 1, 3, len(now)))
-        limits[:-1, :, :-1] = limited
-        limits[-1, 0, -1] = 1
-        normals, bounds = self.films.umbilics_inside(net, kept)
-        # the spacing moves no umbilic
-        normals = np.column_stack([normals, np.zeros(len(normals))])[np.isfinite(bounds)]
-        found = least_squares_within(system, right, limits, (normals, bounds[np.isfinite(bounds)]))
-        change = found - now
-        change[-1] *= SPACING
-        return change, float(((system @ found - right) ** 2).sum() / 2)
+        change = LeastChange.of(net, cell_sensitivities, residuals, near)
+        limits = self.films.freedom.limits * (self.tight / self.reach)[:, None, None]
+        return change.within(limits, self.films.umbilics_inside(net, kept))
+
+    def _allowed(
+        self, net: FilmNet, cell_sensitivities: Complexes, residuals: Complexes, near: Floats | None = None
+    ) -> Floats:
+        """The same change within what limits mean: linear ones are drawn in where a curve goes further than they."""
+        for _ in range(LIMITS_TIGHTENED_MAX):
+            change, _ = self._solved(net, cell_sensitivities, residuals, near)
+            over = self.films.freedom.over(net.shares + change[:-1]) / self.reach
+            if over.max(initial=0.0) <= 1:
+                break
+            self.tight = self.tight * np.maximum(1.0, over * (1 + TIGHTENED))
+        return change
 
     def _shortened(self, net: FilmNet, change: Floats) -> Floats:
         """A change no longer than the linear picture bears."""

@@ -1,23 +1,27 @@
 """Least squares of parameters whose moves are limited in length.
 
 The least of |A x - b|^2 with |M_k x| <= 1 for vectors M_k x of a few components each: how far a point of a boundary
-moves is such a vector, linear in the parameters. Each is bounded by its tangent planes, u . M_k x <= 1 for unit vectors
-u, where the last solution lies beyond (Kelley, J. SIAM 8 (1960) 703); with planes alone it is a problem of least
-distance, solved by non-negative least squares (Lawson and Hanson, Solving Least Squares Problems, 1974, chapter 23).
+moves is such a vector, linear in the parameters. The least is found from within by an interior point method (S. Boyd,
+L. Vandenberghe, Convex Optimization (2004), section 11.7; the step's aim by S. Mehrotra, SIAM J. Optim. 2 (1992)
+575): two or three dozen small linear systems, however many limits are reached.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import NamedTuple
+
 import numpy as np
-from scipy.linalg import solve_triangular
-from scipy.optimize import nnls
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
-from lamella.base.arrays import Booleans, Floats
+from lamella.base.arrays import Floats
 
-# of a limit, or in the unit of x: solutions beyond it by less are brought back by a common factor
+# of a limit, or in the unit of x: a solution of the least squares alone beyond it by less is taken
 LIMIT_EXCESS = 1e-6
-# rounds of planes; each takes away most of what was beyond
-PLANE_ROUNDS_MAX = 60
+# of the objective: what is left to be gained at the end; steps at most; share of the way to the nearest limit
+GAP_LEFT, INTERIOR_STEPS_MAX, TO_LIMIT = 1e-12, 80, 0.99
+# of the diagonal, where a system has no root
+REGULAR = 1e-14
 
 
 def least_squares_within(
@@ -34,40 +38,100 @@ def least_squares_within(
     planes : (m, p) and (m,), optional
         Normals and bounds: normals x <= bounds, which some x within the limits keeps.
     """
-    axes, triangle = np.linalg.qr(system)
-    q_right = axes.T @ right
-    given, given_bounds = planes or (np.zeros((0, system.shape[1])), np.zeros(0))
+    normals, bounds = planes or (np.zeros((0, system.shape[1])), np.zeros(0))
     # of one length, as rounding is
-    length = np.maximum(np.linalg.norm(given, axis=1), 1e-300)
-    given, given_bounds = given / length[:, None], given_bounds / length
-    normals, bounds = given, given_bounds
-    x = np.asarray(solve_triangular(triangle, q_right))
-    for _ in range(PLANE_ROUNDS_MAX):
-        moves = limits @ x
-        far = np.linalg.norm(moves, axis=1)
-        over = far > 1 + LIMIT_EXCESS
-        if not over.any() and (given @ x <= given_bounds + LIMIT_EXCESS).all():
-            break
-        unit = moves[over] / far[over, None]
-        normals = np.vstack([normals, np.einsum("kc,kcp->kp", unit, limits[over])])
-        bounds = np.append(bounds, np.ones(len(unit)))
-        x, held = _behind_planes(triangle, q_right, normals, bounds)
-        # the least rises from round to round: planes that hold nothing now are not needed for it
-        held[: len(given)] = True
-        normals, bounds = normals[held], bounds[held]
+    length = np.maximum(np.linalg.norm(normals, axis=1), 1e-300)
+    within = _Within(*np.linalg.qr(system), right, limits, normals / length[:, None], bounds / length)
+    x = within.free
+    if (within.excess(x) > LIMIT_EXCESS).any():
+        x = within.least()
     return np.asarray(x / max(1.0, float(np.linalg.norm(limits @ x, axis=1).max(initial=0.0))))
 
 
-def _behind_planes(triangle: Floats, right: Floats, planes: Floats, bounds: Floats) -> tuple[Floats, Booleans]:
-    """The least |triangle x - right| with planes (n, p) x <= bounds (n,), and which of these hold it, (n,)."""
-    # y = triangle x - right is the shortest vector with normals y >= heights
-    normals = -solve_triangular(triangle, planes.T, trans="T").T
-    heights = -bounds - normals @ right
-    count = len(right)
-    dual = np.vstack([normals.T, heights])
-    goal = np.append(np.zeros(count), 1.0)
-    weights, _ = nnls(dual, goal, maxiter=50 * dual.shape[1])
-    rest = goal - dual @ weights
-    # the dual of a possible problem: rest[count] is above 0
-    y = (dual[:count] @ weights) / rest[count]
-    return np.asarray(solve_triangular(triangle, right + y)), weights > 0
+@dataclass(frozen=True)
+class _Within:
+    """The problem with its matrix as Q R."""
+
+    axes: Floats
+    triangle: Floats
+    right: Floats
+    limits: Floats
+    normals: Floats
+    bounds: Floats
+
+    @property
+    def free(self) -> Floats:
+        """The solution without limits, (p,)."""
+        return np.asarray(np.linalg.solve(self.triangle, self.axes.T @ self.right))
+
+    def excess(self, x: Floats) -> Floats:
+        """How far x is beyond each limit and plane, (n + m,)."""
+        far = np.linalg.norm(self.limits @ x, axis=1)
+        return np.concatenate([far - 1, self.normals @ x - self.bounds])
+
+    def least(self) -> Floats:
+        """The solution, by steps that bring it, its slacks s and multipliers y together: s y -> 0."""
+        wanted = self.axes.T @ self.right
+        size = max(float(wanted @ wanted), 1e-300)
+        x = np.zeros(len(wanted))
+        s = np.maximum(np.append(np.full(len(self.limits), 0.5), self.bounds), 0.1)
+        y = size / len(s) / s
+        for _ in range(INTERIOR_STEPS_MAX):
+            here = _Place.of(self, wanted, x, s, y)
+            gap = float(s @ y)
+            if gap <= GAP_LEFT * size and np.abs(here.off).max() < LIMIT_EXCESS:
+                break
+            _, ds, dy = here.step(np.zeros(len(s)))
+            ahead = float((s + _share(s, ds) * ds) @ (y + _share(y, dy) * dy))
+            dx, ds, dy = here.step((ahead / gap) ** 3 * gap / len(s) - ds * dy)
+            share = TO_LIMIT * min(_share(s, ds), _share(y, dy))
+            x, s, y = x + share * dx, s + share * ds, y + share * dy
+        return np.asarray(x)
+
+
+class _Place(NamedTuple):
+    """The linear system of the steps from one place."""
+
+    s: Floats
+    y: Floats
+    # of the constraints (|M x|^2 - 1) / 2 + s = 0 and normals x - bounds + s = 0
+    slopes: Floats
+    off: Floats
+    pull: Floats
+    factor: tuple[Floats, bool]
+
+    @classmethod
+    def of(cls, within: _Within, wanted: Floats, x: Floats, s: Floats, y: Floats) -> _Place:
+        limits, triangle = within.limits, within.triangle
+        n, components, p = limits.shape
+        moves = limits @ x
+        slopes = np.vstack([np.einsum("kc,kcp->kp", moves, limits), within.normals])
+        off = np.append(((moves**2).sum(1) - 1) / 2, within.normals @ x - within.bounds) + s
+        pull = triangle.T @ (triangle @ x - wanted) + slopes.T @ y
+        flat = limits.reshape(-1, p)
+        matrix = triangle.T @ triangle + flat.T @ (np.repeat(y[:n], components)[:, None] * flat)
+        return cls(s, y, slopes, off, pull, _rooted(matrix + slopes.T @ ((y / s)[:, None] * slopes)))
+
+    def step(self, aim: Floats) -> tuple[Floats, Floats, Floats]:
+        """Changes of x, s and y with which s y becomes `aim`, to first order."""
+        push = (aim + self.y * self.off) / self.s - self.y
+        dx = cho_solve(self.factor, -self.pull - self.slopes.T @ push)
+        ds = -self.off - self.slopes @ dx
+        return dx, ds, (aim - self.y * ds) / self.s - self.y
+
+
+def _share(values: Floats, change: Floats) -> float:
+    """The share of a change, up to 1, after which the first of some positive values is 0."""
+    falling = change < 0
+    return float(min(1.0, (-values[falling] / change[falling]).min(initial=np.inf)))
+
+
+def _rooted(matrix: Floats) -> tuple[Floats, bool]:
+    """Cholesky's factor of a positive matrix that rounding may have left without one."""
+    more = 0.0
+    while True:
+        try:
+            factor, lower = cho_factor(matrix + more * np.diag(np.diagonal(matrix)))
+            return np.asarray(factor), bool(lower)
+        except LinAlgError:
+            more = max(10 * more, REGULAR)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from lamella.base.arrays import Floats
@@ -15,13 +16,16 @@ from lamella.base.vectors import diagonal
 from lamella.base.wording import rounded
 from lamella.surface.boundary.adjustable_film import AdjustableFilm
 from lamella.surface.boundary.boundary_curve import Adjust, BoundaryCurve, Place, Triple
+from lamella.surface.boundary.splines import follow_weights
 from lamella.surface.boundary.waves import wave_rows
 
 # points of a loop for each full wave along it
 POINTS_A_WAVE = 3
-# places along a loop where its waves together are limited, and to what share of the limit: the curve through shifted
-# points goes a little further between them
+# places along a loop where its waves together are limited, and to what share of the limit: the curve goes a little
+# further between them
 FREEDOM_PLACES, NEAR_LIMIT = 144, 0.98
+# places of a changed curve whose distances from the drawn one are measured, and of that one
+MEASURED_PLACES, DRAWN_PLACES = 1000, 4000
 # of a limit: what is offered instead of one that does not do is larger than what is needed
 SPARE = 0.05
 # where nothing says what may change: of a loop's size
@@ -80,6 +84,7 @@ class Freedom:
         if film.adjust_mean_curvature:
             parts.append(_part("mean curvature", "", -1, film.adjust_mean_curvature, 1, _with_curvature))
         self._parts = parts
+        self._trees: dict[int, cKDTree] = {}
         self.names = tuple(part.name for part in parts)
         self.count = sum(len(part.ranges) for part in parts)
         self.limits = np.zeros((sum(len(part.limits) for part in parts), 3, self.count))
@@ -92,6 +97,28 @@ class Freedom:
     def used(self, shares: Floats) -> float:
         """The largest share of a limit that shares (count,) of the ranges take."""
         return float(np.linalg.norm(self.limits @ shares, axis=1).max(initial=0.0))
+
+    def over(self, shares: Floats) -> Floats:
+        """How far curves are moved by their waves at shares (count,), over their limits, (rows of `limits`,).
+
+        Limits are linear in the shares; the curve through moved points is not, where these lie close. Parts that are
+        limited exactly have 0.
+        """
+        result, first, row = np.zeros(len(self.limits)), 0, 0
+        for part in self._parts:
+            values = part.ranges * shares[first : first + len(part.ranges)]
+            if part.key == "points" and values.any():
+                moved = part.apply(self.film, values).curves[part.loop].loop()
+                distance, _ = self._drawn(part.loop).query(moved.at(np.arange(MEASURED_PLACES) / MEASURED_PLACES))
+                result[row : row + len(part.limits)] = float(distance.max()) / part.ranges[0]
+            first, row = first + len(part.ranges), row + len(part.limits)
+        return result
+
+    def _drawn(self, index: int) -> cKDTree:
+        """Points of a curve as it is drawn."""
+        if index not in self._trees:
+            self._trees[index] = cKDTree(self.film.curves[index].loop().at(np.arange(DRAWN_PLACES) / DRAWN_PLACES))
+        return self._trees[index]
 
     def enough(self, shares: Floats) -> str:
         """What has to be written to allow shares (count,) of the ranges and a little more.
@@ -181,11 +208,17 @@ def _of_curve(index: int, curve: BoundaryCurve, usual: bool) -> list[_Part]:
     if points:
         apply = _curve_waved(index, first)
         most = MOST_WAVES
+        t = np.arange(FREEDOM_PLACES) / FREEDOM_PLACES
         if curve.points is not None:
             most = min(MOST_WAVES, len(curve.points) // POINTS_A_WAVE)
-            apply = _waved(index, wave_rows(np.arange(len(curve.points)) / len(curve.points), most)[first:])
-        # at some places between the points too
-        rows = wave_rows(np.arange(FREEDOM_PLACES) / FREEDOM_PLACES, most)[first:] / NEAR_LIMIT
+            drawn = np.array(curve.points)
+            rows = wave_rows(np.arange(len(drawn)) / len(drawn), most)[first:]
+            apply = _waved(index, rows)
+            # between the points what the curve makes of them
+            rows = rows @ follow_weights(drawn, t, straight=curve.interpolation == "polyline").T
+        else:
+            rows = wave_rows(t, most)[first:]
+        rows = rows / NEAR_LIMIT
         limits = np.zeros((FREEDOM_PLACES, 3, len(rows), axes))
         for axis in range(axes):
             limits[:, axis, :, axis] = rows.T

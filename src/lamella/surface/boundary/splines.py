@@ -51,6 +51,24 @@ def open_spline(points: Floats, *, where: str = "") -> Pieces:
     return _interpolate(points, degree, where, closed=False)
 
 
+def follow_weights(points: Floats, t: Floats, *, straight: bool = False) -> Floats:
+    """How places of a closed curve through points (n, 3) move with these, its parameter held, (k, n).
+
+    Parameters
+    ----------
+    points : (n, 3)
+    t : (k,)
+        Of the places, shares of the length of all chords.
+    straight : bool
+        Between the points are lines.
+    """
+    chords = np.append(0.0, np.cumsum(np.linalg.norm(np.roll(points, -1, 0) - points, axis=1)))
+    each = np.eye(len(points))[np.append(np.arange(len(points)), 0)]
+    degree = 1 if straight else 5 if len(points) >= QUINTIC_FROM else 3
+    spline = make_interp_spline(chords, each, k=degree, bc_type="periodic" if degree > 1 else None)
+    return np.asarray(spline(t * chords[-1]))
+
+
 def _interpolate(points: Floats, degree: int, where: str, *, closed: bool) -> Pieces:
     # a drawing far from its origin has no digits left in products
     origin = np.array(origin_of(points))
