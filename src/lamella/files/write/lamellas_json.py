@@ -103,7 +103,7 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
         "name": one_line(name),
         "units": {"length": "m", "curvature": "1/m", "stress": "Pa"},
         "section": asdict(lamellas.section),
-        "development": {"curvature": network.normal_curvature},
+        "development": {"curvature": float(network.normal_curvature)},
     }
     write_whole(path, _parts(orjson.dumps(head)[:-1], network, lamellas))
 
