@@ -7,7 +7,7 @@ from scipy.linalg import expm
 from lamella.strip.stress import stresses
 from lamella.structure.beam.beams import make_beams
 from lamella.structure.beam.fibre_stress import curvatures_at_ends, strip_stresses
-from lamella.structure.beam.poses import Poses
+from lamella.structure.beam.poses import Poses, straight_poses
 from lamella.structure.beam.rotations import exponential
 from lamella.structure.loads import make_loads, no_loads
 from lamella.structure.static import at_rest, equilibrium
@@ -115,6 +115,23 @@ def test_twisted_strip(section, tg):
             assert found.reactions[-1, 0] == pytest.approx(pull, rel=1e-10)
         else:
             assert length - found.poses.points[-1, 0] == pytest.approx(length * square * tg**2 / 2, abs=1e-10)
+
+
+def test_pair_of_layers_beside_their_nodes():
+    """Two layers at +-d/2 on rigid arms, bent to an arc by turning the end: M = (2 E I + E A d^2 / 2) kg, at any angle,
+    and the layers' strains are -+ d kg / 2."""
+    section, distance, kg, length, elements = rod(axial=1e5), 0.05, 0.9, 2.0, 8
+    one = np.stack((np.arange(elements), np.arange(1, elements + 1)), 1)
+    offsets = np.zeros((2 * elements, 2, 3))
+    offsets[:elements, :, 1], offsets[elements:, :, 1] = distance / 2, -distance / 2
+    beams = make_beams(np.concatenate((one, one)), length / elements, section, offsets=offsets)
+    structure = make_structure(straight_poses(length, elements), beams, {0: "all", elements: "rx ry rz"})
+    loads = make_loads(structure, motions={elements: (0, 0, 0, 0, 0, kg * length)})
+    found = equilibrium(structure, loads, steps=4)
+    moment = (2 * section.bending_n + section.axial * distance**2 / 2) * kg
+    assert found.reactions[-1, 5] == pytest.approx(moment, rel=1e-10)
+    strains = found.state.strains.values[0]
+    assert strains == pytest.approx(np.repeat([-distance * kg / 2, distance * kg / 2], elements), rel=1e-9)
 
 
 def test_tension_resists_twist():

@@ -50,7 +50,8 @@ def test_hinged_toggle():
     assert [there.negative for there in path] == list(np.where(np.abs(height) < np.sqrt(natural ** (2 / 3) - 1), 1, 0))
     limit = critical_point(start, 1e-8)
     assert limit.factors[0] == pytest.approx(load(np.sqrt(natural ** (2 / 3) - 1)), rel=1e-8)
-    driven = list(displacement_path(start, 8, -0.7, steps=7))
+    height_of_apex = np.eye(start.poses.unknowns)[8]
+    driven = list(displacement_path(start, height_of_apex, -0.7, steps=7))
     assert driven[-1].poses.points[1, 2] == pytest.approx(-0.4, abs=1e-12)
     assert driven[-1].factor == pytest.approx(load(-0.4), rel=1e-9)
 
@@ -257,6 +258,17 @@ def test_what_moves_freely_is_named(held, said):
     assert said in refused.value.message
 
 
+def test_a_soft_structure_is_no_mechanism():
+    """A cantilever of a thousand elements, and one that slides: the first resists, the second does not."""
+    soft = strip(1000, 20.0, STRIP, {0: "all"})
+    found = equilibrium(soft, make_loads(soft, forces={1000: (0, 1e-6, 0, 0, 0, 0)}))
+    assert found.displacements[-1, 1] == pytest.approx(1e-6 * 20**3 / (3 * STRIP.bending_n), rel=1e-4)
+    slides = strip(1000, 20.0, STRIP, {0: "y z rx ry rz"})
+    with pytest.raises(InputError) as refused:
+        at_rest(slides, no_loads(slides))
+    assert "along x" in refused.value.message
+
+
 def test_a_part_on_its_own_is_named():
     """Two strips that are not connected; the second one has no support."""
     poses = Poses(np.array([[0, 0, 0], [1, 0, 0], [0, 5, 0], [1, 5, 0.0]]), np.tile(np.eye(3), (4, 1, 1)), np.zeros(0))
@@ -287,6 +299,7 @@ def test_overload_says_how_far_it_went():
         (lambda s: make_loads(s, forces={9: (0,) * 6}), "forces"),
         (lambda s: make_loads(s, forces={1: (0, 0, np.nan, 0, 0, 0)}), "forces"),
         (lambda s: make_loads(s, motions={4: (0.1, 0, 0, 0, 0, 0)}), "motions"),
+        (lambda s: make_loads(s, joints={0: 1.0}), "joints"),
         (lambda s: make_loads(s, natural=(0, 0, np.inf)), "natural"),
         (lambda s: make_structure(s.poses, s.beams, {7: "all"}), "held"),
         (lambda s: make_structure(straight_poses(1.0, 3), s.beams, {0: "all"}), "beams"),

@@ -54,9 +54,16 @@ class LoadControl:
 
 @dataclass
 class DisplacementControl:
-    """One unknown moves by `by` in this step, whatever load that takes: m or rad."""
+    """A sum of unknowns grows by `by` in this step, whatever load that takes.
 
-    unknown: int
+    Attributes
+    ----------
+    weights : (6 n + k,)
+        Of shifts, rotations and joints' angles.
+    by : float
+    """
+
+    weights: Floats
     by: float
 
     def begin(self, start: Equilibrium) -> None: ...
@@ -65,8 +72,8 @@ class DisplacementControl:
         return 0.0
 
     def more(self, iteration: int, total: Floats, motion: Floats, along: Floats) -> float:
-        missing = self.by - total[self.unknown] - motion[self.unknown]
-        return float(missing / along[self.unknown]) if along[self.unknown] else np.inf
+        rate = self.weights @ along
+        return float((self.by - self.weights @ (total + motion)) / rate) if rate else np.inf
 
 
 @dataclass

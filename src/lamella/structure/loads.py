@@ -62,6 +62,7 @@ def make_loads(
     structure: Structure,
     *,
     forces: dict[int, tuple[float, ...]] | None = None,
+    joints: dict[int, float] | None = None,
     lines: ArrayLike = 0.0,
     motions: dict[int, tuple[float, ...]] | None = None,
     natural: ArrayLike = 0.0,
@@ -73,6 +74,8 @@ def make_loads(
     structure : Structure
     forces : dict of int to six floats
         Force (N) and moment (N m) by node.
+    joints : dict of int to float
+        Moment that opens a joint's angle, N m, by joint.
     lines : (m, 3) or (3,)
         Dead load on elements, N/m of natural length, global.
     motions : dict of int to six floats
@@ -83,7 +86,7 @@ def make_loads(
     Raises
     ------
     InputError
-        A node that is not there; a motion of what is not held; numbers that are not finite.
+        A node or a joint that is not there; a motion of what is not held; numbers that are not finite.
     """
     vectors = [_at_nodes(structure, name, given or {}) for name, given in (("forces", forces), ("motions", motions))]
     loose = np.flatnonzero((vectors[1] != 0) & ~structure.held_unknowns)
@@ -91,6 +94,11 @@ def make_loads(
         raise InputError(
             f"node {loose[0] // NODE_UNKNOWNS} is moved and not held there", "hold what is moved", "motions"
         )
+    for joint, moment in (joints or {}).items():
+        count = len(structure.poses.angles)
+        if not 0 <= joint < count or not np.isfinite(moment):
+            raise InputError(f"moment {moment!r} at joint {joint}", f"joints are 0 to {count - 1}", "joints")
+        vectors[0][structure.poses.unknowns - count + joint] += moment
     rows = [_on_elements(structure, name, given) for name, given in (("lines", lines), ("natural", natural))]
     return replace(no_loads(structure), forces=vectors[0], motions=vectors[1], lines=rows[0], natural=rows[1])
 

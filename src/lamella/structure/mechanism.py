@@ -6,15 +6,16 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
-from lamella.base.sparse import SingularError
+from lamella.base.sparse import Factor, SingularError, SymmetricPattern
 from lamella.structure.beam.poses import NODE_UNKNOWNS
 from lamella.structure.structure import Structure
 
-# of the stiffness's diagonal, added so that a matrix without an inverse gets one
-MECHANISM_SHIFT = 1e-7
-# of the energy of a motion to that of the same motions of each unknown alone: less is no resistance
-LEAST_RESISTANCE = 1e-13
-MECHANISM_ROUNDS = 3
+# of the stiffness's diagonal, added so that a matrix without an inverse gets one: the first with which it has one
+MECHANISM_SHIFTS = (1e-14, 1e-12, 1e-10)
+# of the energy of a motion to that of the same motions of each unknown alone: less is no resistance, but rounding. A
+# cantilever of 4,000 elements has 4e-15.
+LEAST_RESISTANCE = 1e-15
+MECHANISM_ROUNDS = 4
 _WAYS = ("moves along x", "moves along y", "moves along z", "turns about x", "turns about y", "turns about z")
 
 
@@ -30,9 +31,7 @@ def freest_motion(structure: Structure, blocks: list[Floats]) -> tuple[Floats, f
     on_diagonal = pattern.rows == columns
     diagonal = np.abs(entries[on_diagonal])
     scale = np.where(diagonal > 0, diagonal, 1.0)
-    shifted = entries.copy()
-    shifted[on_diagonal] += MECHANISM_SHIFT * scale
-    factored = pattern.factor(shifted)
+    factored = _nearly(pattern, entries, np.where(on_diagonal, scale[columns], 0.0))
     matrix = pattern.matrix(entries)
     vector = np.random.default_rng(0).standard_normal(pattern.size) / np.sqrt(scale)
     for _ in range(MECHANISM_ROUNDS):
@@ -41,6 +40,16 @@ def freest_motion(structure: Structure, blocks: list[Floats]) -> tuple[Floats, f
     motion = np.zeros(structure.poses.unknowns)
     motion[free] = vector / np.abs(vector).max()
     return motion, float(vector @ (matrix @ vector))
+
+
+def _nearly(pattern: SymmetricPattern, entries: Floats, diagonal: Floats) -> Factor:
+    """Factorisation of a matrix with a little more on its diagonal."""
+    for shift in MECHANISM_SHIFTS[:-1]:
+        try:
+            return pattern.factor(entries + shift * diagonal)
+        except SingularError:
+            continue
+    return pattern.factor(entries + MECHANISM_SHIFTS[-1] * diagonal)
 
 
 def refuse_mechanism(structure: Structure, blocks: list[Floats]) -> None:

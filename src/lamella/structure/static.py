@@ -88,16 +88,19 @@ def load_path(start: Equilibrium, factor: float = 1.0, *, steps: int = 1) -> Ite
             length *= 2
 
 
-def displacement_path(start: Equilibrium, unknown: int, by: float, *, steps: int = 1) -> Iterator[Equilibrium]:
-    """Equilibria while one unknown moves by a given amount, whatever load that takes.
+def displacement_path(start: Equilibrium, weights: Floats, by: float, *, steps: int = 1) -> Iterator[Equilibrium]:
+    """Equilibria while a weighted sum of unknowns grows by a given amount, whatever load that takes.
+
+    Where the loads' forces are those weights the load factor is the force that drives the sum, and its work the change
+    of energy: the angles of joints that open a structure, weighted by what they have to turn.
 
     Parameters
     ----------
     start : Equilibrium
-    unknown : int
-        6 times the node, plus 0 to 2 for a shift, 3 to 5 for a rotation; 6 n plus the joint for an angle.
+    weights : (6 n + k,)
+        Of the unknowns; a 1 at 6 times a node, plus 0 to 2, for one shift.
     by : float
-        m or rad, from `start` on.
+        From `start` on.
     steps : int
         As `load_path`.
 
@@ -111,7 +114,7 @@ def displacement_path(start: Equilibrium, unknown: int, by: float, *, steps: int
     while left:
         part = left if abs(left) <= abs(length) * (1 + 1e-9) else length
         try:
-            here = step(here, DisplacementControl(unknown, part))
+            here = step(here, DisplacementControl(weights, part))
         except StepError as error:
             length = _shorter(here, part, longest, error)
             continue
