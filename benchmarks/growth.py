@@ -1,80 +1,109 @@
-"""How a run grows with the net: CPU seconds, memory and exponents from 1k to 100k nodes, and where the time goes.
-
-Run with ``make bench`` (one thread). Every size runs in a process of its own, so that memory is its own too.
-"""
+"""How a run grows with the net: CPU seconds of every stage and of the files, memory, and exponents between sizes."""
 
 from __future__ import annotations
 
 import itertools
 import json
-import math
 import resource
-import subprocess
 import sys
-import time
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
-# cells around the unduloid of the first example for about 1k, 10k and 100k nodes
-CELLS = (26, 84, 269)
+from bench import Limit, Row, Table, alone, clocked, exponent, memory_gb, show
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+STAGES = ("surface", "network", "lamellas", "fabrication", "files", "report")
+"""Files are all of a run, the report among them, which is measured by itself too."""
+UNDULOID = {"kind": "unduloid", "neck_radius": 1.6, "bulge_radius": 2.8, "height": [-4.0, 4.0]}
+# cells around the unduloid for about 1k, 10k, 100k and 400k nodes, and around the oculus for 1k, 10k and 60k
+CELLS = {"unduloid": (26, 84, 269, 537), "oculus": (28, 96, 240)}
+EXPONENT_MAX = 1.15
+# of computation and files over the computation, at 10,000 nodes
+WITH_FILES_MAX = 2.5
+# CPU seconds and GB of 100,000 nodes with their files
+SECONDS_MAX, GB_MAX = 60.0, 3.0
 
 
-def measure(cells: int) -> dict[str, float]:
-    """Compute surface, network and lamellas once; seconds and memory."""
-    import numpy as np
+def measure(kind: str, cells: int) -> dict[str, float]:
+    """Seconds of one run with all its files, its memory and the size of its folder."""
+    from lamella import compute, parse_project, read_project, write
+    from lamella.stages.report import report_data
+    from lamella.view.report import report_html
 
-    from lamella import compute, parse_project
-    from lamella.surface.closed_forms.kinds import CLOSED_FORMS
-
-    surface = {"kind": "unduloid", "neck_radius": 1.6, "bulge_radius": 2.8, "height": [-4.0, 4.0]}
-    project = parse_project({"name": "growth", "surface": surface, "network": {"cells": cells}})
-    compute(parse_project({"name": "warm", "surface": surface}), until="lamellas")
-    results = compute(project, until="lamellas")
-    assert results.network is not None
-    where = results.network.sample_where
-    # the physical limit: one evaluation of the surface at every sample
-    unduloid = CLOSED_FORMS["unduloid"](
-        **{key: value for key, value in surface.items() if key != "kind"}  # type: ignore[arg-type]
-    )
-    start = time.process_time()
-    unduloid.at(np.asarray(where))
-    limit = time.process_time() - start
-    seconds = results.summary["seconds"]
+    surface: Any = UNDULOID
+    if kind == "oculus":
+        surface = read_project(EXAMPLES / "13_oculus.toml").model_dump(exclude_none=True)["surface"]
+    tables: dict[str, Any] = {"name": "growth", "surface": surface}
+    with tempfile.TemporaryDirectory() as folder:
+        # what is imported and compiled once is nothing that grows
+        write(compute(parse_project(tables)), Path(folder) / "warm")
+        results = compute(parse_project(tables | {"network": {"cells": cells}}))
+        out = Path(folder) / "out"
+        write(results, out)
+        seconds = json.loads((out / "summary.json").read_text("utf-8"))["seconds"]
+        size = sum(path.stat().st_size for path in out.rglob("*"))
+    seconds["report"] = clocked(lambda: report_html(report_data(results)))[0]
+    network = results.network
+    assert network is not None
+    children = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * (1 if sys.platform == "darwin" else 1024) / 1e9
     return {
-        "cells": cells,
-        "nodes": len(results.network.node_points),
-        "samples": len(where),
-        "seconds": sum(seconds.values()),
-        **seconds,
-        "surface evaluation": limit,
-        "GB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6,
+        "nodes": len(network.node_points),
+        "samples": len(network.sample_points),
+        **{f"{stage}, s": seconds[stage] for stage in STAGES},
+        "memory, GB": max(memory_gb(), children),
+        "folder, MB": size / 1e6,
     }
 
 
-def main() -> None:
-    """Print a line a size, and the exponents between sizes."""
-    if len(sys.argv) > 1:
-        print(json.dumps(measure(int(sys.argv[1]))))
-        return
-    rows = []
-    for cells in CELLS:
-        done = subprocess.run([sys.executable, __file__, str(cells)], capture_output=True, text=True, check=True)
-        rows.append(json.loads(done.stdout))
-        row = rows[-1]
-        print(
-            f"{row['cells']:4d} cells {row['nodes']:8,} nodes {row['samples']:10,} samples: "
-            f"{row['seconds']:6.2f} s CPU "
-            f"(surface {row['surface']:.2f}, network {row['network']:.2f}, lamellas {row['lamellas']:.2f}), "
-            f"{row['seconds'] / row['surface evaluation']:.1f} x one evaluation of the surface, {row['GB']:.2f} GB"
+def _computation(row: Row) -> float:
+    return float(sum(float(row[f"{stage}, s"] or 0) for stage in STAGES[:-2]))
+
+
+def _growth(row: Row, other: Row) -> dict[str, float]:
+    """Exponent of each stage by the number of nodes; of stages below a hundredth of a second it tells nothing."""
+    sizes = float(row["nodes"] or 0), float(other["nodes"] or 0)
+    found = {}
+    for stage in STAGES:
+        one, two = float(row[f"{stage}, s"] or 0), float(other[f"{stage}, s"] or 0)
+        if two > 0.01:
+            found[stage] = exponent((sizes[0], max(one, 0.01)), (sizes[1], two))
+    return found
+
+
+def tables() -> Iterator[Table]:
+    """Two for each kind of net: seconds, and exponents."""
+    for kind, name in (("unduloid", "closed form"), ("oculus", "form-found")):
+        rows: list[dict[str, float]] = [alone(measure, kind, cells) for cells in CELLS[kind]]
+        limits = [
+            Limit(f"{stage}: exponent from {rows[0]['nodes']:,} to {rows[-1]['nodes']:,} nodes", value, EXPONENT_MAX)
+            for stage, value in _growth(rows[0], rows[-1]).items()
+        ]
+        with_files = (_computation(rows[1]) + rows[1]["files, s"]) / _computation(rows[1])
+        limits.append(Limit(f"all / computation at {rows[1]['nodes']:,} nodes", with_files, WITH_FILES_MAX))
+        if kind == "unduloid":
+            large = f"at {rows[2]['nodes']:,} nodes, with files"
+            limits += [
+                Limit(f"CPU seconds {large}", _computation(rows[2]) + rows[2]["files, s"], SECONDS_MAX),
+                Limit(f"memory {large}, GB", rows[2]["memory, GB"], GB_MAX),
+            ]
+        yield Table(
+            f"Growth with the net ({name})",
+            "Whole runs, each in a process of its own, with all files; the report, one of them, once more by itself. "
+            "Above 20,000 nodes a cell has 8 samples instead of 16.",
+            tuple(rows),
+            tuple(limits),
         )
-    for one, other in itertools.pairwise(rows):
-        growth = math.log(other["seconds"] / one["seconds"])
-        by_nodes = growth / math.log(other["nodes"] / one["nodes"])
-        by_samples = growth / math.log(other["samples"] / one["samples"])
-        print(
-            f"{one['nodes']:,} to {other['nodes']:,} nodes: exponent {by_nodes:.2f} by nodes, "
-            f"{by_samples:.2f} by samples "
-            "(above 20,000 nodes a cell has 8 of them instead of 16)"
+        yield Table(
+            f"Exponents of growth ({name})",
+            "By the number of nodes, from each size to the next.",
+            tuple(
+                {"from": f"{one['nodes']:,}", "to": f"{other['nodes']:,}", **_growth(one, other)}
+                for one, other in itertools.pairwise(rows)
+            ),
         )
 
 
 if __name__ == "__main__":
-    main()
+    show(tables())
