@@ -179,13 +179,14 @@ def schedule_rows(parts: Parts, nesting: Nesting, network: Network, lamellas: La
     values = _along_samples(network, lamellas)
     same = congruent_parts(parts)
     for index, part in enumerate(parts.parts):
-        largest = values[:, _samples(part, network, lamellas)].max(axis=1)
+        samples = _samples(part, network, lamellas)
+        largest = values[:, samples].max(axis=1)
         row = Row(
             part,
             largest[:3],
             largest[3:9],
             float(largest[9]),
-            _net_section(part, network, lamellas),
+            _net_section(part, samples, network, lamellas),
             tuple(sorted(sheets[index])),
             "" if same[index] == index else parts.parts[same[index]].id,
         )
@@ -213,11 +214,12 @@ def _along_samples(network: Network, lamellas: Lamellas) -> Floats:
     )
 
 
-def _net_section(part: Part, network: Network, lamellas: Lamellas) -> float:
-    """Largest utilisation of the half height left at the part's slots; 0 where there are none."""
+def _net_section(part: Part, samples: Integers, network: Network, lamellas: Lamellas) -> float:
+    """Largest utilisation of the half height left at the part's slots, at its samples; 0 where there are none."""
     stops = slice(int(network.stop_offsets[part.lamella]), int(network.stop_offsets[part.lamella + 1]))
     at = network.stop_samples[stops] + network.sample_offsets[part.lamella]
-    on = np.isin(at, _samples(part, network, lamellas))
+    # both ascend
+    on = samples[np.minimum(np.searchsorted(samples, at), len(samples) - 1)] == at
     return float(lamellas.net_utilisation[stops][on].max(initial=0.0))
 
 

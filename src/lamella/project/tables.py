@@ -280,6 +280,12 @@ class FilesTable(Table):
         default=1e-3,
     )
 
+    surface_3dm: bool | None = Field(
+        default=None,
+        description="Whether surface.3dm is written, the NURBS of surfaces of curved triangles. When not given, where "
+        "they are at most 10,000 patches (10 MB).",
+    )
+
 
 class MaterialTable(Table):
     """A material of the project's own, SI units."""

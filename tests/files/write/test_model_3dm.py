@@ -16,12 +16,13 @@ import numpy as np
 import pytest
 import rhino3dm
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
+from scipy.interpolate import BSpline, make_interp_spline
 
 from files.write.test_samples import RADIUS, cylinder_mesh, cylinder_net, helix, inward
-from lamella.files.write import model_3dm
+from lamella.base.arrays import Floats
+from lamella.files.write import model_3dm, splines
 from lamella.files.write.model_3dm import model_bytes
-from lamella.files.write.splines import SPLINE_TOLERANCE, fit_spline
+from lamella.files.write.splines import SPLINE_TOLERANCE, Spline, fit_splines
 
 NODE_LAYERS = ["nodes regular", "nodes boundary", "nodes singular", "nodes seam"]
 TESTS = Path(__file__).parents[2]
@@ -245,6 +246,11 @@ def test_a_network_with_a_bad_number_is_not_written() -> None:
         model_bytes(name="x", version="1", surface=cylinder_mesh(), network=network)
 
 
+def fit_spline(s: Floats, values: Floats, slopes: Floats, tolerance: float) -> Spline:
+    """A curve alone."""
+    return next(fit_splines(s, values, np.array([[0, len(s)]]), slopes[None], np.array([tolerance])))
+
+
 @pytest.mark.parametrize("count", [2, 3, 4, 5, 17, 200])
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-7, 1e-12])
 def test_splines_keep_their_tolerance_at_any_number_of_samples(count: int, tolerance: float) -> None:
@@ -264,3 +270,29 @@ def test_splines_leave_samples_out_where_they_can() -> None:
     wild = np.column_stack((np.cos(300 * s), s))
     all_of_them = fit_spline(s, wild, np.array([[0.0, 1.0], [0.0, 1.0]]), 1e-9)
     assert len(all_of_them.controls) == 257 + 2
+
+
+def test_splines_of_many_curves_are_those_of_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Against scipy's interpolation of the same samples, whatever curves they are worked on with."""
+    monkeypatch.setattr(splines, "TOGETHER", 300)
+    counts = [2, 33, 3, 400, 18, 200, 5, 100]
+    offsets = np.r_[0, np.cumsum(counts)]
+    # a sample between curves belongs to none of them
+    spans = np.column_stack((offsets[:-1], offsets[1:])) + np.arange(len(counts))[:, None]
+    t = np.zeros(spans[-1, 1])
+    for k, (first, end) in enumerate(spans.tolist()):
+        t[first:end] = k + np.linspace(0, 1, end - first) ** 1.2 * 3
+    values = np.column_stack((np.sin(5 * t), np.cos(3 * t), t))
+    slopes = np.column_stack((5 * np.cos(5 * t), -3 * np.sin(3 * t), np.ones_like(t)))
+    ends = slopes[np.column_stack((spans[:, 0], spans[:, 1] - 1))]
+    fitted = list(fit_splines(t, values, spans, ends, np.full(len(counts), 1e-5)))
+    assert len({len(spline.controls) for spline in fitted}) > 3
+    for (first, end), spline, slope in zip(spans.tolist(), fitted, ends, strict=True):
+        own = t[first:end] - t[first]
+        sites = np.unique(spline.knots)
+        kept = np.searchsorted(own, sites)
+        conditions = ([(1, slope[0])], [(1, slope[1])])
+        expected = make_interp_spline(sites, values[first:end][kept], k=3, bc_type=conditions)
+        np.testing.assert_allclose(spline.knots, expected.t, atol=1e-15)
+        np.testing.assert_allclose(spline.controls, expected.c, atol=1e-12)
+        np.testing.assert_allclose(expected(own), values[first:end], atol=1e-5)

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import rhino3dm
 
-from lamella.base.arrays import Booleans, Floats
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.files.write.drawn_layer import DrawnLayer, Repeated
 from lamella.files.write.nurbs_objects import nurbs_surface
 from lamella.files.write.rhino_blocks import add_block
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile
-from lamella.files.write.splines import SPLINE_TOLERANCE, fit_spline
+from lamella.files.write.splines import SPLINE_TOLERANCE, Spline, fit_splines
 from lamella.files.write.text import require_finite
 from lamella.network.network import NODE_KINDS, Network
 from lamella.network.turning import derivative
@@ -99,15 +99,10 @@ class _Model:
             left_out = ("layers",)
         self.rhino.add_layers({k: colour for k, colour in COLOURS.items() if not k.startswith(left_out)})
         self.rhino.add_mesh(surface, self.rhino.attributes("surface", "surface", version=self.version))
-        for k in range(len(network.ids)):
-            self._add_centre_line(network, k)
+        self._add_centre_lines(network)
         if lamellas is not None:
             require_finite(network.sample_darboux.kn, network.sample_darboux.tg)
-            edges = np.hstack(twisted_strip(network, lamellas.section.height))
-            for k in range(len(network.ids)):
-                span = slice(network.sample_offsets[k], network.sample_offsets[k + 1])
-                slopes = _edge_slopes(network, lamellas.section.height, span)
-                self._add_strip(network, lamellas.section, k, span, edges[span], slopes)
+            self._add_strips(network, lamellas.section)
             if lamellas.section.layers > 1:
                 self._add_layers(network, lamellas)
         self._add_nodes(network)
@@ -154,53 +149,51 @@ class _Model:
     def encoded(self) -> bytes:
         return self.rhino.encoded()
 
-    def _add_centre_line(self, network: Network, k: int) -> None:
-        span = slice(network.sample_offsets[k], network.sample_offsets[k + 1])
-        arclengths = network.sample_arclengths[span]
-        length = float(arclengths[-1])
-        tangents = network.sample_tangents[span]
-        spline = fit_spline(
-            arclengths, network.sample_points[span], tangents[[0, -1]], SPLINE_TOLERANCE * length / 3**0.5
-        )
-        family = str(network.families[k])
-        attributes = self.rhino.attributes(
-            f"lamellas {family}",
-            network.ids[k],
-            id=network.ids[k],
-            family=family,
-            length_m=repr(length),
-            version=self.version,
-        )
-        self.rhino.add_curve(3, spline.knots[1:-1], spline.controls, attributes)
+    def _add_centre_lines(self, network: Network) -> None:
+        spans = _spans(network)
+        tangents = network.sample_tangents[_ends(spans)]
+        splines = _splines(network, network.sample_points, spans, tangents)
+        for k, spline in enumerate(splines):
+            family, length = str(network.families[k]), float(network.sample_arclengths[spans[k, 1] - 1])
+            attributes = self.rhino.attributes(
+                f"lamellas {family}",
+                network.ids[k],
+                id=network.ids[k],
+                family=family,
+                length_m=repr(length),
+                version=self.version,
+            )
+            self.rhino.add_curve(3, spline.knots[1:-1], spline.controls, attributes)
+
+    def _add_strips(self, network: Network, section: Section) -> None:
+        spans = _spans(network)
+        edges = np.hstack(twisted_strip(network, section.height))
+        slopes = _edge_slopes(network, section.height, _ends(spans))
+        for k, spline in enumerate(_splines(network, edges, spans, slopes)):
+            self._add_strip(network, section, k, spans[k], spline)
 
     def _add_layers(self, network: Network, lamellas: Lamellas) -> None:
         layers, section = lamellas.layers, lamellas.section
         require_finite(layers.points, layers.normals)
-        reach = section.height / 2 * layers.normals
-        both = np.concatenate((layers.points - reach, layers.points + reach), axis=2)
-        spans = [_known(layers.followed, *network.sample_offsets[k : k + 2].tolist()) for k in range(len(network.ids))]
-        drawn = [k for k, (first, end) in enumerate(spans) if end - first >= LEAST_SAMPLES]
-        parts = [spans[k] for k in drawn]
-        slopes = [_end_slopes(edges, network.sample_arclengths, parts) for edges in both]
-        for place, k in enumerate(drawn):
-            span = slice(*spans[k])
-            for row in range(section.layers):
-                self._add_strip(network, section, k, span, both[row, span], slopes[row][place], row + 1)
+        known = [_known(layers.followed, first, end) for first, end in _spans(network).tolist()]
+        drawn = [k for k, (first, end) in enumerate(known) if end - first >= LEAST_SAMPLES]
+        spans = np.array([known[k] for k in drawn], np.int64).reshape(-1, 2)
+        splines = []
+        for points, normals in zip(layers.points, layers.normals, strict=True):
+            reach = section.height / 2 * normals
+            edges = np.hstack((points - reach, points + reach))
+            slopes = _end_slopes(edges, network.sample_arclengths, spans)
+            splines.append(_splines(network, edges, spans, slopes))
+        for k, span, *row in zip(drawn, spans, *splines, strict=True):
+            for layer, spline in enumerate(row, 1):
+                self._add_strip(network, section, k, span, spline, layer)
 
     def _add_strip(
-        self,
-        network: Network,
-        section: Section,
-        k: int,
-        span: slice,
-        edges: Floats,
-        slopes: Floats,
-        layer: int = 0,
+        self, network: Network, section: Section, k: int, span: Integers, spline: Spline, layer: int = 0
     ) -> None:
-        """The strip along a lamella between two edges (n, 6), or one of its layers."""
-        arclengths = network.sample_arclengths[span] - network.sample_arclengths[span.start]
-        length = float(arclengths[-1])
-        spline = fit_spline(arclengths, edges, slopes, SPLINE_TOLERANCE * length / 3**0.5)
+        """The strip along a lamella between two edges, or one of its layers."""
+        s = network.sample_arclengths
+        length = float(s[span[1] - 1] - s[span[0]])
         knots, place, metres = spline.knots[1:-1], self.rhino.placed, self.rhino.metres
         across = np.array([-0.5, 0.5]) * section.height / metres
         lower_upper = place(spline.controls.reshape(-1, 2, 3))
@@ -242,11 +235,28 @@ def _known(followed: Booleans, first: int, end: int) -> tuple[int, int]:
     return (int(known[0]), int(known[-1]) + 1) if len(known) >= LEAST_SAMPLES else (first, first)
 
 
-def _end_slopes(edges: Floats, arclengths: Floats, spans: Sequence[tuple[int, int]]) -> Floats:
+def _spans(network: Network) -> Integers:
+    """First sample of each lamella, and the one after its last, (m, 2)."""
+    return np.column_stack((network.sample_offsets[:-1], network.sample_offsets[1:]))
+
+
+def _ends(spans: Integers) -> Integers:
+    """First and last sample of spans, (m, 2)."""
+    return np.column_stack((spans[:, 0], spans[:, 1] - 1))
+
+
+def _splines(network: Network, values: Floats, spans: Integers, slopes: Floats) -> Iterator[Spline]:
+    """Splines by the arc length of the centre line through values along parts of lamellas."""
+    s = network.sample_arclengths
+    lengths = s[spans[:, 1] - 1] - s[spans[:, 0]]
+    return fit_splines(s, values, spans, slopes, SPLINE_TOLERANCE * lengths / 3**0.5)
+
+
+def _end_slopes(edges: Floats, arclengths: Floats, spans: Integers) -> Floats:
     """Derivatives of edges (k, 6) by arc length at the first and the last sample of parts of them, (n, 2, 6)."""
-    if not spans:
+    if not len(spans):
         return np.empty((0, 2, 6))
-    first, end = np.array(spans).T
+    first, end = spans.T
     offsets = np.r_[0, np.cumsum(end - first)]
     samples = np.repeat(first - offsets[:-1], end - first) + np.arange(offsets[-1])
     ends = np.column_stack((offsets[:-1], offsets[1:] - 1)).ravel()
@@ -254,10 +264,9 @@ def _end_slopes(edges: Floats, arclengths: Floats, spans: Sequence[tuple[int, in
     return derivative(edges[samples], along, offsets, np.zeros(len(spans), bool), ends).reshape(-1, 2, 6)
 
 
-def _edge_slopes(network: Network, height: float, span: slice) -> Floats:
-    """Derivatives of the edges c -+ h/2 n by the arc length of c, at first and last sample, (2, 6)."""
-    tangents, normals = network.sample_tangents[span][[0, -1]], network.sample_normals[span][[0, -1]]
-    kn = network.sample_darboux.kn[span][[0, -1], None]
-    tg = network.sample_darboux.tg[span][[0, -1], None]
+def _edge_slopes(network: Network, height: float, at: Integers) -> Floats:
+    """Derivatives of the edges c -+ h/2 n by the arc length of c, at samples (m, 2), (m, 2, 6)."""
+    tangents, normals = network.sample_tangents[at], network.sample_normals[at]
+    kn, tg = network.sample_darboux.kn[at][..., None], network.sample_darboux.tg[at][..., None]
     turning = height / 2 * (-kn * tangents - tg * np.cross(normals, tangents))
-    return np.hstack((tangents - turning, tangents + turning))
+    return np.concatenate((tangents - turning, tangents + turning), axis=-1)

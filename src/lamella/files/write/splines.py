@@ -1,19 +1,26 @@
-"""Cubic B-splines through densely sampled curves, with no more control points than a tolerance needs."""
+"""Cubic B-splines through densely sampled curves, with no more control points than a tolerance needs.
+
+Many curves at once: their equations are one tridiagonal system in which they do not meet.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
+from scipy.linalg import solve_banded
 
-from lamella.base.arrays import Floats
+from lamella.base.arrays import Floats, Integers
+from lamella.base.ragged import ragged_ranges
 
 DEGREE = 3
 SPLINE_TOLERANCE = 1e-7
 """Largest distance of a written curve from its samples, as a share of the curve's length."""
 
 COARSEST = 16
+# samples of curves that are worked on together
+TOGETHER = 16_000
 
 
 @dataclass(frozen=True)
@@ -32,38 +39,171 @@ class Spline:
     controls: Floats
 
 
-def fit_spline(parameters: Floats, values: Floats, ends: Floats, tolerance: float) -> Spline:
-    """Interpolate every s-th sample, with the largest power of two s that keeps all of them in tolerance.
+@dataclass(frozen=True)
+class _Curves:
+    """Sampled curves, see `fit_splines`; `places` are parameters from the start of each curve, (k,)."""
+
+    first: Integers
+    last: Integers
+    places: Floats
+    values: Floats
+    ends: Floats
+
+    def take(self, some: Integers) -> _Curves:
+        """Some of the curves."""
+        return _Curves(self.first[some], self.last[some], self.places, self.values, self.ends[some])
+
+
+def fit_splines(
+    parameters: Floats, values: Floats, spans: Integers, ends: Floats, tolerances: Floats
+) -> Iterator[Spline]:
+    """Interpolate every s-th sample of each curve, with the largest power of two s that keeps all of them in tolerance.
 
     Parameters
     ----------
-    parameters : (n,)
-        Increasing, n >= 2; arc lengths of the samples, say.
-    values : (n, d)
+    parameters : (k,)
+        Increasing along each curve; arc lengths of the samples, say. A spline's begin with 0.
+    values : (k, d)
         Samples; for d = 6 two curves of three coordinates each, which then share their knots.
-    ends : (2, d)
+    spans : (m, 2) int
+        First sample of each curve, and the one after its last; two samples at least.
+    ends : (m, 2, d)
         Derivatives by the parameter at the first and the last sample.
-    tolerance : float
+    tolerances : (m,)
         Largest difference in any coordinate at the samples left out.
 
-    Returns
-    -------
+    Yields
+    ------
     Spline
-        Passes through first and last sample exactly and through the others within ``tolerance``.
+        Of one curve after the other. Passes through first and last sample exactly and through the others within the
+        tolerance.
     """
-    conditions = ([(1, ends[0])], [(1, ends[1])])
-    last = len(parameters) - 1
-    stride = COARSEST
-    while True:
-        stride = min(stride, 1 << (last.bit_length() - 1))
-        kept = np.rint(np.linspace(0, last, -(-last // stride) + 1)).astype(np.int64)
-        spline = make_interp_spline(parameters[kept], values[kept], k=DEGREE, bc_type=conditions, check_finite=False)
-        if stride == 1:
-            break
-        error = float(np.abs(spline(parameters) - values).max())
-        if error <= tolerance:
-            break
-        # The error falls with the fourth power of the stride; aim a little below the tolerance.
-        steps = int(np.ceil(np.log2(1.25 * error / tolerance) / 4))
-        stride = max(1, stride >> max(1, steps))
-    return Spline(knots=spline.t, controls=spline.c)
+    counts = np.diff(spans, axis=1)[:, 0]
+    group = (np.cumsum(counts) - counts) // TOGETHER
+    for number in np.unique(group).tolist():
+        some = np.flatnonzero(group == number)
+        first, last = spans[some, 0], counts[some] - 1
+        samples = _indices(first, counts[some])
+        own = np.r_[0, np.cumsum(counts[some])[:-1]]
+        places = parameters[samples] - np.repeat(parameters[first], counts[some])
+        yield from _fitted(_Curves(own, last, places, values[samples], ends[some]), tolerances[some])
+
+
+def _fitted(curves: _Curves, tolerances: Floats) -> list[Spline]:
+    # the largest power of two up to the number of pieces
+    stride = np.minimum(COARSEST, 1 << (np.frexp(curves.last)[1] - 1).astype(np.int64))
+    fitted: dict[int, Spline] = {}
+    left = np.arange(len(stride))
+    while len(left):
+        splines = _Splines(curves.take(left), stride[left])
+        error, most = splines.errors(), tolerances[left]
+        done = (stride[left] == 1) | (error <= most)
+        for place in np.flatnonzero(done).tolist():
+            fitted[int(left[place])] = splines.one(place)
+        left, error, most = left[~done], error[~done], most[~done]
+        # the error falls with the fourth power of the stride; aim a little below the tolerance
+        steps = np.ceil(np.log2(1.25 * error / most) / 4).astype(np.int64)
+        stride[left] = np.maximum(1, stride[left] >> np.maximum(1, steps))
+    return [fitted[k] for k in range(len(stride))]
+
+
+class _Splines:
+    """Splines through every so many samples of curves, the knots of each one behind the other's.
+
+    A curve of n pieces has n + 1 sites, n + 7 knots and n + 3 control points.
+    """
+
+    def __init__(self, curves: _Curves, stride: Integers) -> None:
+        self.curves = curves
+        self.pieces = pieces = -(-curves.last // stride)
+        site = ragged_ranges(pieces + 1)
+        of = np.repeat(np.arange(len(pieces)), pieces + 1)
+        self.kept = np.rint(site * (curves.last / pieces)[of]).astype(np.int64)
+        ends = np.cumsum(pieces + 1)
+        self.kept[ends - 1] = curves.last
+        sites = curves.places[curves.first[of] + self.kept]
+        knot = ragged_ranges(pieces + 7)
+        of_knot = np.repeat(np.arange(len(pieces)), pieces + 7)
+        self.knots = sites[(ends - pieces - 1)[of_knot] + np.clip(knot - DEGREE, 0, pieces[of_knot])]
+        self.knots_begin = np.cumsum(pieces + 7) - pieces - 7
+        self.controls_begin = np.cumsum(pieces + 3) - pieces - 3
+        self.controls = self._solved(site, of)
+
+    def one(self, place: int) -> Spline:
+        """The spline of a curve."""
+        pieces, knots, controls = self.pieces[place], self.knots_begin[place], self.controls_begin[place]
+        return Spline(self.knots[knots : knots + pieces + 7], self.controls[controls : controls + pieces + 3])
+
+    def errors(self) -> Floats:
+        """Largest difference in any coordinate at the samples of each curve, (m,)."""
+        curves = self.curves
+        # between its first site and its last each sample lies on one piece
+        length = np.diff(self.kept)
+        length = length[length > 0]
+        piece = np.repeat(ragged_ranges(self.pieces), length)
+        of = np.repeat(np.repeat(np.arange(len(self.pieces)), self.pieces), length)
+        samples = _indices(curves.first, curves.last)
+        x, base = curves.places[samples], self.knots_begin[of] + piece + DEGREE
+        begin = self.controls_begin[of] + piece
+        off = curves.values.take(samples, 0)
+        for number, weight in enumerate(_basis(x, *(self.knots.take(base + k) for k in range(-2, 4)))):
+            part = self.controls.take(begin + number, 0)
+            part *= weight[:, None]
+            off -= part
+        largest = np.abs(off, out=off).max(1)
+        return np.asarray(np.maximum.reduceat(largest, np.cumsum(curves.last) - curves.last))
+
+    def _solved(self, site: Integers, of: Integers) -> Floats:
+        """Control points, (sum of n + 3, d), of splines through the sites with given derivatives at the ends."""
+        curves, pieces, knots = self.curves, self.pieces, self.knots
+        values = curves.values[curves.first[of] + self.kept]
+        controls = np.empty((int((pieces + 3).sum()), values.shape[1]))
+        start, end = self.controls_begin, self.controls_begin + pieces + 2
+        first, last = self.knots_begin + DEGREE, self.knots_begin + DEGREE + pieces
+        controls[start] = curves.values[curves.first]
+        controls[end] = curves.values[curves.first + curves.last]
+        controls[start + 1] = controls[start] + curves.ends[:, 0] * ((knots[first + 1] - knots[first]) / 3)[:, None]
+        controls[end - 1] = controls[end] - curves.ends[:, 1] * ((knots[last] - knots[last - 1]) / 3)[:, None]
+        inner = np.flatnonzero((site > 0) & (site < pieces[of]))
+        if not len(inner):
+            return controls
+        of, site = of[inner], site[inner]
+        base = self.knots_begin[of] + site + DEGREE
+        two_back, back, own, ahead, two_ahead = (knots[base + k] for k in range(-2, 3))
+        # the three cubic basis functions that are not zero at a knot
+        below = (ahead - own) ** 2 / ((ahead - two_back) * (ahead - back))
+        above = (own - back) ** 2 / ((two_ahead - back) * (ahead - back))
+        diagonals = np.stack((np.zeros(len(inner)), 1 - below - above, np.zeros(len(inner))))
+        right = values[inner].copy()
+        begins, stops = site == 1, site == pieces[of] - 1
+        right[begins] -= below[begins, None] * controls[start[of[begins]] + 1]
+        right[stops] -= above[stops, None] * controls[end[of[stops]] - 1]
+        diagonals[0, 1:] = np.where(stops, 0.0, above)[:-1]
+        diagonals[2, :-1] = np.where(begins, 0.0, below)[1:]
+        controls[start[of] + site + 1] = solve_banded((1, 1), diagonals, right, check_finite=False)
+        return controls
+
+
+def _basis(
+    x: Floats, two_back: Floats, back: Floats, own: Floats, ahead: Floats, two_ahead: Floats, three_ahead: Floats
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """The four cubic B-splines that are not zero between the knots `own` and `ahead` (de Boor's recurrence)."""
+    left, left_two, left_three = x - own, x - back, x - two_back
+    right, right_two, right_three = ahead - x, two_ahead - x, three_ahead - x
+    width = ahead - own
+    one, two = right / width, left / width
+    share = one / (ahead - back)
+    first, second = right * share, left_two * share
+    share = two / (two_ahead - own)
+    second, third = second + right_two * share, left * share
+    share = first / (ahead - two_back)
+    a, b = right * share, left_three * share
+    share = second / (two_ahead - back)
+    b, c = b + right_two * share, left_two * share
+    share = third / (three_ahead - own)
+    return a, b, c + right_three * share, left * share
+
+
+def _indices(first: Integers, count: Integers) -> Integers:
+    """Indices first, first + 1, ... of so many items each."""
+    return np.asarray(np.repeat(first, count) + ragged_ranges(count), np.int64)

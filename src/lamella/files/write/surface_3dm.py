@@ -24,6 +24,9 @@ from lamella.files.write.text import require_finite
 from lamella.surface.element.lagrange import lagrange, subdivision
 from lamella.surface.element.surface import EDGE_PARTS_DRAWN_MAX, ElementSurface
 
+SMALL_PATCHES = 10_000
+"""A run writes surfaces of so many patches without being asked to (`FilesTable.surface_3dm`)."""
+
 MOST_PATCHES = 20_000
 """Surfaces of more patches (about 1 kB each, and slow in Rhino) are written as one mesh."""
 
@@ -45,6 +48,11 @@ def write_surface_3dm(
     """Write `surface_3dm_bytes`; OSError if it cannot be written whole."""
     # rhino3dm's own Write says nothing of a full disk.
     write_whole(path, surface_3dm_bytes(surface, frame, name=name, version=version))
+
+
+def is_written(surface: ElementSurface, requested: bool | None) -> bool:
+    """Whether a run writes surface.3dm: as it was requested, and else where the surface is small."""
+    return 3 * len(surface.connectivity.elements) <= SMALL_PATCHES if requested is None else requested
 
 
 def surface_3dm_bytes(surface: ElementSurface, frame: Frame = IN_METRES, *, name: str, version: str) -> bytes:

@@ -34,7 +34,11 @@ class SurfaceStage(Stage[SurfaceOutput]):
     name = "surface"
     writes = (
         ("surface.obj, surface.ply", "the surface as a mesh"),
-        ("surface.3dm", "of surfaces of curved triangles: the surface itself as NURBS patches"),
+        (
+            "surface.3dm",
+            "of surfaces of curved triangles, where they are small or `files.surface_3dm` is true: the surface itself "
+            "as NURBS patches",
+        ),
         ("adjusted.toml", "where the boundary was adjusted: the project with that boundary"),
         ("adjusted.3dm", "where curves of such a boundary are from a file"),
     )
@@ -45,7 +49,7 @@ class SurfaceStage(Stage[SurfaceOutput]):
         return (*_decided_by(project, wanted), "files.mesh_tolerance")
 
     def warned_by(self, project: Project) -> tuple[str, ...]:
-        return ("lamella.height",)
+        return ("lamella.height", "files.surface_3dm")
 
     def heading(self, up: Upstream) -> str:
         return up.project.surface.kind
@@ -65,7 +69,7 @@ class SurfaceStage(Stage[SurfaceOutput]):
     def warnings(self, out: SurfaceOutput, up: Upstream, progress: Progress) -> Iterator[Message]:
         yield from (with_keys(warning, "surface.tolerance =", "surface.radius =") for warning in out.surface.warnings())
         yield from size_warnings(out.mesh, up.project.lamella.height)
-        yield from surface_file_warnings(out.surface)
+        yield from surface_file_warnings(out.surface, up.project.files.surface_3dm)
 
     def files(self, out: SurfaceOutput, up: Upstream) -> Iterator[File]:
         from lamella.files.write.meshes import write_surface_obj, write_surface_ply
@@ -85,10 +89,11 @@ class SurfaceStage(Stage[SurfaceOutput]):
 
         if isinstance(surface, ElementSurface):
             from lamella.files.write.rhino_file import Frame
-            from lamella.files.write.surface_3dm import write_surface_3dm
+            from lamella.files.write.surface_3dm import is_written, write_surface_3dm
 
             frame = Frame(project.files.unit, origin)
-            yield File("surface.3dm", lambda path: write_surface_3dm(path, surface, frame, **signed))
+            if is_written(surface, project.files.surface_3dm):
+                yield File("surface.3dm", lambda path: write_surface_3dm(path, surface, frame, **signed))
 
 
 def _adjusts(project: Project, wanted: tuple[str, ...]) -> bool:

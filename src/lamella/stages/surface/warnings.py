@@ -50,8 +50,8 @@ def order_warning(order: int, tolerance: float, most_nodes: int) -> Message | No
     )
 
 
-def surface_file_warnings(surface: Surface[Any]) -> Iterator[Message]:
-    """A surface.3dm that is no NURBS."""
+def surface_file_warnings(surface: Surface[Any], requested: bool | None) -> Iterator[Message]:
+    """A surface.3dm that is no NURBS, or is left out since it would be large; `requested` as in the project."""
     if isinstance(surface, ClosedForm):
         return
     # heavy, and closed forms do without
@@ -59,10 +59,16 @@ def surface_file_warnings(surface: Surface[Any]) -> Iterator[Message]:
 
     if not isinstance(surface, ElementSurface):
         return
-    from lamella.files.write.surface_3dm import MESH_TOLERANCE, MOST_PATCHES
+    from lamella.files.write.surface_3dm import MESH_TOLERANCE, MOST_PATCHES, SMALL_PATCHES, is_written
 
     count = 3 * len(surface.connectivity.elements)
-    if count > MOST_PATCHES:
+    if requested is None and count > SMALL_PATCHES:
+        yield Message(
+            "surface_3dm_left_out",
+            f"surface.3dm is left out: NURBS would be {count:,} patches (more than {SMALL_PATCHES:,}); write "
+            "files.surface_3dm = true for it, or false for none without this warning",
+        )
+    if is_written(surface, requested) and count > MOST_PATCHES:
         yield Message(
             "surface_3dm_mesh",
             f"surface.3dm holds one mesh, within about {MESH_TOLERANCE:g} of the surface's size, and exact boundary "
