@@ -182,10 +182,7 @@ def trace(
     margin, most = field.margin(sample.mean, sample.deviator), np.full(2 * m, step / SLOWEST)
     for _ in range(TRACE_STEPS_MAX):
         velocity = _velocity(field, sample, family[left], tangent)
-        # the principal curvatures bound how a line turns
-        bend = np.abs(sample.mean) + np.abs(sample.deviator)
-        ds = np.minimum(charts.reach(where) / np.linalg.norm(velocity, axis=1), step)
-        ds = np.minimum(np.minimum(ds, most), MOST_TURN / np.maximum(bend, 1e-300))
+        ds = _step_length(charts, where, sample, velocity, np.minimum(most, step))
         kept.append((left, way, where, tangent, sample.position))
         ahead, seen, ds = _gentle_step(charts, field, where, tangent, family[left], ds, velocity)
         before, margin = margin, field.margin(seen.mean, seen.deviator)
@@ -204,24 +201,27 @@ def trace(
         if not len(left):
             break
     length[left] = way
+    return Streamlines(charts, field, is_a, length, ends, tail, *_by_half(kept))
+
+
+def _step_length(charts: Charts, where: Places, sample: ChartSample, velocity: Floats, most: Floats) -> Floats:
+    """Steps (n,), m, within the chart, over which a line turns little: the principal curvatures bound its turning."""
+    bend = np.abs(sample.mean) + np.abs(sample.deviator)
+    within = charts.reach(where) / np.linalg.norm(velocity, axis=1)
+    return np.asarray(np.minimum(np.minimum(within, most), MOST_TURN / np.maximum(bend, 1e-300)))
+
+
+def _by_half(
+    kept: list[tuple[Integers, Floats, Places, Floats, Floats]],
+) -> tuple[Integers, Floats, Places, Floats, Floats]:
+    """Half, way, place, tangent and position of all steps, those of a half one after the other."""
     half, ways, element, local, tangents, positions = (
         np.concatenate(parts)
         for parts in zip(*((h, w, p.element, p.local, t, x) for h, w, p, t, x in kept), strict=True)
     )
     order = np.argsort(half, kind="stable")
-    return Streamlines(
-        charts,
-        field,
-        is_a,
-        length,
-        ends,
-        tail,
-        half[order],
-        ways[order],
-        Places(element[order], local[order]),
-        tangents[order],
-        positions[order],
-    )
+    places = Places(element[order], local[order])
+    return half[order], ways[order], places, tangents[order], positions[order]
 
 
 def _gentle_step(

@@ -14,7 +14,7 @@ doi:10.1016/j.cma.2003.12.032.)
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -414,36 +414,51 @@ def kept_surface(
     typical = float(np.sqrt(np.average(errors**2, weights=vertex_areas(mesh.points, mesh.faces)))) / scale
     if smoothed is not None and np.median(errors) > FIT_OPEN * scale:
         raise too_scattered(smoothed, mesh.faces, flat.mesh.loop >= 0, float(np.median(errors)) / scale, scale)
-    distance = distances(film, given)
-    doubts: tuple[Message, ...] = ()
-    if typical > options.tolerance:
-        doubts = (
-            Message(
-                "mesh_rough",
-                f"the mesh tells its curvature to {typical:.2g} of the curvature scale only (tolerance = "
-                f"{options.tolerance:g}): by so much the surfaces around neighbouring vertices differ; a smoother or "
-                "a finer mesh tells more",
-            ),
-        )
     rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
-    figures = {
-        "order": film.connectivity.basis.order,
-        "surface_nodes": film.connectivity.node_count,
-        "elements": len(film.connectivity.elements),
+    figures = _figures(film, given, options.tolerance) | {
         "curvature_scale": scale,
         "curvature_jump": kept.jump,
         "curvature_error": typical,
         "source": source,
         "treatment": [*mesh.notes, *notes],
         "vertex_scatter": smoothed.scatter if smoothed else 0.0,
+    }
+    return VaryingSurface(
+        "mesh",
+        _mean(film),
+        film.connectivity,
+        film.nodes,
+        rim_loop,
+        figures,
+        _doubts(typical, options.tolerance),
+        vertices=mesh.points,
+        vertex_errors=errors,
+    )
+
+
+def _figures(film: Film, given: Floats, tolerance: float) -> dict[str, Any]:
+    """Figures of the elements, and their distances from the vertices as they were given."""
+    distance = distances(film, given)
+    return {
+        "order": film.connectivity.basis.order,
+        "surface_nodes": film.connectivity.node_count,
+        "elements": len(film.connectivity.elements),
         "distance_max": float(distance.max()),
         "distance_rms": float(np.sqrt((distance**2).mean())),
-        "tolerance": options.tolerance,
+        "tolerance": tolerance,
     }
-    mean = _mean(film)
-    basis = film.connectivity
-    return VaryingSurface(
-        "mesh", mean, basis, film.nodes, rim_loop, figures, doubts, vertices=mesh.points, vertex_errors=errors
+
+
+def _doubts(typical: float, tolerance: float) -> tuple[Message, ...]:
+    """That the mesh tells its curvature less well than requested."""
+    if typical <= tolerance:
+        return ()
+    return (
+        Message(
+            "mesh_rough",
+            f"the mesh tells its curvature to {typical:.2g} of the curvature scale only (tolerance = {tolerance:g}): "
+            "by so much the surfaces around neighbouring vertices differ; a smoother or a finer mesh tells more",
+        ),
     )
 
 
