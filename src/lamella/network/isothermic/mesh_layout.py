@@ -50,8 +50,9 @@ PATCH_GAP = 0.15
 MEASURED = 0.5
 # share of the radius from which on a deviator is to be trusted within which the leading term alone counts
 INNER = 0.5
-# degrees: a layout whose elements next to a rosette have smaller angles does not hold for a surface
-GAP_ANGLE_MIN = 8.0
+# degrees between the sides of elements next to a rosette, below which it becomes smaller; by these parts of its radius
+# on the reference, and where none is small enough the layout does not hold for a surface
+GAP_ANGLE_MIN, PATCH_SHARES = 8.0, (1.0, 0.8, 0.6, 0.45)
 
 
 class LayoutError(ArithmeticError):
@@ -145,7 +146,7 @@ class MeshLayout:
         positions = np.full((new.node_count, 3), np.nan)
         own = Places(element[self.own], local[self.own])
         positions[self.own] = surface.polynomials.values(own).T
-        planes = TangentPlane.of(surface, umbilics)
+        planes, radii = TangentPlane.of(surface, umbilics), self.radii.copy()
         around = []
         for patch in self.patches:
             plane, radius = planes[patch.umbilic], float(self.radii[patch.umbilic])
@@ -153,10 +154,15 @@ class MeshLayout:
             argument = float(np.angle(leading))
             turns = (patch.argument - _towards(plane, positions[patch.axis], patch.order, argument)) / (2 * np.pi)
             # two wedges further on it is the same rosette, with other numbers
-            rose = umbilic_patch(patch.order, argument + 2 * np.pi * round(turns), radius, INTEGRATION_ORDER)
+            argument += 2 * np.pi * round(turns)
+            for share in PATCH_SHARES if known else (1.0,):
+                radii[patch.umbilic] = share * radius
+                rose = umbilic_patch(patch.order, argument, share * radius, INTEGRATION_ORDER)
+                if not known or _has_room(new, patch, rose, plane, positions):
+                    break
+            else:
+                raise LayoutError("an umbilic has left its place among the elements")
             names, z = _patch_nodes(new, patch, rose, plane, positions)
-            if known:
-                _refuse_slender(new, patch, rose, plane, positions)
             start = Places(element[names], local[names]) if known else None
             places, there = plane.up(z, surface, start)
             positions[names], element[names], local[names] = there, places.element, places.local
@@ -179,7 +185,7 @@ class MeshLayout:
             surface.smooth_normal(every),
             self.loop,
             self.umbilics,
-            self.radii,
+            radii,
             self.patch,
             surface.rim_starts,
             _corners(element_rims(new, positions, self.loop[new.rim_nodes[:, 0]])),
@@ -391,15 +397,8 @@ def _patch_nodes(
     return names, z[names]
 
 
-def _refuse_slender(
-    new: Connectivity, patch: _Patch, rose: UmbilicPatch, plane: TangentPlane, positions: Floats
-) -> None:
-    """Refuse elements between a rosette and its ring that are slender, or turned over.
-
-    Raises
-    ------
-    LayoutError
-    """
+def _has_room(new: Connectivity, patch: _Patch, rose: UmbilicPatch, plane: TangentPlane, positions: Floats) -> bool:
+    """Whether the elements between a rosette and its ring are neither slender nor turned over."""
     z = np.full(new.node_count, np.nan, complex)
     z[new.elements[patch.start : patch.start + patch.petals]] = rose.nodes
     faces = new.faces[patch.start + patch.petals : patch.start + patch.petals + patch.gaps]
@@ -409,5 +408,4 @@ def _refuse_slender(
     sides = np.roll(corners, -1, 1) - corners
     # the turn from one side to the next is what an angle lacks to half a turn; of triangles turned over it is negative
     angle = 180 - np.degrees(np.angle(np.roll(sides, -1, 1) / sides))
-    if not ((angle > GAP_ANGLE_MIN) & (angle < 180)).all():
-        raise LayoutError("an umbilic has left its place among the elements")
+    return bool(((angle > GAP_ANGLE_MIN) & (angle < 180)).all())

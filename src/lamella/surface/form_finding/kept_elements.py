@@ -16,6 +16,7 @@ from lamella.surface.form_finding.meshing import SLENDER_CHART, least_angle
 from lamella.surface.form_finding.newton import Equilibrium, least_cosine
 from lamella.surface.form_finding.redistribution import redistributed
 from lamella.surface.form_finding.reference_film import ReferenceFilm
+from lamella.surface.form_finding.refinement import WRONG
 
 # parts of the way from the reference in which a film is sought, one after the other
 PARTS = (1, 2, 4)
@@ -59,7 +60,7 @@ def kept(reference: ReferenceFilm, boundary: Boundary, tolerance: float, leeway:
     tolerance : float
         Largest |H - H0| over the curvature scale; where it is more, the nodes are distributed anew.
     leeway : float
-        Times the tolerance, up to which elements hold.
+        Times the tolerance, up to which elements hold, as long as there is a film to speak of.
 
     Raises
     ------
@@ -73,7 +74,8 @@ def kept(reference: ReferenceFilm, boundary: Boundary, tolerance: float, leeway:
         found, deviation, more = _redistributed(reference, found, deviation, boundary.volume)
         factorisations += more
     _refuse_worn(reference, found)
-    limit = leeway * max(tolerance, reference.deviation)
+    own = max(tolerance, reference.deviation)
+    limit = max(own, min(leeway * own, WRONG))
     if deviation.weighted > limit:
         raise NotKeptError(
             f"H is off by up to {deviation.weighted:.2g} of the curvature scale on them (limit {limit:.2g})"
