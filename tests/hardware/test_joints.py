@@ -104,8 +104,8 @@ def test_oblique_nets_have_washers_of_their_angles() -> None:
 @pytest.mark.parametrize(
     ("section", "rules", "where"),
     [
-        (Section(0.1, 0.0015, layers=1), JointRules(), "joint"),
-        (Section(0.1, 0.0015, layers=3), JointRules(), "joint"),
+        (Section(0.1, 0.0015, layers=1), JointRules(), ""),
+        (Section(0.1, 0.0015, layers=3), JointRules(), ""),
         (Section(0.1, 0.0015, offset=0.008), JointRules(), "bolt"),
         (Section(0.1, 0.0015), JointRules(washer_length=1.5), "washer_length"),
         (Section(0.1, 0.0015), JointRules(washer_length=0.03), "washer_length"),

@@ -137,8 +137,7 @@ class JointRules:
             layers = f"{section.layers} layer{'s' if section.layers > 1 else ''}"
             raise InputError(
                 f"a joint has its bolt on the node's axis, where a middle one of {layers} would be",
-                "write layers = 2 or 4, or leave the table [joint] out",
-                "joint",
+                "write layers = 2 or 4, or leave joints out",
             )
         clear = section.offset - section.thickness
         if self.washer and self.size.hole + 2 * self.play >= clear:

@@ -27,7 +27,7 @@ class Repeated:
     labels : tuple of str
         Name of each place.
     text : dict
-        User text of all of them.
+        User text of the solid: `id`, where it is another one than the name, and more.
     """
 
     name: str

@@ -133,17 +133,17 @@ class _Model:
         for a, b, c in solid.triangles.tolist():
             mesh.Faces.AddFace(a, b, c)
         definition = self.rhino.identity("block", solid.name)
-        add_block(self.file, solid.name, mesh, definition, self.rhino.attributes(layer, f"{solid.name} block"))
-        text = {"id": solid.name, **solid.text, "version": self.version}
-        for place, axes, label in zip(
-            self.rhino.placed(solid.origins).tolist(), solid.axes.tolist(), solid.labels, strict=True
-        ):
-            matrix = rhino3dm.Transform.Identity()
-            for row in range(3):
-                for column in range(3):
-                    setattr(matrix, f"M{row}{column}", axes[column][row])
-                setattr(matrix, f"M{row}3", place[row])
-            attributes = self.rhino.attributes(layer, f"{solid.name} {label}", place=label, **text)
+        text = {"id": solid.name, **solid.text}
+        inside = self.rhino.attributes(layer, f"{solid.name} block", **text, version=self.version)
+        add_block(self.file, solid.name, mesh, definition, inside)
+        matrix = rhino3dm.Transform.Identity()
+        entries = [f"M{row}{column}" for row in range(3) for column in range(4)]
+        columns = np.concatenate([solid.axes, self.rhino.placed(solid.origins)[:, None]], axis=1)
+        for values, label in zip(columns.transpose(0, 2, 1).reshape(-1, 12).tolist(), solid.labels, strict=True):
+            for entry, value in zip(entries, values, strict=True):
+                setattr(matrix, entry, value)
+            # what all have in common is said in the block: there may be tens of thousands of places
+            attributes = self.rhino.attributes(layer, f"{solid.name} {label}", id=text["id"], place=label)
             self.file.Objects.AddInstanceObject(rhino3dm.InstanceReference(definition, matrix), attributes)
 
     def encoded(self) -> bytes:
