@@ -82,6 +82,23 @@ def test_arc_that_is_drawn_is_bent():
     assert np.abs(flat.poses.points[-1] - [length, 0, 0]).max() < 1e-10
 
 
+def test_signs():
+    """t' = kg u + kn n and u' = tg n - ...: kg > 0 bends to the left (u = n x t), kn > 0 upwards, tg > 0 turns u up. A
+    pull is positive, and a reaction is what the support does to the node."""
+    structure = strip(4, 1.0, STRIP, {0: "all"})
+
+    def end(*natural):
+        found = equilibrium(structure, make_loads(structure, natural=natural))
+        return found.poses.points[-1], found.poses.frames[-1]
+
+    assert end(0, 0, 0.5)[0][1] > 0.1
+    assert end(0, -0.5, 0)[0][2] > 0.1
+    assert end(0.5, 0, 0)[1][2, 1] > 0.1
+    pulled = equilibrium(structure, make_loads(structure, forces={4: (7.0, 0, 0, 0, 0, 0)}))
+    assert pulled.resultants[0] == pytest.approx([7.0] * 4, rel=1e-6)
+    assert pulled.reactions[0, 0] == pytest.approx(-7.0, rel=1e-6)
+
+
 @pytest.mark.parametrize("section", [STRIP, STIFF_ACROSS])
 def test_a_coil_unrolls(section):
     """A flat strip drawn as a coil of one and a half turns, with twist, held at one end: far too much for one step, so

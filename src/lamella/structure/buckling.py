@@ -75,7 +75,8 @@ def _about(tangent: Tangent, count: int) -> Buckling:
 def critical_point(start: Equilibrium, tolerance: float = 1e-6) -> Buckling:
     """Lowest critical load on the path of stable equilibria, bifurcation or limit point.
 
-    Linear buckling about states ever nearer to it. Towards a limit point what it expects to be left is too much by a
+    Linear buckling about states ever nearer to it. Where strips between nodes buckle gradually, as bent ones do, the
+    path has no critical point and goes on. Towards a limit point what it expects to be left is too much by a
     factor, always by the same one near it: the load at which nothing is left is where the line through two states has
     its zero.
 
