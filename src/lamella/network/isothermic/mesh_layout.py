@@ -104,8 +104,6 @@ class MeshLayout:
         Boundary loop of each vertex, -1 inside.
     umbilics : (z,) int
         Vertex of each umbilic; -1: it lies on the boundary.
-    orders : (z,) int
-        Of the umbilics.
     radii : (z,)
         Of the rosettes around them, m.
     patch : (m,) int
@@ -119,10 +117,28 @@ class MeshLayout:
     places: Places
     loop: Integers
     umbilics: Integers
-    orders: Integers
     radii: Floats
     patch: Integers
     patches: tuple[_Patch, ...]
+
+    def _rosette(
+        self, patch: _Patch, plane: TangentPlane, leading: complex, positions: Floats, known: bool
+    ) -> tuple[UmbilicPatch, float]:
+        """A rosette that turns with its umbilic and has room in its ring, and its radius, m.
+
+        Raises
+        ------
+        LayoutError
+        """
+        argument, radius = float(np.angle(leading)), float(self.radii[patch.umbilic])
+        turns = (patch.argument - _towards(plane, positions[patch.axis], patch.order, argument)) / (2 * np.pi)
+        # two wedges further on it is the same rosette, with other numbers
+        argument += 2 * np.pi * round(turns)
+        for share in PATCH_SHARES if known else (1.0,):
+            rose = umbilic_patch(patch.order, argument, share * radius, INTEGRATION_ORDER)
+            if not known or _has_room(self.connectivity, patch, rose, plane, positions):
+                return rose, share * radius
+        raise LayoutError("an umbilic has left its place among the elements")
 
     def placed(self, surface: ElementSurface, umbilics: Umbilics, *, known: bool = False) -> IntegrationMesh:
         """The elements on a surface.
@@ -151,17 +167,7 @@ class MeshLayout:
         for patch in self.patches:
             plane, radius = planes[patch.umbilic], float(self.radii[patch.umbilic])
             leading, _ = _leading(surface, plane, patch.order, MEASURED * radius, patch.circle if known else None)
-            argument = float(np.angle(leading))
-            turns = (patch.argument - _towards(plane, positions[patch.axis], patch.order, argument)) / (2 * np.pi)
-            # two wedges further on it is the same rosette, with other numbers
-            argument += 2 * np.pi * round(turns)
-            for share in PATCH_SHARES if known else (1.0,):
-                radii[patch.umbilic] = share * radius
-                rose = umbilic_patch(patch.order, argument, share * radius, INTEGRATION_ORDER)
-                if not known or _has_room(new, patch, rose, plane, positions):
-                    break
-            else:
-                raise LayoutError("an umbilic has left its place among the elements")
+            rose, radii[patch.umbilic] = self._rosette(patch, plane, leading, positions, known)
             names, z = _patch_nodes(new, patch, rose, plane, positions)
             start = Places(element[names], local[names]) if known else None
             places, there = plane.up(z, surface, start)
@@ -199,15 +205,8 @@ def make_integration_mesh(surface: ElementSurface, umbilics: Umbilics) -> Integr
 
 def lay_out(surface: ElementSurface, umbilics: Umbilics) -> MeshLayout:
     """Elements with rosettes around the umbilics of a surface, as a layout."""
-    connectivity = surface.connectivity
-    size = diagonal(surface.nodes)
-    rims = element_rims(connectivity, surface.nodes, surface.rim_loop)
-    along = np.concatenate([rim.at(np.arange(RIM_SAMPLES) / RIM_SAMPLES) for rim in rims])
-    zeros = umbilics.position.reshape(-1, 3)
-    to_rim, _ = cKDTree(along).query(zeros)
-    inside = to_rim > np.clip(depth_errors(surface), ON_RIM * size, RIM_CORNER * size)
-    inside &= ~near_any(zeros, surface.nodes[_corners(rims)], RIM_CORNER * size)
-    radii = np.where(inside, _radii(surface, umbilics, to_rim), ON_RIM * size)
+    connectivity, zeros = surface.connectivity, umbilics.position.reshape(-1, 3)
+    inside, radii = _sizes(surface, umbilics)
     parts = bisect(
         whole(connectivity, surface.nodes, surface.rim_loop),
         connectivity,
@@ -256,9 +255,18 @@ def lay_out(surface: ElementSurface, umbilics: Umbilics) -> MeshLayout:
         order = int(umbilics.orders[number])
         patches.append(_Patch(number, order, start, petals, gaps, int(np.searchsorted(used, axis)), towards, circle))
         start += petals + gaps
-    return MeshLayout(
-        new, np.unique(target), Places(element, local), loop, at, umbilics.orders, radii, patch, tuple(patches)
-    )
+    return MeshLayout(new, np.unique(target), Places(element, local), loop, at, radii, patch, tuple(patches))
+
+
+def _sizes(surface: ElementSurface, umbilics: Umbilics) -> tuple[Booleans, Floats]:
+    """Which umbilics are not on the boundary, (z,), and radii of rosettes around them, m, (z,)."""
+    size, zeros = diagonal(surface.nodes), umbilics.position.reshape(-1, 3)
+    rims = element_rims(surface.connectivity, surface.nodes, surface.rim_loop)
+    along = np.concatenate([rim.at(np.arange(RIM_SAMPLES) / RIM_SAMPLES) for rim in rims])
+    to_rim, _ = cKDTree(along).query(zeros)
+    inside = to_rim > np.clip(depth_errors(surface), ON_RIM * size, RIM_CORNER * size)
+    inside &= ~near_any(zeros, surface.nodes[_corners(rims)], RIM_CORNER * size)
+    return inside, np.where(inside, _radii(surface, umbilics, to_rim), ON_RIM * size)
 
 
 def _too_large(surface: ElementSurface, zeros: Floats, radii: Floats) -> Callable[[Floats, Floats], Booleans]:
