@@ -14,6 +14,8 @@ from numpy.typing import ArrayLike
 
 from lamella.base.arrays import Complexes, Floats, Integers
 
+# bulge of a quarter of a circle
+QUARTER = np.tan(np.pi / 8)
 # Newton's steps for the station of a point of an edge
 STATION_STEPS = 4
 # 1/m: an arc that is a straight line
@@ -141,11 +143,21 @@ class Axis:
         return ahead
 
 
-def outline(axis: Axis, height: float, slots: Floats, slot_width: float, from_above: bool) -> Floats:
+def outline(
+    axis: Axis,
+    height: float,
+    slots: Floats,
+    slot_width: float,
+    from_above: bool,
+    *,
+    slot_play: float = 0.0,
+    foot_radius: float = 0.0,
+) -> Floats:
     """Closed counter-clockwise outline of a strip, its slots as notches.
 
-    A slot's sides are parallel to its axis, which is perpendicular to the centre line; its foot touches the
-    centre line. The first vertex is the start's corner on the -n side, the last one that on the +n side.
+    A slot's sides are parallel to its axis, which is perpendicular to the centre line; its foot lies `slot_play` beyond
+    the centre line, with corners rounded by `foot_radius`. The first vertex is the start's corner on the -n side, the
+    last one that on the +n side.
 
     Parameters
     ----------
@@ -158,6 +170,8 @@ def outline(axis: Axis, height: float, slots: Floats, slot_width: float, from_ab
         m.
     from_above : bool
         Whether slots begin at the +n edge.
+    slot_play, foot_radius : float
+        m.
 
     Returns
     -------
@@ -166,14 +180,14 @@ def outline(axis: Axis, height: float, slots: Floats, slot_width: float, from_ab
     """
     side = 0.5 * height if from_above else -0.5 * height
     plain = _chain(axis, -side, slots[:0], slot_width)
-    notched = _chain(axis, side, slots, slot_width)
+    notched = _chain(axis, side, slots, slot_width, slot_play, foot_radius)
     below, above = (plain, notched) if from_above else (notched, plain)
     back = above[::-1].copy()
     back[:-1, 2], back[-1, 2] = -above[-2::-1, 2], 0.0
     return np.concatenate((below, back))
 
 
-def _chain(axis: Axis, z: float, slots: Floats, width: float) -> Floats:
+def _chain(axis: Axis, z: float, slots: Floats, width: float, play: float = 0.0, radius: float = 0.0) -> Floats:
     """One edge from start to end with its notches, (v, 3) as in `outline`."""
     p = 0.5 * width
     begin, end = axis.edge_stations(slots, z, -p), axis.edge_stations(slots, z, p)
@@ -184,9 +198,11 @@ def _chain(axis: Axis, z: float, slots: Floats, width: float) -> Floats:
         inner = inner[(notch < 0) | (inner >= end[notch])]
     edge = np.sort(np.concatenate((axis.knots[[0]], inner, begin, end, axis.knots[[-1]])))
     points = axis.develop(edge, z)
-    feet = axis.develop(slots, 0.0)
+    inwards = -np.sign(z)
+    feet = axis.develop(slots, inwards * play)
     heading = axis.heading(slots)
-    along = p * np.stack((np.cos(heading), np.sin(heading)), axis=-1)
+    ahead = np.stack((np.cos(heading), np.sin(heading)), axis=-1)
+    along, up = p * ahead, inwards * np.stack((-ahead[:, 1], ahead[:, 0]), axis=-1)
     # where notches begin among the edge's points
     at = np.searchsorted(edge, begin)
     bulges = np.zeros(len(edge))
@@ -194,6 +210,14 @@ def _chain(axis: Axis, z: float, slots: Floats, width: float) -> Floats:
     bulges[:-1] = np.tan(0.25 * axis.curvatures[axis.piece(middles)] * np.diff(edge))
     bulges[at] = 0.0
     result = np.column_stack((points, bulges))
-    corners = np.stack((feet - along, feet + along), axis=1)
-    notches = np.concatenate((corners, np.zeros((len(slots), 2, 1))), axis=2).reshape(-1, 3)
-    return np.insert(result, np.repeat(at + 1, 2), notches, axis=0)
+    corners, bends = [feet - along, feet + along], [0.0, 0.0]
+    if radius > 0:
+        # each corner is a quarter of a circle
+        before, after = corners
+        inset = radius * ahead
+        corners = [before - radius * up, before + inset, after - inset, after - radius * up]
+        bends = [-inwards * QUARTER, 0.0, -inwards * QUARTER, 0.0]
+    corner = np.stack(corners, axis=1)
+    bulge = np.broadcast_to(np.array(bends)[:, None], (*corner.shape[:2], 1))
+    notches = np.concatenate((corner, bulge), axis=2).reshape(-1, 3)
+    return np.insert(result, np.repeat(at + 1, len(corners)), notches, axis=0)

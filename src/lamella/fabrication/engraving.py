@@ -63,7 +63,7 @@ def _node_lines(part: Part, stations: Floats, side: float, reach: float) -> Floa
         k = part.axis.curvatures[part.axis.piece(stations)]
         # the foot is straight: off the slot's axis it leaves the circle of the centre line
         sagitta = nearest * np.sinc(0.5 * k * nearest / np.pi) * np.sin(0.5 * k * nearest)
-        foot = -sagitta / np.cos(k * nearest)
+        foot = -sagitta / np.cos(k * nearest) - np.sign(side) * part.slot_play
         from_edge = np.where(np.abs(nearest) <= reach + ENGRAVING_NEAR_END, foot, from_edge)
     ends = np.stack((from_edge, np.full(len(stations), -side)), axis=1)
     return part.place(stations[:, None], ends)

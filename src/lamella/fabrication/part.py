@@ -63,6 +63,8 @@ class Part(Shown):
         Ascending stations of the slots' axes, m.
     slot_width : float
         m.
+    slot_play : float
+        How far the slots' feet lie beyond the centre line, m.
     slots_left_out : int
         Slots that are not cut because they would come too close to each other or to an end.
     outline : (v, 3)
@@ -100,6 +102,7 @@ class Part(Shown):
     outline: Floats
     area: float
     mass: float
+    slot_play: float = 0.0
     holes: Floats = field(default_factory=lambda: np.empty((0, 3)))
 
     def _line(self) -> str:

@@ -30,6 +30,8 @@ def make_parts(
     rim_overhang: float = 0.01,
     hub_radius: float | None = None,
     slot_width: float | None = None,
+    slot_play: float = 0.0,
+    foot_radius: float = 0.0,
     sheet: tuple[float, float] = (12.0, 2.0),
     gap: float = 0.01,
     others: Callable[[Callable[[Network, Lamellas], bool]], str] | None = None,
@@ -52,6 +54,10 @@ def make_parts(
         clear of each other if not given.
     slot_width : float, optional
         m; `default_slot_width` if not given.
+    slot_play : float
+        How far the slots' feet lie beyond the centre line, m.
+    foot_radius : float
+        Of the corners of the slots' feet, m.
     sheet : (float, float)
         Length and width of the sheets parts are cut from, m.
     gap : float
@@ -75,6 +81,8 @@ def make_parts(
         rim_overhang=rim_overhang,
         hub_radius=hub_radius,
         slot_width=slot_width,
+        slot_play=slot_play,
+        foot_radius=foot_radius,
         sheet=sheet,
         gap=gap,
     )
@@ -90,6 +98,8 @@ def make_parts(
         rim_overhang=rim_overhang,
         hub_radius=hub_radius,
         slot_width=slot_width,
+        slot_play=slot_play,
+        foot_radius=foot_radius,
         sheet=sheet,
         gap=gap,
     )
@@ -252,7 +262,15 @@ def _part(
         if outside < 0.75 * needed or (len(between) and between.min() < needed):
             left_out, slots = len(slots), slots[:0]
             notes.unslotted.append((name, float(np.diff(nodes).min()) if len(nodes) > 1 else np.inf))
-    vertices = outline(axis, rules.height, slots, slot_width, family == "A")
+    vertices = outline(
+        axis,
+        rules.height,
+        slots,
+        slot_width,
+        family == "A",
+        slot_play=rules.slot_play,
+        foot_radius=rules.foot_radius,
+    )
     area = outline_area(vertices)
     return Part(
         id=name,
@@ -269,6 +287,7 @@ def _part(
         nodes=nodes,
         slots=slots,
         slot_width=slot_width,
+        slot_play=rules.slot_play,
         slots_left_out=left_out,
         outline=vertices,
         area=area,

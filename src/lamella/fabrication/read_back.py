@@ -10,9 +10,11 @@ import ezdxf
 import numpy as np
 
 from lamella.base.arrays import Floats
-from lamella.fabrication.axis import Axis
+from lamella.fabrication.axis import QUARTER, Axis
 from lamella.files.write.dxf_text import APPLICATION
 
+# what the bulge of a quarter of a circle is known to
+QUARTER_GRAIN = 1e-6
 # sine of the turn at a corner: edges that go over into each other do not turn at all
 SHARP_CORNER = 0.5
 
@@ -90,6 +92,7 @@ def _name(entity: ezdxf.entities.DXFGraphic) -> str:
 
 def _measure(outline: Floats, marks: list[tuple[float, float]], circles: list[Floats]) -> SlotReadBack:
     """Stations of an outline's notches, of marks and of holes."""
+    measured, outline = outline, _sharp(outline)
     points, bulges = outline[:, :2], outline[:, 2]
     ahead = np.roll(points, -1, axis=0) - points
     behind = np.roll(ahead, 1, axis=0)
@@ -129,9 +132,23 @@ def _measure(outline: Floats, marks: list[tuple[float, float]], circles: list[Fl
         length,
         height,
         float(angle.sum() / length),
-        outline,
+        measured,
         _holes(axis, flat[first:], np.linalg.norm(holes[:, 1] - holes[:, 0], axis=1)),
     )
+
+
+def _sharp(outline: Floats) -> Floats:
+    """The outline with the rounded corners of its slots, quarters of circles, drawn out to corners."""
+    points, bulges = outline[:, :2], outline[:, 2]
+    quarter = np.abs(np.abs(bulges) - QUARTER) < QUARTER_GRAIN
+    if not quarter.any():
+        return outline
+    following = np.roll(points, -1, axis=0)
+    half = (following - points) / 2
+    # the corner lies beside the chord, on the side of the arc
+    aside = np.column_stack([half[:, 1], -half[:, 0]]) * np.sign(bulges)[:, None]
+    sharp = np.column_stack([np.where(quarter[:, None], points + half + aside, points), np.where(quarter, 0.0, bulges)])
+    return np.asarray(sharp[~np.roll(quarter, 1)])
 
 
 def _holes(axis: Axis, centres: Floats, diameters: Floats) -> Floats:

@@ -59,6 +59,10 @@ class Rules:
         Length and width, m.
     gap : float
         Between parts and to the sheet's edge, m.
+    slot_play : float
+        Of a slot's foot beyond the centre line, m.
+    foot_radius : float
+        Of the corners of a slot's foot, m.
     bow : float
         How far outlines of layers that are cut to their own curvature leave the others' at most, m.
     """
@@ -75,6 +79,8 @@ class Rules:
     slot_width: float
     sheet: tuple[float, float]
     gap: float
+    slot_play: float = 0.0
+    foot_radius: float = 0.0
     bow: float = 0.0
 
     @property
@@ -143,6 +149,7 @@ class Rules:
                 else f"write thickness = {rounded(0.1 / bend, up=False):g} or less",
                 "height",
             )
+        self._check_feet()
         nearest = self.least_end_distance
         if not (np.isfinite(self.end_distance) and self.end_distance >= nearest - LENGTH_ROUNDING):
             raise InputError(
@@ -150,4 +157,24 @@ class Rules:
                 f"({self.slot_width:g} m) beyond the last slot",
                 f"raise end_distance to {rounded(nearest, up=True):g} m or more",
                 "end_distance",
+            )
+
+    def _check_feet(self) -> None:
+        for name, value in (("slot_play", self.slot_play), ("foot_radius", self.foot_radius)):
+            if not (np.isfinite(value) and value >= 0):
+                raise InputError(f"{name} is {value:g} m, it cannot be less than 0", "give 0 or more", name)
+        if self.slot_play > self.height / 4:
+            raise InputError(
+                f"slot_play is {self.slot_play:g} m, more than a quarter of the strip's height {self.height:g} m",
+                f"write slot_play = {self.height / 4:g} or less",
+                "slot_play",
+            )
+        # a strip in the middle of the slot reaches its foot between the corners
+        largest = (self.slot_width - self.thickness) / 2
+        if self.foot_radius > largest + LENGTH_ROUNDING:
+            raise InputError(
+                f"foot_radius is {self.foot_radius:g} m: corners of slots {self.slot_width:g} m wide rounded by more "
+                f"than {largest:g} m would hold up the strip {self.thickness:g} m thick that goes in",
+                f"write foot_radius = {rounded(largest, up=False):g} or less, or a larger slot_width",
+                "foot_radius",
             )

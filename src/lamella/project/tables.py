@@ -240,6 +240,21 @@ class FabricationTable(Table):
     slot_width: float | None = number(
         "Width of the slots; 2 x thickness when not given.", "m", gt=0, le=1, default=None, examples=[0.003]
     )
+    slot_play: float = number(
+        "How far the foot of a slot lies beyond the centre line: play for what cuts and strips are off.",
+        "m",
+        ge=0,
+        le=1,
+        default=0.0,
+    )
+    foot_radius: float = number(
+        "Of the rounded corners of a slot's foot, where cracks begin; at most half of what the slot is wider than the "
+        "strip.",
+        "m",
+        ge=0,
+        le=1,
+        default=0.0,
+    )
 
     @field_validator("sheet", mode="before")
     @classmethod

@@ -170,6 +170,8 @@ class Lamellas(Shown):
         rim_overhang: float = 0.01,
         hub_radius: float | None = None,
         slot_width: float | None = None,
+        slot_play: float = 0.0,
+        foot_radius: float = 0.0,
         sheet: tuple[float, float] = (12.0, 2.0),
         gap: float = 0.01,
     ) -> Parts:
@@ -177,7 +179,7 @@ class Lamellas(Shown):
 
         Parameters
         ----------
-        end_distance, rim_overhang, hub_radius, slot_width, sheet, gap
+        end_distance, rim_overhang, hub_radius, slot_width, slot_play, foot_radius, sheet, gap
             m, see `lamella.fabrication.parts.make_parts`.
 
         Raises
@@ -200,6 +202,8 @@ class Lamellas(Shown):
             rim_overhang=rim_overhang,
             hub_radius=hub_radius,
             slot_width=slot_width,
+            slot_play=slot_play,
+            foot_radius=foot_radius,
             sheet=sheet,
             gap=gap,
         )
