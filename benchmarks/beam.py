@@ -109,7 +109,7 @@ def assembly() -> Table:
         "Forces and tangent stiffness of all elements, summed into the matrix; beside one factorisation of it, its "
         "pattern analysed before.",
         (row,),
-        (Limit("assembly / factorisation at 10,000 elements", ratio, 1.5),),
+        (Limit("assembly / factorisation at 10,000 elements", ratio, 1.0),),
     )
 
 
