@@ -19,7 +19,7 @@ test: .venv/ready
 
 # the same, and docs/slowest-tests.md
 slowest: .venv/ready
-	$(ONE) $(BIN)/python -m pytest -p slowest -m "not slow" -n auto --dist loadfile
+	$(ONE) PYTHONPATH=tests $(BIN)/python -m pytest -p slowest -m "not slow" -n auto --dist loadfile
 
 slow: .venv/ready
 	$(ONE) $(BIN)/python -m pytest -m slow -n auto

@@ -89,5 +89,7 @@ def pytest_terminal_summary(terminalreporter: Any) -> None:
     ]
     for line in lines:
         terminalreporter.write_line(line)
-    if terminalreporter.config.option.markexpr == "not slow" and not terminalreporter.config.option.keyword:
+    config = terminalreporter.config
+    whole_suite = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.keyword
+    if whole_suite and config.option.markexpr == "not slow":
         PAGE.write_text(HEAD + "\n".join(lines) + "\n", "utf-8")
