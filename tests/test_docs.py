@@ -149,8 +149,13 @@ def test_quoted_figures_of_the_papers_pictures(
 
 
 def test_project_in_getting_started_is_good() -> None:
-    (project,) = blocks((DOCS / "getting-started.md").read_text(), "toml")
+    project, joints = blocks((DOCS / "getting-started.md").read_text(), "toml")
     assert lamella.parse_project(tomllib.loads(project)).name == "Pavilion"
+    # the tables of joints go below it
+    joined = lamella.parse_project(tomllib.loads(f"{project}\n{joints}"))
+    assert joined.joint is not None
+    assert joined.cables is not None
+    assert joined.cables.every == 2
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/getting-started.md", "docs/projection.md"])
