@@ -11,7 +11,7 @@ import pytest
 from lamella import compute, make_surface, parse_project
 from lamella.base.material import MATERIALS
 from lamella.base.message import Message
-from lamella.files.write.surface_3dm import is_written
+from lamella.files.write.surface_patches import is_written
 from lamella.network.cell_sizes import small_cells
 from lamella.stages.lamellas.warnings import lamella_warnings
 from lamella.stages.network.warnings import network_warnings
@@ -206,7 +206,7 @@ def test_a_surface_file_without_nurbs_is_told(monkeypatch: pytest.MonkeyPatch, o
     surface = sphere_cap(order)
     assert list(surface_file_warnings(surface, True)) == []
     count = 3 * len(surface.connectivity.elements)
-    monkeypatch.setattr("lamella.files.write.surface_3dm.MOST_PATCHES", count - 1)
+    monkeypatch.setattr("lamella.files.write.surface_patches.MOST_PATCHES", count - 1)
     (reported,) = surface_file_warnings(surface, True)
     warned([reported], "surface_3dm_mesh", [count, count - 1], ["surface.3dm", "surface.tolerance"])
     # no order is higher than 4
@@ -222,7 +222,7 @@ def test_a_large_surface_file_is_written_where_it_is_requested(monkeypatch: pyte
         (count - 1, True, True),
         (count, False, False),
     ):
-        monkeypatch.setattr("lamella.files.write.surface_3dm.SMALL_PATCHES", small)
+        monkeypatch.setattr("lamella.files.write.surface_patches.SMALL_PATCHES", small)
         assert is_written(surface, requested) == written
         reported = list(surface_file_warnings(surface, requested))
         if requested is None and not written:

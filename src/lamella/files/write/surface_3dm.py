@@ -20,18 +20,10 @@ from lamella.base.vectors import diagonal
 from lamella.files.whole import write_whole
 from lamella.files.write.nurbs_objects import nurbs_surface
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile
+from lamella.files.write.surface_patches import MESH_TOLERANCE, MOST_PATCHES, patch_count
 from lamella.files.write.text import require_finite
 from lamella.surface.element.lagrange import lagrange, subdivision
 from lamella.surface.element.surface import EDGE_PARTS_DRAWN_MAX, ElementSurface
-
-SMALL_PATCHES = 10_000
-"""A run writes surfaces of so many patches without being asked to (`FilesTable.surface_3dm`)."""
-
-MOST_PATCHES = 20_000
-"""Surfaces of more patches (about 1 kB each, and slow in Rhino) are written as one mesh."""
-
-MESH_TOLERANCE = 1e-4
-"""Sag of that mesh aimed at, over the diagonal of the bounding box; what it came to is in the file."""
 
 PATCH_TOLERANCE = 1e-12
 """Distance of the patches from the surface, over its diagonal or its largest coordinate: rounding."""
@@ -48,11 +40,6 @@ def write_surface_3dm(
     """Write `surface_3dm_bytes`; OSError if it cannot be written whole."""
     # rhino3dm's own Write says nothing of a full disk.
     write_whole(path, surface_3dm_bytes(surface, frame, name=name, version=version))
-
-
-def is_written(surface: ElementSurface, requested: bool | None) -> bool:
-    """Whether a run writes surface.3dm: as it was requested, and else where the surface is small."""
-    return 3 * len(surface.connectivity.elements) <= SMALL_PATCHES if requested is None else requested
 
 
 def surface_3dm_bytes(surface: ElementSurface, frame: Frame = IN_METRES, *, name: str, version: str) -> bytes:
@@ -77,7 +64,7 @@ def surface_3dm_bytes(surface: ElementSurface, frame: Frame = IN_METRES, *, name
     """
     require_finite(surface.nodes)
     model = _Model(name, version, surface, frame)
-    count = 3 * len(surface.connectivity.elements)
+    count = patch_count(surface)
     if count <= MOST_PATCHES:
         model.add_patches()
     else:

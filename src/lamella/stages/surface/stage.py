@@ -89,7 +89,8 @@ class SurfaceStage(Stage[SurfaceOutput]):
 
         if isinstance(surface, ElementSurface):
             from lamella.files.write.rhino_file import Frame
-            from lamella.files.write.surface_3dm import is_written, write_surface_3dm
+            from lamella.files.write.surface_3dm import write_surface_3dm
+            from lamella.files.write.surface_patches import is_written
 
             frame = Frame(project.files.unit, origin)
             if is_written(surface, project.files.surface_3dm):

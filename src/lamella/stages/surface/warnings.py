@@ -59,9 +59,15 @@ def surface_file_warnings(surface: Surface[Any], requested: bool | None) -> Iter
 
     if not isinstance(surface, ElementSurface):
         return
-    from lamella.files.write.surface_3dm import MESH_TOLERANCE, MOST_PATCHES, SMALL_PATCHES, is_written
+    from lamella.files.write.surface_patches import (
+        MESH_TOLERANCE,
+        MOST_PATCHES,
+        SMALL_PATCHES,
+        is_written,
+        patch_count,
+    )
 
-    count = 3 * len(surface.connectivity.elements)
+    count = patch_count(surface)
     if requested is None and count > SMALL_PATCHES:
         yield Message(
             "surface_3dm_left_out",
