@@ -32,7 +32,7 @@ ROWS = 0.25
 HEIGHT = 0.8
 """Of a strip's height that a splice plate is high."""
 
-STEP = 0.002
+EDGE_STEP = 0.002
 """m; longest piece of a plate's edges where it is drawn in place."""
 
 CONTACT = 5e-5
@@ -207,14 +207,14 @@ def _bent(plate: Prism, layer: LayerMap, station: float, side: float, begin: flo
     # x along the strip and y up: the face towards the left is seen mirrored
     low, high = (near, far) if side < 0 else (far, near)
     # across the strip a face is straight: flattened, triangles reach across it and not far along it
-    flattened = np.array([1.0, STEP / float(np.ptp(flat[:, 1]))])
+    flattened = np.array([1.0, EDGE_STEP / float(np.ptp(flat[:, 1]))])
     return Bent(tuple(ring * flattened for ring in rings), low, high)
 
 
 def _fine(corners: Floats) -> Floats:
-    """A polygon with points at most `STEP` apart along x."""
+    """A polygon with points at most `EDGE_STEP` apart along x."""
     following = np.roll(corners, -1, axis=0)
-    pieces = np.maximum(np.ceil(np.abs(following - corners)[:, 0] / STEP), 1).astype(np.int64)
+    pieces = np.maximum(np.ceil(np.abs(following - corners)[:, 0] / EDGE_STEP), 1).astype(np.int64)
     owner = np.repeat(np.arange(len(corners)), pieces)
     share = (np.arange(len(owner)) - np.repeat(np.cumsum(pieces) - pieces, pieces)) / pieces[owner]
     return np.asarray(corners[owner] + share[:, None] * (following - corners)[owner])
