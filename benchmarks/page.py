@@ -82,13 +82,21 @@ def main() -> None:
     measured_on = f"Measured on {machine()}.\n\n"
     before = PAGE.read_text("utf-8") if PAGE.exists() else ""
     parts = sections(before) if measured_on in before else {}
+    failed = []
     for module in modules:
-        parts[module] = section(module)
+        try:
+            parts[module] = section(module)
+        except subprocess.CalledProcessError as error:
+            # its old part stays, and the others are measured all the same
+            failed.append(f"{module} (exit code {error.returncode})")
+            continue
         print(parts[module], flush=True)
         text = HEAD + measured_on + "\n".join(parts[name] for name in MODULES if name in parts)
         PAGE.write_text(text, "utf-8")
-    missed = text.count("**missed**")
-    print(f"wrote {PAGE}" + (f"; {missed} limits missed" if missed else ""))
+        missed = text.count("**missed**")
+        print(f"wrote {PAGE}" + (f"; {missed} limits missed" if missed else ""), flush=True)
+    if failed:
+        sys.exit(f"failed: {', '.join(failed)}")
 
 
 if __name__ == "__main__":

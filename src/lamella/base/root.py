@@ -11,11 +11,13 @@ from math import copysign
 MOST_STEPS = 100
 """Twice as many as bisection alone takes from the root's own size down to its last bit."""
 
-RELATIVE = 1e-15
-"""Share of the root that counts as rounding: a few units in the last place."""
+RELATIVE = 4 * 2.0**-52
+"""Share of the root that counts as rounding: four units in the last place."""
 
 
-def root_between(f: Callable[[float], float], low: float, high: float, *, tolerance: float) -> float:
+def root_between(
+    f: Callable[[float], float], low: float, high: float, *, tolerance: float, relative: float = RELATIVE
+) -> float:
     """Root of a continuous function by Brent's method: inverse quadratic interpolation, bisection where it is slow.
 
     Parameters
@@ -24,7 +26,9 @@ def root_between(f: Callable[[float], float], low: float, high: float, *, tolera
     low, high : float
         Where f has different signs, or is zero.
     tolerance : float
-        Of the root; `RELATIVE` of it is added.
+        Of the root.
+    relative : float
+        Share of the root that is added to it.
 
     Raises
     ------
@@ -51,7 +55,7 @@ def root_between(f: Callable[[float], float], low: float, high: float, *, tolera
         if abs(f_other) < abs(f_x):
             before, x, other = x, other, x
             f_before, f_x, f_other = f_x, f_other, f_x
-        least, half = (tolerance + RELATIVE * abs(x)) / 2, (other - x) / 2
+        least, half = (tolerance + relative * abs(x)) / 2, (other - x) / 2
         if f_x == 0 or abs(half) < least:
             return x
         step, last_step = _step((before, f_before), (x, f_x), (other, f_other), step, last_step, half, least)

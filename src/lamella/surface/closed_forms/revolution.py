@@ -63,7 +63,7 @@ class SurfaceOfRevolution(ClosedForm):
         while residual(sign * np.sign(z) * reach) * np.sign(z) < 0:
             reach *= 2
         ends = sorted((0.0, sign * np.sign(z) * reach))
-        return root_between(residual, *ends, tolerance=1e-15)
+        return root_between(residual, *ends, tolerance=1e-15, relative=1e-15)
 
     def between(self, z0: float, z1: float) -> Ring:
         """The outline between two heights.
