@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import BSpline
 from scipy.linalg import solve_banded
 
 from lamella.base.arrays import Floats, Integers
@@ -110,7 +111,7 @@ def _fitted(curves: _Curves, tolerances: Floats) -> list[Spline]:
 class _Splines:
     """Splines through every so many samples of curves, the knots of each one behind the other's.
 
-    A curve of n pieces has n + 1 sites, n + 7 knots and n + 3 control points.
+    A curve of n pieces has n + 1 sites, n + 7 knots and n + 3 control points, behind which four are left unused.
     """
 
     def __init__(self, curves: _Curves, stride: Integers) -> None:
@@ -125,41 +126,34 @@ class _Splines:
         knot = ragged_ranges(pieces + 7)
         of_knot = np.repeat(np.arange(len(pieces)), pieces + 7)
         self.knots = sites[(ends - pieces - 1)[of_knot] + np.clip(knot - DEGREE, 0, pieces[of_knot])]
-        self.knots_begin = np.cumsum(pieces + 7) - pieces - 7
-        self.controls_begin = np.cumsum(pieces + 3) - pieces - 3
+        self.begin = np.cumsum(pieces + 7) - pieces - 7
         self.controls = self._solved(site, of)
 
     def one(self, place: int) -> Spline:
         """The spline of a curve."""
-        pieces, knots, controls = self.pieces[place], self.knots_begin[place], self.controls_begin[place]
-        return Spline(self.knots[knots : knots + pieces + 7], self.controls[controls : controls + pieces + 3])
+        pieces, begin = self.pieces[place], self.begin[place]
+        return Spline(self.knots[begin : begin + pieces + 7], self.controls[begin : begin + pieces + 3])
 
     def errors(self) -> Floats:
         """Largest difference in any coordinate at the samples of each curve, (m,)."""
         curves = self.curves
-        # between its first site and its last each sample lies on one piece
-        length = np.diff(self.kept)
-        length = length[length > 0]
-        piece = np.repeat(ragged_ranges(self.pieces), length)
-        of = np.repeat(np.repeat(np.arange(len(self.pieces)), self.pieces), length)
+        # one spline of them all, each a way behind the one before; its end, which is exact, would be the next one's
+        lengths = curves.places[curves.first + curves.last]
+        shifts = np.cumsum(lengths + 1) - (lengths + 1)
+        whole = BSpline.construct_fast(self.knots + np.repeat(shifts, self.pieces + 7), self.controls, DEGREE)
         samples = _indices(curves.first, curves.last)
-        x, base = curves.places[samples], self.knots_begin[of] + piece + DEGREE
-        begin = self.controls_begin[of] + piece
-        off = curves.values.take(samples, 0)
-        for number, weight in enumerate(_basis(x, *(self.knots.take(base + k) for k in range(-2, 4)))):
-            part = self.controls.take(begin + number, 0)
-            part *= weight[:, None]
-            off -= part
+        off = whole(curves.places[samples] + np.repeat(shifts, curves.last))
+        off -= curves.values.take(samples, 0)
         largest = np.abs(off, out=off).max(1)
         return np.asarray(np.maximum.reduceat(largest, np.cumsum(curves.last) - curves.last))
 
     def _solved(self, site: Integers, of: Integers) -> Floats:
-        """Control points, (sum of n + 3, d), of splines through the sites with given derivatives at the ends."""
+        """Control points, (sum of n + 7, d), of splines through the sites with given derivatives at the ends."""
         curves, pieces, knots = self.curves, self.pieces, self.knots
         values = curves.values[curves.first[of] + self.kept]
-        controls = np.empty((int((pieces + 3).sum()), values.shape[1]))
-        start, end = self.controls_begin, self.controls_begin + pieces + 2
-        first, last = self.knots_begin + DEGREE, self.knots_begin + DEGREE + pieces
+        controls = np.zeros((len(knots), values.shape[1]))
+        start, end = self.begin, self.begin + pieces + 2
+        first, last = self.begin + DEGREE, self.begin + DEGREE + pieces
         controls[start] = curves.values[curves.first]
         controls[end] = curves.values[curves.first + curves.last]
         controls[start + 1] = controls[start] + curves.ends[:, 0] * ((knots[first + 1] - knots[first]) / 3)[:, None]
@@ -168,7 +162,7 @@ class _Splines:
         if not len(inner):
             return controls
         of, site = of[inner], site[inner]
-        base = self.knots_begin[of] + site + DEGREE
+        base = self.begin[of] + site + DEGREE
         two_back, back, own, ahead, two_ahead = (knots[base + k] for k in range(-2, 3))
         # the three cubic basis functions that are not zero at a knot
         below = (ahead - own) ** 2 / ((ahead - two_back) * (ahead - back))
@@ -182,26 +176,6 @@ class _Splines:
         diagonals[2, :-1] = np.where(begins, 0.0, below)[1:]
         controls[start[of] + site + 1] = solve_banded((1, 1), diagonals, right, check_finite=False)
         return controls
-
-
-def _basis(
-    x: Floats, two_back: Floats, back: Floats, own: Floats, ahead: Floats, two_ahead: Floats, three_ahead: Floats
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """The four cubic B-splines that are not zero between the knots `own` and `ahead` (de Boor's recurrence)."""
-    left, left_two, left_three = x - own, x - back, x - two_back
-    right, right_two, right_three = ahead - x, two_ahead - x, three_ahead - x
-    width = ahead - own
-    one, two = right / width, left / width
-    share = one / (ahead - back)
-    first, second = right * share, left_two * share
-    share = two / (two_ahead - own)
-    second, third = second + right_two * share, left * share
-    share = first / (ahead - two_back)
-    a, b = right * share, left_three * share
-    share = second / (two_ahead - back)
-    b, c = b + right_two * share, left_two * share
-    share = third / (three_ahead - own)
-    return a, b, c + right_three * share, left * share
 
 
 def _indices(first: Integers, count: Integers) -> Integers:
