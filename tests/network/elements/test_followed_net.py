@@ -96,7 +96,7 @@ def test_what_does_not_hold_is_made_anew() -> None:
     net = first_net().at(other.surface)
     assert "other elements" in net.made_anew
     assert net.at(film.surface).made_anew == ""
-    low = film.at([rim(1.2), lamella.circle((0, 0, 1.4), 1.3)])
+    low = film.at([rim(1.6), lamella.circle((0, 0, 1.6), 1.3)])
     assert low.made_anew == ""
     moved = first_net().at(low.surface)
     assert "umbilic" in moved.made_anew

@@ -119,14 +119,14 @@ def test_mean_curvature_and_volume_are_followed() -> None:
 
 def test_the_unstable_film_is_followed() -> None:
     """The other catenoid, with its thin neck: radius c where 3 = c cosh(h / 2 c)."""
-    film = lamella.follow([RING, ring(3.2)], tolerance=3e-2, branch="unstable").at([RING, ring(3.25)])
+    film = lamella.follow([RING, ring(3.2)], tolerance=6e-2, branch="unstable").at([RING, ring(3.25)])
     assert film.equilibrium.negative == 1
     assert film.made_anew == ""
-    assert deviation_from_catenoid(nodes(film), 3.0, 3.25, unstable=True) < 2e-3
+    assert deviation_from_catenoid(nodes(film), 3.0, 3.25, unstable=True) < 1e-2
 
 
 def test_what_has_no_film_is_refused_and_the_film_before_stays() -> None:
-    film = lamella.follow([RING, ring(3.6)], tolerance=3e-2)
+    film = lamella.follow([RING, ring(3.6)], tolerance=6e-2)
     before = nodes(film).copy()
     with pytest.raises(InputError) as refused:
         film.at([RING, ring(4.3)])
