@@ -57,7 +57,7 @@ class Draft:
     station : (n,)
         Place along the loop in edges of the final boundary; nan inside.
     fixed : (n,) bool
-        Boundary vertices that neither move nor vanish.
+        Vertices that neither move nor vanish. A face between three of them inside stays as it is.
     size : (n,)
         Wanted edge length (m).
     size_at, nearest : callable
@@ -86,6 +86,18 @@ class Draft:
     @property
     def boundary(self) -> Booleans:
         return self.loop >= 0
+
+    @property
+    def pinned(self) -> Booleans:
+        """Vertices that operations on the inside neither move nor remove, (n,)."""
+        return self.boundary | self.fixed
+
+    def loose(self, topology: Topology, edges: Integers) -> Booleans:
+        """Which edges lie between faces that may change, (k,)."""
+        if not (self.fixed & ~self.boundary).any():
+            return np.ones(len(edges), dtype=bool)
+        stays = np.asarray(self.fixed[self.faces].all(axis=1))
+        return np.asarray(~stays[topology.sides[edges]].any(axis=1))
 
     def project(self, points: Floats) -> Floats:
         """Points (k, 3) brought back to the surface, on the grid."""
