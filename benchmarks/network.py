@@ -14,7 +14,7 @@ from statistics import median
 from typing import Any
 
 from bench import Limit, Table, clocked, exponent, show
-from film import annulus
+from film import harmonic_start
 
 from lamella.base import sparse
 from lamella.network.elements.element_network import ElementNetwork, element_network
@@ -28,7 +28,7 @@ SOLVERS: tuple[sparse.Backend, ...] = ("rslab", "splu")
 
 def surface(elements: int) -> ElementSurface:
     """The annulus on about that many elements."""
-    film = find_equilibrium(annulus(elements), 0.0).film
+    film = find_equilibrium(harmonic_start(elements), 0.0).film
     rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
     return ElementSurface("form-found", 0.0, film.connectivity, film.nodes, rim_loop)
 

@@ -29,6 +29,13 @@ def test_every_bench_is_on_the_page(bench: object) -> None:
 
     files = {path.stem for path in BENCHES.glob("*.py")} - SHARED
     assert set(page.MODULES) == files
+    for name in page.MODULES:
+        defined = {
+            node.name
+            for node in ast.parse((BENCHES / f"{name}.py").read_text("utf-8")).body
+            if isinstance(node, ast.FunctionDef)
+        }
+        assert "tables" in defined, name
 
 
 def test_a_table_as_it_is_printed(bench: object) -> None:
