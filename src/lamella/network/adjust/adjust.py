@@ -381,19 +381,23 @@ class _Search:
         """
         left = aim.residuals - sensitivities @ move
         step = float(aim.step * np.exp(move[-1]))
-        matcher = TransitionMatcher(aim.net.iso, net.iso, net.whole)
-        whole = matcher.match(left, net.cells(step))
-        if whole is None:
-            raise FollowError("the net changes too much in a step")
-        there = Aim(net, whole, step)
-        expected = matcher.coordinates(np.column_stack([sensitivities[:, :-1], left]))
-        spacing = net.whole.coordinates(net.whole.offset - net.cells(step))
-        found = np.column_stack([expected[:, :-1], spacing])
-        scaled = move / np.append(np.ones(len(move) - 1), SPACING**2)
+        spacing = net.whole.offset - net.cells(step)
+        if net.kept is aim.net.kept:
+            # the pieces of the cut are the same ones
+            there = Aim(net, aim.whole, step)
+            expected, found = left, np.column_stack([sensitivities[:, :-1], spacing])
+        else:
+            matcher = TransitionMatcher(aim.net.iso, net.iso, net.whole)
+            whole = matcher.match(left, net.cells(step))
+            if whole is None:
+                raise FollowError("the net changes too much in a step")
+            there = Aim(net, whole, step)
+            carried = net.whole.basis.T @ matcher.coordinates(np.column_stack([sensitivities[:, :-1], left]))
+            expected, found = carried[:, -1], np.column_stack([carried[:, :-1], spacing])
         if move.any():
-            more = net.whole.coordinates(there.residuals) - expected[:, -1]
-            found = found - np.outer(more, scaled) / (scaled @ move)
-        return replace(there, sensitivities=net.whole.basis.T @ found)
+            scaled = move / np.append(np.ones(len(move) - 1), SPACING**2)
+            found = found - np.outer(there.residuals - expected, scaled) / (scaled @ move)
+        return replace(there, sensitivities=found)
 
     def polish(self, aim: Aim) -> tuple[FilmNet, float, float]:
         """The film as fine as was asked for, from the elements at hand: its own misses are a little different ones."""
@@ -401,17 +405,23 @@ class _Search:
         for _ in range(REFINEMENTS_MAX):
             self.progress(Report.detail("the film as fine as asked for"))
             try:
-                still = np.zeros(len(aim.net.shares) + 1)
-                aim = self._carried(aim, self.films.refined(aim.net, tolerance), self._rates_of(aim), still)
+                if aim.net.film.request.tolerance > tolerance or aim.net.film.deviation.largest > tolerance:
+                    aim = self._on(aim, self.films.refined(aim.net, tolerance))
+                    self._tell(aim)
+                aim = self._polished(aim)
+                # what the net will miss is told by coordinates that keep nothing
+                aim = self._on(aim, self.films.anew(aim.net))
             except FollowError as error:
                 raise LostError(aim, str(error)) from None
-            self._tell(aim)
-            aim = self._polished(aim)
-            if aim.net.film.deviation.largest <= tolerance:
+            if worst(aim.residuals) < CLOSED and aim.net.film.deviation.largest <= tolerance:
                 break
         if worst(aim.residuals) > 0.9 * CLOSES:
             raise LostError(aim, "the finer surface does not follow")
         return aim.net, aim.step, worst(aim.residuals)
+
+    def _on(self, aim: Aim, net: FilmNet) -> Aim:
+        """The same whole shifts on another net of the same boundary."""
+        return self._carried(aim, net, self._rates_of(aim), np.zeros(len(net.shares) + 1))
 
     def _polished(self, aim: Aim) -> Aim:
         """Steps on the final elements, until misses are below `CLOSED` or what is left are the film's own errors."""

@@ -80,7 +80,7 @@ class Films:
             there = net.film.moved(_boundary(changed, curvature), progress=self._progress)
         except InputError as error:
             raise FollowError(str(error)) from None
-        return self._checked(net, FilmNet.of(shares, there, self.pattern))
+        return self._checked(net, net.moved(shares, there))
 
     def refined(self, net: FilmNet, tolerance: float) -> FilmNet:
         """The same film to another tolerance, from the elements at hand.
@@ -94,6 +94,15 @@ class Films:
         except InputError as error:
             raise FollowError(str(error)) from None
         return self._checked(net, FilmNet.of(net.shares, there, self.pattern))
+
+    def anew(self, net: FilmNet) -> FilmNet:
+        """The same film with coordinates from nothing, as those of its final net.
+
+        Raises
+        ------
+        FollowError
+        """
+        return self._checked(net, FilmNet.of(net.shares, net.film, self.pattern))
 
     def finished(self, net: FilmNet) -> ElementSurface:
         """The film as later stages see it, with its notes and figures."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,14 +10,15 @@ import numpy as np
 
 from lamella.base.arrays import Complexes, Floats
 from lamella.network.elements.integer_grid_map import IntegerGridMap
+from lamella.network.elements.kept_coordinates import KeptCoordinates
 from lamella.network.isothermic.holonomy import fixed_point_factors
 from lamella.network.isothermic.integer_transitions import IntegerTransitions
 from lamella.network.isothermic.isothermic import Isothermic
 from lamella.network.isothermic.lattice_origin import lattice_origin
-from lamella.network.isothermic.mesh_layout import make_integration_mesh
-from lamella.network.isothermic.seamless_transitions import integrate
+from lamella.network.isothermic.mesh_layout import LayoutError
 from lamella.network.pattern import Pattern
 from lamella.surface.element.surface import ElementSurface
+from lamella.surface.element.umbilics import Umbilics
 from lamella.surface.form_finding.followed_film import FollowedFilm
 
 
@@ -30,6 +32,9 @@ class FilmNet:
     film : FollowedFilm
     surface : ElementSurface
         The film, as coordinates are found on it.
+    kept : KeptCoordinates
+        What coordinates on the same elements share.
+    umbilics : Umbilics
     iso : Isothermic
     pattern : Pattern
         Which curves the net has.
@@ -38,17 +43,26 @@ class FilmNet:
     shares: Floats
     film: FollowedFilm
     surface: ElementSurface
+    kept: KeptCoordinates
+    umbilics: Umbilics
     iso: Isothermic
     pattern: Pattern
 
     @classmethod
     def of(cls, shares: Floats, film: FollowedFilm, pattern: Pattern) -> FilmNet:
-        """The coordinates of a film."""
+        """The coordinates of a film from nothing."""
         surface = film.bare_surface
-        umbilics = surface.umbilics
-        mesh = make_integration_mesh(surface, umbilics)
-        odd = mesh.umbilics[(umbilics.orders % 2 == 1) & (mesh.umbilics >= 0)]
-        return cls(shares, film, surface, integrate(mesh, odd), pattern)
+        kept = KeptCoordinates.of(surface)
+        return cls(shares, film, surface, kept, kept.umbilics, kept.iso, pattern)
+
+    def moved(self, shares: Floats, film: FollowedFilm) -> FilmNet:
+        """The coordinates of another film: on the same elements, with all that holds for it as well."""
+        surface = film.bare_surface
+        if surface.connectivity is self.kept.surface.connectivity:
+            with suppress(LayoutError):
+                umbilics, iso = self.kept.on(surface)
+                return FilmNet(shares, film, surface, self.kept, umbilics, iso, self.pattern)
+        return FilmNet.of(shares, film, self.pattern)
 
     @cached_property
     def whole(self) -> IntegerTransitions:
@@ -58,7 +72,7 @@ class FilmNet:
     @property
     def orders(self) -> list[int]:
         """Orders of the umbilics off the rim, sorted."""
-        return sorted(self.surface.umbilics.orders[self.iso.mesh.umbilics >= 0].tolist())
+        return sorted(self.umbilics.orders[self.iso.mesh.umbilics >= 0].tolist())
 
     def cells(self, step: float) -> Complexes:
         """Shifts of the pieces of the cut, (t,), in cells of a lattice with l0 = step, sqrt(m)."""

@@ -17,8 +17,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
 from lamella.base.arrays import Complexes, Floats
+from lamella.base.blocks import blocks
 from lamella.base.vectors import dots, images
 from lamella.network.isothermic.isothermic import Isothermic
+from lamella.network.isothermic.poisson import Poisson
 from lamella.network.isothermic.umbilic_depth import UmbilicDepths
 from lamella.surface.element.geometry import from_moments, normal_and_area, tangents
 from lamella.surface.element.places import Places
@@ -30,7 +32,9 @@ Number = TypeVar("Number", np.float64, np.complex128)
 # rows and columns of the entries of a symmetric matrix, and how often each is in it
 _ROWS, _COLUMNS, _TWICE = np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2]), np.array([1.0, 2, 2, 1, 2, 1])
 # of the projections: rates need no more
-PROJECTED = 1e-6
+PROJECTED = 1e-4
+# elements worked on at a time: their tables stay in the processor's cache
+GRADIENT_BLOCK = 64
 
 
 def shift_gradients(surface: ElementSurface, iso: Isothermic) -> Complexes:
@@ -80,31 +84,39 @@ def _product(one: Floats, other: Floats) -> Floats:
 
 def _by_integration_nodes(iso: Isothermic) -> tuple[Complexes, Complexes]:
     """Derivatives by position (t, N, 3) and shape operator (t, N, 6) at the nodes of the integration mesh."""
-    mesh = iso.mesh
-    connectivity = mesh.connectivity
+    connectivity = iso.mesh.connectivity
     system = iso.plain.weighted()
-    value = connectivity.basis.basis(triangle_rule(2 * connectivity.basis.order)[0])
-    a, b = tangents(system.x, system.y, mesh.nodes[connectivity.elements])
-    shape = np.matmul(value, mesh.shape[connectivity.elements])
+    m, k = connectivity.elements.shape
+    count, n = len(iso.moves), connectivity.node_count
+    own = np.empty((count, m, k, 9), complex)
+    for some in blocks(m, GRADIENT_BLOCK):
+        own[:, some, :, :3], own[:, some, :, 3:] = _of_elements(iso, system, some)
+    gathering = csr_matrix((np.ones(m * k), (connectivity.elements.ravel(), np.arange(m * k))), (n, m * k))
+    total = np.array([gathering @ part.reshape(m * k, 9) for part in own]).reshape(count, n, 9)
+    return total[..., :3], total[..., 3:]
+
+
+def _of_elements(iso: Isothermic, system: Poisson, some: slice) -> tuple[Complexes, Complexes]:
+    """The same at the own nodes of some elements, (t, e, k, 3) and (t, e, k, 6)."""
+    mesh, x, y = iso.mesh, system.x, system.y
+    basis = mesh.connectivity.basis
+    value = basis.basis(triangle_rule(2 * basis.order)[0])
+    elements = mesh.connectivity.elements[some]
+    a, b = tangents(x, y, mesh.nodes[elements])
+    shape = np.matmul(value, mesh.shape[elements])
     s_a, s_b = images(shape, a), images(shape, b)
     # the sums are of form_a times one of these, and of form_b times the other
-    (e, f, g), area = system.metric, system.area
-    w_x, w_y = iso.moves @ system.x.T, iso.moves @ system.y.T
-    by_a, by_b = (g * w_x - f * w_y) / area, (e * w_y - f * w_x) / area
-    rates = _rates_of_forms(system.form_a, system.metric, dots(a, s_a), dots(a, s_b), dots(b, s_b))
+    e, f, g = metric = (system.metric[0][some], system.metric[1][some], system.metric[2][some])
+    w_x, w_y = iso.moves[:, some] @ x.T, iso.moves[:, some] @ y.T
+    by_a, by_b = (g * w_x - f * w_y) / system.area[some], (e * w_y - f * w_x) / system.area[some]
+    rates = _rates_of_forms(system.form_a[some], metric, dots(a, s_a), dots(a, s_b), dots(b, s_b))
     by_aa, by_ab, by_bb, by_e, by_f, by_g = (
         by_a * of_a + by_b * of_b for of_a, of_b in zip(rates[0], rates[1], strict=True)
     )
     gradient_a = _rows(by_e, 2 * a) + _rows(by_f, b) + _rows(by_aa, 2 * s_a) + _rows(by_ab, s_b)
     gradient_b = _rows(by_f, a) + _rows(by_g, 2 * b) + _rows(by_ab, s_a) + _rows(by_bb, 2 * s_b)
     of_shape = _rows(by_aa, _product(a, a)) + _rows(by_ab, _product(a, b)) + _rows(by_bb, _product(b, b))
-    of_position = np.matmul(system.x.T, gradient_a) + np.matmul(system.y.T, gradient_b)
-    n = connectivity.node_count
-    flat = connectivity.elements.ravel()
-    gathering = csr_matrix((np.ones(len(flat)), (flat, np.arange(len(flat)))), (n, len(flat)))
-    by_position = np.array([gathering @ part.reshape(len(flat), 3) for part in of_position])
-    by_shape = np.array([gathering @ part.reshape(len(flat), 6) for part in np.matmul(value.T, of_shape)])
-    return by_position.reshape(-1, n, 3), by_shape.reshape(-1, n, 6)
+    return np.matmul(x.T, gradient_a) + np.matmul(y.T, gradient_b), np.matmul(value.T, of_shape)
 
 
 def _rows(factor: NDArray[Number], rows: Floats) -> NDArray[Number]:
