@@ -53,7 +53,7 @@ CARRIED = 0.5
 # of the film's size: what the boundary moves in a step, at most
 BOUNDARY_MOVE_MAX = 0.04
 # whole numbers that ask for the smallest changes, were there no limits to them; of these are tried, with the limits
-MOST_LOOKED_AT, INTEGERS_TRIED_MAX = 60, 4
+MOST_LOOKED_AT, INTEGERS_TRIED_MAX = 60, 8
 # a whole step has to take this part of the misses away at least
 LEAST_GAIN = 0.1
 # of an umbilic's distance from the rim: what a step leaves of it at least, to first order. Where umbilics come or go
