@@ -294,8 +294,10 @@ class _Search:
         return 0
 
     def descend(self, aim: Aim, *, hasty: bool = False, goal: float = COARSE_CLOSED) -> Aim:
-        """Steps on the coarse film, until misses are below a goal, cells; in haste, until one leaves most of them."""
+        """Steps on the coarse film, until misses are below a goal, cells; in haste, until one leaves most of them
+        or a second one is refused."""
         self._tell(aim)
+        refused = 0
         for _ in range(ADJUSTING_STEPS_MAX):
             if worst(aim.residuals) < goal:
                 return aim
@@ -315,7 +317,8 @@ class _Search:
                 return aim
             if hasty and self._is_stopped(aim):
                 raise LostError(aim, "the boundary may not change by more")
-            if reason and hasty and aim.size > CARRIED * before:
+            refused += bool(reason)
+            if reason and hasty and (aim.size > CARRIED * before or refused > 1):
                 raise StuckError(aim, reason)
         raise LostError(aim, f"not reached in {ADJUSTING_STEPS_MAX} steps")
 
@@ -369,7 +372,9 @@ class _Search:
                 continue
             expected = 1 - LEAST_GAIN * min(share, 1.0)
             if there.size < expected * aim.size or worst(there.residuals) < 10 * CLOSED:
-                return (there if there.size < CARRIED * aim.size else replace(there, sensitivities=None)), reason
+                # where the whole step was refused what is linear reaches less far
+                carried = there.size < CARRIED * aim.size and not reason
+                return (there if carried else replace(there, sensitivities=None)), reason
             reason = "the misses grow"
         raise LostError(aim, reason)
 

@@ -18,7 +18,6 @@ from lamella.network.adjust.transition_sensitivities import (
     transition_sensitivities,
 )
 from lamella.network.pattern import Pattern
-from lamella.surface.boundary.adjustable_film import AdjustableFilm
 from lamella.surface.boundary.curve import Loop
 from lamella.surface.boundary.freedom import Freedom
 from lamella.surface.element.placing import rim_parameters
@@ -52,18 +51,22 @@ class Films:
     def __init__(self, freedom: Freedom, pattern: Pattern, progress: Progress = silent) -> None:
         self.freedom, self.pattern = freedom, pattern
         self._progress: Progress = as_details(progress)
+        self._loops: dict[bytes, tuple[Loop, ...]] = {}
         self._sensitivities: WeakKeyDictionary[FilmNet, Sensitivities] = WeakKeyDictionary()
 
     def loops(self, shares: Floats) -> tuple[Loop, ...]:
         """The boundary at some shares."""
-        return self.freedom.changed(shares).loops()
+        key = shares.tobytes()
+        if key not in self._loops:
+            self._loops[key] = self.freedom.changed(shares).loops()
+        return self._loops[key]
 
     def first(self, tolerance: float) -> FilmNet:
         """The film of the sketch, to a tolerance."""
-        film = self.freedom.film
+        film, still = self.freedom.film, np.zeros(self.freedom.count)
         request = FilmRequest(film.order, tolerance, film.branch, film.most_nodes)
-        found = FollowedFilm.first(_boundary(film), request, origin=film.origin, progress=self._progress)
-        net = FilmNet.of(np.zeros(self.freedom.count), found, self.pattern)
+        found = FollowedFilm.first(self._boundary(still), request, origin=film.origin, progress=self._progress)
+        net = FilmNet.of(still, found, self.pattern)
         refuse_umbilic(net.surface)
         return net
 
@@ -74,10 +77,9 @@ class Films:
         ------
         FollowError
         """
-        changed = self.freedom.changed(shares)
-        curvature = net.film.equilibrium.mean_curvature
+        boundary = self._boundary(shares, net.film.equilibrium.mean_curvature)
         try:
-            there = net.film.moved(_boundary(changed, curvature), progress=self._progress)
+            there = net.film.moved(boundary, progress=self._progress)
         except InputError as error:
             raise FollowError(str(error)) from None
         return self._checked(net, net.moved(shares, there))
@@ -94,6 +96,12 @@ class Films:
         except InputError as error:
             raise FollowError(str(error)) from None
         return self._checked(net, FilmNet.of(net.shares, there, self.pattern))
+
+    def _boundary(self, shares: Floats, mean_curvature: float = 0.0) -> Boundary:
+        """What the film of some shares is found from; with a volume a mean curvature (1/m) to start from."""
+        changed = self.freedom.changed(shares)
+        h = changed.mean_curvature if changed.mean_curvature is not None else mean_curvature
+        return Boundary(self.loops(shares), h, changed.volume)
 
     def anew(self, net: FilmNet) -> FilmNet:
         """The same film with coordinates from nothing, as those of its final net.
@@ -157,9 +165,3 @@ class Films:
                 there = curve.loop()
                 result[number, nodes[mine]] = (there.at(t[mine]) - here[index]) / SHARE
         return result
-
-
-def _boundary(film: AdjustableFilm, mean_curvature: float = 0.0) -> Boundary:
-    """What a film is found from; with a volume a mean curvature (1/m) to start from."""
-    h = film.mean_curvature if film.mean_curvature is not None else mean_curvature
-    return Boundary(film.loops(), h, film.volume)
