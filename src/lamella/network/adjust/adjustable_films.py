@@ -114,7 +114,7 @@ class Films:
 
     def finished(self, net: FilmNet) -> ElementSurface:
         """The film as later stages see it, with its notes and figures."""
-        surface = net.film.surface
+        surface = net.film.assessed
         return replace(surface, figures=surface.figures | {"tolerance": self.freedom.film.tolerance})
 
     def _checked(self, net: FilmNet, there: FilmNet) -> FilmNet:

@@ -51,13 +51,13 @@ class FilmNet:
     @classmethod
     def of(cls, shares: Floats, film: FollowedFilm, pattern: Pattern) -> FilmNet:
         """The coordinates of a film from nothing."""
-        surface = film.bare_surface
+        surface = film.surface
         kept = KeptCoordinates.of(surface)
         return cls(shares, film, surface, kept, kept.umbilics, kept.iso, pattern)
 
     def moved(self, shares: Floats, film: FollowedFilm) -> FilmNet:
         """The coordinates of another film: on the same elements, with all that holds for it as well."""
-        surface = film.bare_surface
+        surface = film.surface
         if surface.connectivity is self.kept.surface.connectivity:
             with suppress(LayoutError):
                 umbilics, iso = self.kept.on(surface)

@@ -251,16 +251,6 @@ class FollowedFilm(Result):
         )
 
     @cached_property
-    def bare_surface(self) -> ElementSurface:
-        """The film as nets are made on it, without notes and figures."""
-        film = self.equilibrium.film
-        rim_loop = film.mesh.loop[film.connectivity.rim_nodes[:, 0]]
-        curvature = self.equilibrium.mean_curvature
-        return ElementSurface(
-            "form-found", curvature, film.connectivity, film.nodes, rim_loop, loop_starts=film.loop_starts()
-        )
-
-    @cached_property
     def found(self) -> Found:
         """The film with its stability, as `find_film` gives it."""
         here = self.equilibrium
