@@ -54,6 +54,8 @@ CARRIED = 0.5
 BOUNDARY_MOVE_MAX = 0.04
 # whole numbers that ask for the smallest changes, were there no limits to them; of these are tried, with the limits
 MOST_LOOKED_AT, INTEGERS_TRIED_MAX = 60, 8
+# of those that were set aside the nearest ones are gone on with, at most so many
+RETURNED_TO_MAX = 3
 # a whole step has to take this part of the misses away at least
 LEAST_GAIN = 0.1
 # of an umbilic's distance from the rim: what a step leaves of it at least, to first order. Where umbilics come or go
@@ -178,7 +180,7 @@ class _Search:
                 waiting.append(error.aim)
             except LostError as error:
                 lost.append(error)
-        for aim in sorted(waiting, key=lambda one: one.size):
+        for aim in sorted(waiting, key=lambda one: one.size)[:RETURNED_TO_MAX]:
             self.progress(
                 Report.step(f"{lost[-1]}: back to those that were left with {worst(aim.residuals):.2g} cells")
             )
