@@ -110,7 +110,7 @@ ABOUT: dict[str, str] = {
     "mean curvature it means is a piece of an unduloid.",
     "17_gridshell": "An uneven sketch of the Asymptotic Gridshell (Schling et al., AAG 2018): 12 x 9 m on three "
     "supports, two arches 5 m high, an oculus for a tree. Its net would miss itself by 0.84 of a cell. `closing = "
-    '"adjust"` changes the sketch in plan by up to 0.31 m, until the net closes and both hexagonal nodes lie on one '
+    '"adjust"` changes the sketch in plan by up to 0.27 m, until the net closes and both hexagonal nodes lie on one '
     "principal line. The third, low edge is drawn in towards the oculus: bulging outwards it brings a third umbilic.",
     "18_saddle_roof": "A roof of 12 x 8 m, a mesh whose mean curvature varies, kept as it is: its lamellas follow the "
     "asymptotic lines, where a straight strip stands upright; they do not cross at 90 degrees. On this hyperbolic "
