@@ -23,7 +23,7 @@ from surface.form_finding.films import order_of, random_places, start, surface
 
 PATCHES = {
     "catenoid": (CatenoidPatch(), 0.25),
-    "unduloid": (UnduloidPatch(), 0.15),
+    "unduloid": (UnduloidPatch(), 0.2),
     "helicoid": (HelicoidPatch(), 0.25),
     "Enneper": (EnneperPatch(), 0.25),
 }

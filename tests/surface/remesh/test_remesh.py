@@ -433,37 +433,3 @@ def test_bad_starts_are_refused(change, message) -> None:
     case = ring(0.5, 1.5, 20, 4, even(0.2))
     with pytest.raises(ValueError, match=message):
         replace(case, mesh=change(case.mesh)).run()
-
-
-def half_refined() -> tuple[TriangleMesh, np.ndarray, TriangleMesh]:
-    """A mesh, which of its vertices are held, and the mesh with elements of half the size where none are."""
-    case = ring(0.4, 1.3, 40, 6, even(0.12))
-    before = case.run()
-    held = before.points[:, 0] > -0.2
-
-    def size(p: np.ndarray) -> np.ndarray:
-        return np.clip(0.12 - 0.1 * (-0.2 - p[:, 0]), 0.06, 0.12)
-
-    after = remesh(before, size=size, project=flat, rims=case.rims, rounds=3, held=held)
-    return before, held, after
-
-
-def test_held_vertices_and_the_faces_between_them_stay() -> None:
-    before, held, after = half_refined()
-    # the grid of the vertices is finer than 1/256 of the smallest size
-    apart = np.linalg.norm(before.points[held][:, None] - after.points, axis=2)
-    place = np.full(len(before.points), -1)
-    place[held] = apart.argmin(1)
-    assert apart.min(1).max() < 0.06 / 256
-    on_rim = held & (before.loop >= 0)
-    assert np.array_equal(before.parameter[on_rim], after.parameter[place[on_rim]])
-    kept = place[before.faces[held[before.faces].all(1)]]
-    turned = [np.roll(after.faces, turn, axis=1) for turn in range(3)]
-    there = {tuple(face) for faces in turned for face in faces.tolist()}
-    assert all(tuple(face) in there for face in kept.tolist())
-    # and the others are made anew
-    left = after.points[after.faces].mean(1)[:, 0] < -0.9
-    corners = after.points[after.faces[left]]
-    assert 0.8 * 0.06 < np.median(np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2)) < 1.2 * 0.06
-    assert smallest_angles(after).min() > 25
-    assert (face_vectors(after)[:, 2] * face_vectors(before)[0, 2] > 0).all()

@@ -8,9 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Floats, Integers
-from lamella.base.ties import grid_of, rounded
 from lamella.base.triangle import CORNERS
-from lamella.base.vectors import diagonal
 from lamella.surface.element.connectivity import Connectivity
 from lamella.surface.element.lagrange import subdivision
 from lamella.surface.element.places import Places
@@ -33,24 +31,16 @@ class ClosestPoint:
     ----------
     connectivity : Connectivity
     nodes : (n, 3)
-    tolerance : float
-        A last step of Newton's method, in local coordinates: what is left is about its square.
     """
 
-    def __init__(self, connectivity: Connectivity, nodes: Floats, tolerance: float = CLOSEST_TOLERANCE) -> None:
-        self._connectivity, self._nodes, self._tolerance = connectivity, nodes, tolerance
-
-    @cached_property
-    def _grid(self) -> float:
-        return grid_of(diagonal(self._nodes))
+    def __init__(self, connectivity: Connectivity, nodes: Floats) -> None:
+        self._connectivity, self._nodes = connectivity, nodes
 
     @cached_property
     def _tree(self) -> cKDTree:
         """The samples of all elements, element by element."""
         basis = self._connectivity.basis.basis(subdivision(CLOSEST_SAMPLES)[0])
-        samples = np.matmul(basis, self._nodes[self._connectivity.elements]).reshape(-1, 3)
-        # between two samples as near as each other a search that is not to rounding would end at two places
-        return cKDTree(rounded(samples, self._grid))
+        return cKDTree(np.matmul(basis, self._nodes[self._connectivity.elements]).reshape(-1, 3))
 
     @cached_property
     def _fans(self) -> tuple[Integers, Integers]:
@@ -72,7 +62,7 @@ class ClosestPoint:
         position : (n, 3)
             m.
         """
-        _, sample = self._tree.query(rounded(points, self._grid))
+        _, sample = self._tree.query(points)
         local, _ = subdivision(CLOSEST_SAMPLES)
         return self.near(points, Places(sample // len(local), local[sample % len(local)]))
 
@@ -116,7 +106,7 @@ class ClosestPoint:
             goes = (across >= 0) & (idle[hopping] < MOST_IDLE)
             best[hopping] = np.minimum(distance, best[hopping])
             element[hopping[goes]], local[hopping[goes]] = across[goes], entered[goes]
-            going = change > self._tolerance
+            going = change > CLOSEST_TOLERANCE
             going[np.flatnonzero(hop)[goes]] = True
             active = active[going]
             if not len(active):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
-from lamella.surface.element.curvature import curvature_sizes
+from lamella.surface.element.curvature import element_points
 from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import CORNER_CORE, CORNER_PART, SHARP_TURN
@@ -26,8 +26,6 @@ CHECKED = 8
 LEAST_WEIGHED = 0.1
 # of the tolerance that a new mesh aims at, and the rings of neighbours that share their largest error
 ERROR_AIM, CORNER_RINGS = 0.6, 2
-# the same where only elements that are off are made anew, and the rings of neighbours that go with them
-REPAIR_AIM, REPAIR_RINGS = 0.4, 3
 # most an element's edge shrinks or grows at once; once the sizes have settled none grows
 SIZE_SHRINK, GROW = 0.3, 1.3
 
@@ -69,24 +67,23 @@ def deviation_of(film: Film, mean_curvature: float) -> Deviation:
     points = np.concatenate([inside, lagrange(CHECKED).nodes])
     weights = np.append(weights, np.zeros(len(points) - len(inside)))
     corners = film.nodes[film.connectivity.elements]
-    position, mean, deviator = curvature_sizes(film.connectivity, corners, points)
+    there = element_points(film.connectivity, corners, points, False)
     m = len(corners)
-    places = position.reshape(-1, 3)
-    off = np.abs(mean - mean_curvature)
-    bend = mean**2 + deviator**2
+    off = np.abs(there.mean_curvature - mean_curvature).reshape(m, -1)
+    bend = (there.mean_curvature**2 + np.abs(there.deviator) ** 2).reshape(m, -1)
     flat = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     weight = flat[:, None] * weights
     zones = CornerZones.of(film)
-    away = ~_within(places, zones.points, zones.radius).reshape(m, -1)
+    away = ~_within(there.position, zones.points, zones.radius).reshape(m, -1)
     weight = np.where(away, weight, 0)
     total = max(weight.sum(), 1e-300)
     scale = max(float(np.sqrt((weight * bend).sum() / total)), 0.01 / film.size)
     # an error d of the shape operator turns principal directions by d / (2 |D|) and changes isothermic coordinates,
     # the integral of sqrt |D|, by d / (2 sqrt |D|): where |D| is small, next to umbilics, elements have to be better
-    deviator = deviator / scale
+    deviator = np.abs(there.deviator).reshape(m, -1) / scale
     # next to a corner the curvature is what directions are taken from, however large
-    zones = zones.concentrated(places, deviator.ravel())
-    counted = ~_within(places, zones.points, zones.core).reshape(m, -1)
+    zones = zones.concentrated(there.position, deviator.ravel())
+    counted = ~_within(there.position, zones.points, zones.core).reshape(m, -1)
     local = np.where(counted, off / np.maximum(deviator, 1), 0)
     off = np.where(away, off, 0)
     of_element = np.where(away, off, local).max(1) / scale / np.sqrt(np.clip(deviator.min(1), LEAST_WEIGHED, 1))
@@ -169,7 +166,7 @@ def away_from_corners(film: Film, points: Floats) -> Booleans:
 
 
 def refined_sizes(
-    film: Film, deviation: Deviation, tolerance: float, most_nodes: int, *, coarsen: bool, rings: int = CORNER_RINGS
+    film: Film, deviation: Deviation, tolerance: float, most_nodes: int, *, coarsen: bool
 ) -> tuple[SizeField, bool]:
     """Sizes with which the tolerance should be kept, and whether a limit of nodes allows them.
 
@@ -183,7 +180,7 @@ def refined_sizes(
     # an element counts with its neighbours: among alike ones the largest error sits in any of them
     knots = _near_knots(film, corners.mean(1), edges)
     worst = np.where(knots, 0, deviation.of_element)
-    for _ in range(rings):
+    for _ in range(CORNER_RINGS):
         of_node = np.zeros(len(film.mesh.points))
         np.maximum.at(of_node, film.connectivity.faces, worst[:, None])
         worst = of_node[film.connectivity.faces].max(1)
@@ -210,25 +207,6 @@ def refined_sizes(
     if nodes <= most_nodes:
         return field, True
     return field.scaled(float(np.sqrt(nodes / most_nodes) * 1.02)), False
-
-
-def repaired_sizes(
-    film: Film, deviation: Deviation, tolerance: float, most_nodes: int, off: Booleans
-) -> tuple[SizeField, bool, Booleans]:
-    """Sizes as `refined_sizes`, but only where elements `off` (m,) are, and which vertices stay, (v,).
-
-    Elements made anew everywhere would be off elsewhere: where the worst of many sits is chance.
-    """
-    worst = np.where(off, deviation.of_element * ERROR_AIM / REPAIR_AIM, 0.0)
-    field, allowed = refined_sizes(
-        film, replace(deviation, of_element=worst), tolerance, most_nodes, coarsen=False, rings=1
-    )
-    faces = film.connectivity.faces
-    for _ in range(REPAIR_RINGS):
-        touched = np.zeros(len(film.mesh.points), bool)
-        touched[faces[off]] = True
-        off = np.asarray(touched[faces].any(1))
-    return field, allowed, ~touched
 
 
 def _near_knots(film: Film, points: Floats, sizes: Floats) -> Booleans:

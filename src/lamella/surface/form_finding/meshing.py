@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from lamella.base.arrays import Booleans, Floats
+from lamella.base.arrays import Floats
 from lamella.surface.element.closest import ClosestPoint
 from lamella.surface.element.connectivity import connect
 from lamella.surface.element.geometry import smooth_normals
@@ -35,13 +35,6 @@ MOST_COARSE = 1500
 SLENDER_CHART, BENT = 18.0, 1.7
 # flat triangles along the edge of a curved one that new elements start from
 FACETS = 2
-# times as many elements as before, from which on they are many more
-MANY_MORE = 2.0
-# in local coordinates, by whose square places on a surface that new nodes are moved to are off: along it, where they
-# are free
-NEAR = 1e-2
-# of remeshing: of all elements, and of few of them
-ROUNDS, REPAIR_ROUNDS = 5, 3
 
 
 def coarse_sizes(loops: tuple[Loop, ...], extent: float) -> SizeField:
@@ -145,55 +138,27 @@ def facets(film: Film, parts: int) -> TriangleMesh:
     return TriangleMesh(points, grid.elements[:, local_faces(parts)].reshape(-1, 3), loop, parameter)
 
 
-def _is_coarse(film: Film, size: Callable[[Floats], Floats]) -> bool:
-    """Whether elements of wanted sizes are many more than those that are there."""
-    corners = film.nodes[film.connectivity.faces]
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-    wanted = (area / (np.sqrt(3) / 4 * size(corners.mean(1)) ** 2)).sum()
-    return bool(wanted > MANY_MORE * len(corners))
-
-
-def _remeshed(
-    film: Film,
-    size: Callable[[Floats], Floats],
-    loops: Sequence[Rim],
-    held: Booleans | None = None,
-) -> TriangleMesh:
-    # where elements get much smaller, the curved ones' own shape, which their corners alone do not tell
-    curved = held is None and film.connectivity.basis.order > 1 and _is_coarse(film, size)
-    start, rounds = facets(film, FACETS if curved else 1), ROUNDS if held is None else REPAIR_ROUNDS
+def _remeshed(film: Film, size: Callable[[Floats], Floats], loops: Sequence[Rim]) -> TriangleMesh:
+    # the curved elements' own shape, which their corners alone do not tell
+    parts = 1 if film.connectivity.basis.order == 1 else FACETS
     try:
-        planes = TangentPlanes(film.connectivity, film.nodes)
-        return remesh(start, size=size, project=planes, rims=loops, rounds=rounds, held=held)
+        return remesh(facets(film, parts), size=size, project=TangentPlanes(film.connectivity, film.nodes), rims=loops)
     except ValueError as error:
         raise NoFilmError(f"its elements cannot be made anew: {error}", film) from None
 
 
-def with_sizes(
-    film: Film, size: Callable[[Floats], Floats], order: int | None = None, held: Booleans | None = None
-) -> Film:
-    """The same surface with elements of wanted sizes.
-
-    Parameters
-    ----------
-    film : Film
-    size : callable
-        Edge length, m, (k,), at points (k, 3).
-    order : int, optional
-        Of the elements, as they are if not given.
-    held : (v,) bool, optional
-        Vertices that stay, and with them the elements between them.
-    """
+def with_sizes(film: Film, size: Callable[[Floats], Floats], order: int | None = None) -> Film:
+    """The same surface with elements of wanted sizes."""
     film = settled_rims(film)
-    mesh = _remeshed(film, size, film.loops, held)
+    mesh = _remeshed(film, size, film.loops)
     new = Film.on_mesh(mesh, film.loops, order or film.connectivity.basis.order)
-    inside = new.connectivity.inner_unknowns >= 0
-    nodes = new.nodes.copy()
-    places, position = ClosestPoint(film.connectivity, film.nodes, NEAR)(new.nodes[inside])
+    inside = np.setdiff1d(np.arange(new.connectivity.node_count), new.connectivity.rim_nodes)
+    places, position = ClosestPoint(film.connectivity, film.nodes)(new.nodes[inside])
     normals = smooth_normals(film.connectivity, film.nodes)
     basis = film.connectivity.basis.basis(places.local)
     along = np.einsum("nk,nkc->nc", basis, normals[film.connectivity.elements[places.element]])
     along /= np.linalg.norm(along, axis=1)[:, None]
+    nodes = new.nodes.copy()
     nodes[inside] += ((position - nodes[inside]) * along).sum(1)[:, None] * along
     return new.at(nodes)
 

@@ -7,22 +7,19 @@ from contextlib import suppress
 
 import numpy as np
 
-from lamella.base.arrays import Booleans, Floats
+from lamella.base.arrays import Floats
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report
-from lamella.surface.form_finding.adaptivity import Deviation, deviation_of, refined_sizes, repaired_sizes
+from lamella.surface.form_finding.adaptivity import Deviation, deviation_of, refined_sizes
 from lamella.surface.form_finding.film import Film, harmonic_over_itself
 from lamella.surface.form_finding.found_film import Found
 from lamella.surface.form_finding.meshing import is_worn, renewed, straightened, with_sizes
 from lamella.surface.form_finding.newton import Equilibrium, NoFilmError
 from lamella.surface.form_finding.redistribution import redistributed
 from lamella.surface.form_finding.stability import stability_of
-from lamella.surface.remesh.size_field import SizeField
 
 REFINEMENT_ROUNDS_MAX = 12
-# share of the elements that are off up to which only these and their neighbours are made anew
-FEW = 0.05
 # at the limit of nodes another round is worth its time while it lowers the deviation by more than this
 SLOW_FALL = 0.7
 # nodes are moved within the surface again rather than elements made smaller while the deviation is at most this many
@@ -86,14 +83,12 @@ def adapted(
         if deviation.weighted <= TOLERANCE_USED * tolerance:
             shortfall = ""
             break
-        size, allowed, held = _next_sizes(
-            here.film, deviation, tolerance, most_nodes, coarsen=round_ < 2, anew=gain > SLOW_FALL
-        )
+        size, allowed = refined_sizes(here.film, deviation, tolerance, most_nodes, coarsen=round_ < 2)
         if not allowed and here.film.connectivity.node_count > 0.7 * most_nodes and gain > SLOW_FALL:
             shortfall = f"elements as small as that asks for would need more than most_nodes = {most_nodes:,} nodes"
             break
         try:
-            here = _settled_anew(with_sizes(here.film, size, held=held), here.mean_curvature, settled)
+            here = _settled_anew(with_sizes(here.film, size), here.mean_curvature, settled)
         except NoFilmError as error:
             progress(Report.detail(f"on finer elements: {error}"))
             try:
@@ -124,18 +119,6 @@ def adapted(
         steps,
         followed,
     )
-
-
-def _next_sizes(
-    film: Film, deviation: Deviation, tolerance: float, most_nodes: int, *, coarsen: bool, anew: bool
-) -> tuple[SizeField, bool, Booleans | None]:
-    """Sizes to go on with, whether a limit of nodes allows them, and which vertices stay, (v,), where not all go."""
-    off = np.asarray(deviation.of_element > TOLERANCE_USED * tolerance)
-    if not anew and off.mean() < FEW:
-        size, allowed, held = repaired_sizes(film, deviation, tolerance, most_nodes, off)
-        if allowed:
-            return size, True, held
-    return *refined_sizes(film, deviation, tolerance, most_nodes, coarsen=coarsen), None
 
 
 def _on_sound_elements(first: Equilibrium, settled: Callable[[Film], Equilibrium]) -> Equilibrium:

@@ -26,8 +26,6 @@ FOLD = 0.05
 NEAR_FOLD = 2.0
 # step of the third variation's difference quotient, over the film's size
 STABILITY_STEP = 1e-3
-# of the lowest mode, and vectors from which it is made
-MODE_ERROR, LANCZOS = 1e-7, 8
 # shifts tried below the spectrum, each four times the one before
 SHIFTS = 40
 
@@ -86,10 +84,9 @@ def stability_of(film: Film, mean_curvature: float) -> Stability:
     assert negative is not None
     matrix = pattern.matrix(stiffness)
     inverse = LinearOperator(matrix.shape, matvec=factor.solve, dtype=float)
-    start, vectors_kept = np.ones(pattern.size), min(LANCZOS, pattern.size)
+    start = np.ones(pattern.size)
     try:
-        # the error of the eigenvalue is the square of that of the mode
-        values, vectors = eigsh(matrix, 1, mass, sigma=shift, OPinv=inverse, v0=start, tol=MODE_ERROR, ncv=vectors_kept)
+        values, vectors = eigsh(matrix, 1, mass, sigma=shift, OPinv=inverse, v0=start, tol=1e-9)
     except ArpackError:
         values, vectors = eigsh(matrix, 1, mass, sigma=shift, OPinv=inverse, tol=1e-6, ncv=44)
     lowest = float(values[0])

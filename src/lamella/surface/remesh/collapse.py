@@ -17,16 +17,16 @@ APART_PASSES = 3  # rounds of the selection of collapses that do not touch
 def collapse_short(draft: Draft) -> int:
     """Collapse inner edges that are shorter than allowed, and vertices with three neighbours; returns how many."""
     topology = draft.topology()
-    ends, pinned, valence = topology.ends, draft.pinned, topology.valence
+    ends, boundary, valence = topology.ends, draft.boundary, topology.valence
     ratio = edge_lengths(draft.points, ends) / draft.size[ends].mean(axis=1)
-    three = (valence == 3) & ~pinned
+    three = (valence == 3) & ~boundary
     edges = np.flatnonzero(topology.inner & ((ratio < COLLAPSE_LENGTH) | three[ends].any(axis=1)))
-    edges = edges[~pinned[ends[edges]].all(axis=1)]
-    # The end that goes is inside and loose; of two such ones the one with three neighbours goes, and none of these
-    # moves the other end.
-    swap = pinned[ends[edges, 0]] | (three[ends[edges, 1]] & ~pinned[ends[edges, 1]])
+    edges = edges[~boundary[ends[edges]].all(axis=1)]
+    # The end that goes is inside; of two inner ones the one with three neighbours goes, and none of these moves the
+    # other end.
+    swap = boundary[ends[edges, 0]] | (three[ends[edges, 1]] & ~boundary[ends[edges, 1]])
     removed, kept = np.where(swap, ends[edges, 1], ends[edges, 0]), np.where(swap, ends[edges, 0], ends[edges, 1])
-    slides = pinned[kept] | three[removed]
+    slides = boundary[kept] | three[removed]
     target = np.where(slides[:, None], draft.points[kept], 0.5 * (draft.points[kept] + draft.points[removed]))
     allowed = link_condition(draft, topology, edges, removed, kept)
     edges, removed, kept, target = edges[allowed], removed[allowed], kept[allowed], target[allowed]
@@ -38,7 +38,7 @@ def collapse_short(draft: Draft) -> int:
     chosen = apart(draft, topology, removed, kept, rank)
     removed, kept, target = removed[chosen], kept[chosen], target[chosen]
     if removed.size:
-        inside = ~pinned[kept]
+        inside = ~boundary[kept]
         draft.points[kept[inside]] = draft.project(target[inside])
         draft.size[kept[inside]] = draft.size_at(draft.points[kept[inside]])
         draft.merge(removed, kept)
@@ -64,13 +64,13 @@ def collapse_thin(draft: Draft, limit: float) -> int:
     if thin.size == 0:
         return 0
     topology = draft.topology()
-    pinned = draft.pinned
+    boundary = draft.boundary
     edges = np.unique(topology.edge_of_half[(3 * thin[:, None] + np.arange(3)).ravel()])
     edges = edges[topology.inner[edges]]
     pairs = topology.ends[edges]
     edges = np.concatenate([edges, edges])
     removed, kept = np.concatenate([pairs, pairs[:, ::-1]]).T
-    allowed = ~pinned[removed] & link_condition(draft, topology, edges, removed, kept)
+    allowed = ~boundary[removed] & link_condition(draft, topology, edges, removed, kept)
     removed, kept = removed[allowed], kept[allowed]
     new, old, longest = star_after(draft, topology, removed, kept, draft.points[kept])
     allowed = (new > np.maximum(old, 0.0) + 0.02) & (longest <= 1.1 * SPLIT_LENGTH)

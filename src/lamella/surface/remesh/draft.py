@@ -57,7 +57,7 @@ class Draft:
     station : (n,)
         Place along the loop in edges of the final boundary; nan inside.
     fixed : (n,) bool
-        Vertices that neither move nor vanish. A face between three of them inside stays as it is.
+        Boundary vertices that neither move nor vanish.
     size : (n,)
         Wanted edge length (m).
     size_at, nearest : callable
@@ -75,29 +75,13 @@ class Draft:
     size_at: Callable[[Floats], Floats]
     nearest: Callable[[Floats], Floats]
     grid: float
-    _known: Topology | None = None
 
     def topology(self) -> Topology:
-        """That of the present faces, made anew where these have changed: an operation replaces them."""
-        if self._known is None or self._known.faces is not self.faces or self._known.vertices != len(self.points):
-            self._known = connect(self.faces, len(self.points))
-        return self._known
+        return connect(self.faces, len(self.points))
 
     @property
     def boundary(self) -> Booleans:
         return self.loop >= 0
-
-    @property
-    def pinned(self) -> Booleans:
-        """Vertices that operations on the inside neither move nor remove, (n,)."""
-        return self.boundary | self.fixed
-
-    def loose(self, topology: Topology, edges: Integers) -> Booleans:
-        """Which edges lie between faces that may change, (k,)."""
-        if not (self.fixed & ~self.boundary).any():
-            return np.ones(len(edges), dtype=bool)
-        stays = np.asarray(self.fixed[self.faces].all(axis=1))
-        return np.asarray(~stays[topology.sides[edges]].any(axis=1))
 
     def project(self, points: Floats) -> Floats:
         """Points (k, 3) brought back to the surface, on the grid."""

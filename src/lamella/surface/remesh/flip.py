@@ -27,8 +27,6 @@ def flip(draft: Draft, by_valence: bool, bridges: bool = False) -> int:
     topology = draft.topology()
     angles = corner_angles(draft.points[draft.faces])
     edges, gain = (_allowed_fast if kernel() else _allowed)(draft, topology, angles, by_valence, bridges)
-    loose = draft.loose(topology, edges)
-    edges, gain = edges[loose], gain[loose]
     first, second = topology.sides[edges].T
     a, b = topology.ends[edges].T
     c, d = topology.apexes[edges].T
@@ -37,8 +35,6 @@ def flip(draft: Draft, by_valence: bool, bridges: bool = False) -> int:
     # Two flips far apart in faces can still ask for the same new edge.
     key = np.minimum(c[some], d[some]) * topology.vertices + np.maximum(c[some], d[some])
     some = some[np.sort(np.unique(key, return_index=True)[1])]
-    if not some.size:
-        return 0
     faces = draft.faces.copy()
     faces[first[some]] = np.column_stack([a[some], d[some], c[some]])
     faces[second[some]] = np.column_stack([d[some], b[some], c[some]])

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.arrays import Floats, Integers
 from lamella.base.ties import VERTEX_BITS, grid_of, rounded
 from lamella.base.vectors import crosses, lengths
 from lamella.surface.remesh import rim
@@ -64,8 +64,7 @@ def remesh(
     size: Callable[[Floats], Floats],
     project: Callable[[Floats], Floats],
     rims: Sequence[Rim],
-    rounds: int = 5,
-    held: Booleans | None = None,
+    rounds: int = 8,
 ) -> TriangleMesh:
     """Replace the triangles of a surface by well-shaped ones of a wanted size.
 
@@ -86,8 +85,6 @@ def remesh(
         Curves of the boundary loops 0, 1, ...
     rounds : int
         Rounds of operations.
-    held : (n,) bool, optional
-        Vertices of the start that stay, and with them the faces between them.
 
     Returns
     -------
@@ -103,10 +100,7 @@ def remesh(
         parameters, if a loop could not be brought to its vertices, or if triangles of the result lie folded: a start in
         which some of the triangles are turned over is mostly mended, one with many is not.
     """
-    held = np.zeros(len(mesh.points), dtype=bool) if held is None else held
-    stay = [mesh.parameter[held & (mesh.loop == which)] for which in range(len(rims))]
-    rims = [rim.held_rim(curve, parameter) for curve, parameter in zip(rims, stay, strict=True)]
-    draft, plans = _start(mesh, size, project, rims, held)
+    draft, plans = _start(mesh, size, project, rims)
     most = np.inf
     rim.insert_knots(draft, plans)
     for number in range(rounds):
@@ -190,7 +184,6 @@ def _start(
     size: Callable[[Floats], Floats],
     project: Callable[[Floats], Floats],
     rims: Sequence[Rim],
-    held: Booleans,
 ) -> tuple[Draft, list[Plan]]:
     """A draft that shares nothing with the mesh, and a plan for each loop."""
     topology = connect(np.asarray(mesh.faces, dtype=np.int64), len(mesh.points))
@@ -208,7 +201,7 @@ def _start(
         station[mine] = one.station(mesh.parameter[mine])
         points[mine] = curve.at(mesh.parameter[mine])
         plans.append(one)
-    fixed = held & (loop < 0)
+    fixed = np.zeros(loop.size, dtype=bool)
     # A copy: the draft changes its sizes, and the field may hand out an array of its own.
     sizes = np.array(size(points))
     grid = grid_of(float(sizes.min()), VERTEX_BITS)

@@ -19,7 +19,6 @@ from lamella.surface.remesh.topology import Topology, disjoint
 
 CORNER_PARAMETER = 1e-9  # difference of boundary parameters below which a vertex sits in a corner
 LOOP_EDGES_MIN = 3  # edges of a loop
-PLAN_SAMPLES = 129  # points of a curve between two corners, more of which lie on their chords
 SPREAD_SHAPE = 0.1  # shape above which a careful move of a boundary vertex may make a triangle worse
 STATIONS = grid_of(1.0)  # to which stations are rounded, in edges
 
@@ -44,41 +43,6 @@ class Rim(Protocol):
     def at(self, t: Floats, /) -> Floats:
         """Points (k, 3) (m) at parameters (k,): fractions of the arc length, periodic with 1."""
         ...
-
-
-@dataclass(frozen=True)
-class HeldRim:
-    """A loop on which some vertices stay: they count as its corners.
-
-    Attributes
-    ----------
-    rim : Rim
-        The curve.
-    corners : (k,)
-        Its corners and the vertices that stay, ascending.
-    """
-
-    rim: Rim
-    corners: Floats
-
-    @property
-    def length(self) -> float:
-        return self.rim.length
-
-    def at(self, t: Floats, /) -> Floats:
-        return self.rim.at(t)
-
-
-def held_rim(rim: Rim, parameter: Floats) -> Rim:
-    """The loop with vertices of some parameters (k,) that stay."""
-    if not parameter.size:
-        return rim
-    corners = np.asarray(rim.corners, dtype=np.float64)
-    fresh = parameter
-    if corners.size:
-        gap = np.abs(np.mod(parameter[:, None] - corners + 0.5, 1.0) - 0.5).min(axis=1)
-        fresh = parameter[gap >= CORNER_PARAMETER]
-    return HeldRim(rim, np.sort(np.concatenate([corners, fresh])))
 
 
 @dataclass(frozen=True)
@@ -148,20 +112,16 @@ def plan(rim: Rim, start: float, size: Callable[[Floats], Floats]) -> Plan:
     pieces: list[Floats] = []
     spans: list[Floats] = []
     for low, high in pairwise(stops):
-        t = np.linspace(low, high, PLAN_SAMPLES)
-        points = rim.at(np.mod(t, 1.0))
-        density = rim.length / size(points)
+        samples = 65
         while True:
+            t = np.linspace(low, high, samples)
+            density = rim.length / size(rim.at(np.mod(t, 1.0)))
             steps = 0.5 * (density[1:] + density[:-1]) * np.diff(t)
             # Several samples to an edge, or a small size between two samples is missed. Even steps along a whole number
             # of edges are never near the limit.
-            if steps.max() < 0.13 or t.size > 100_000:
+            if steps.max() < 0.13 or samples > 100_000:
                 break
-            # on the chords: sizes change less between these and the curve than from sample to sample
-            between, middles = 0.5 * (t[1:] + t[:-1]), 0.5 * (points[1:] + points[:-1])
-            gaps = np.arange(1, t.size)
-            t, points = np.insert(t, gaps, between), np.insert(points, gaps, middles, axis=0)
-            density = np.insert(density, gaps, rim.length / size(middles))
+            samples = 2 * samples - 1
         pieces.append(t)
         spans.append(np.concatenate([[0.0], np.cumsum(steps)]))
     ideal = np.array([span[-1] for span in spans])

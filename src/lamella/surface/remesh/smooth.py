@@ -68,7 +68,7 @@ def _mean_way(draft: Draft, goals: Floats, weight: Floats, faces: FaceShapes) ->
 
 def _move(draft: Draft, way: Floats, faces: FaceShapes, good: float) -> None:
     """Move inner vertices by ways (n, 3), where no face gets worse than both `good` and before."""
-    inside = np.flatnonzero(~draft.pinned & way.any(axis=1))
+    inside = np.flatnonzero(~draft.boundary & way.any(axis=1))
     goal = draft.points.copy()
     if inside.size:
         goal[inside] = draft.project(draft.points[inside] + way[inside])

@@ -55,7 +55,6 @@ def split_long(draft: Draft, look_inside: bool, longest: float = SPLIT_LENGTH) -
     # A bridge is too long whatever its length; the offset keeps the order among bridges.
     ratio = np.where(bridges, ratio + longest, ratio)
     edges = np.flatnonzero(topology.inner & (ratio > longest))
-    edges = edges[draft.loose(topology, edges)]
     edges = edges[disjoint(topology.sides[edges], -nearest_whole(100 * ratio[edges]), len(draft.faces), passes=1)]
     if edges.size:
         middle = draft.project(draft.points[ends[edges]].mean(axis=1))

@@ -14,6 +14,8 @@ from lamella.surface.element.lagrange import subdivision
 
 # samples along an element's edge that the remesher's vertices are brought back to
 PLANE_SAMPLES = 8
+# flat triangles along the edge of a curved one that new elements start from
+FACETS = 2
 
 
 class TangentPlanes:
