@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 from lamella.base.arrays import Floats, Integers
 from lamella.fabrication.part import Part, Parts
 from lamella.fabrication.sheet import Nesting
-from lamella.files.write.text import csv_comment
+from lamella.files.write.table import Column, write_table
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 
@@ -50,31 +49,12 @@ class Row:
     same_as: str
 
 
-@dataclass(frozen=True)
-class Column:
-    """A column of the part list; a new one is a line of `COLUMNS`.
-
-    Attributes
-    ----------
-    name : str
-        With its unit.
-    meaning : str
-        For the documentation, Markdown.
-    value : callable
-        What stands in a row.
-    """
-
-    name: str
-    meaning: str
-    value: Callable[[Row], object]
-
-
-def _largest(name: str, meaning: str, value: Callable[[Row], float]) -> Column:
+def _largest(name: str, meaning: str, value: Callable[[Row], float]) -> Column[Row]:
     """A column of figures with six digits."""
     return Column(name, meaning, lambda row: f"{value(row):.6g}")
 
 
-COLUMNS = (
+COLUMNS: tuple[Column[Row], ...] = (
     Column("id", "of the part", lambda row: row.part.id),
     Column("family", "`A` or `B`", lambda row: row.part.family),
     Column("quantity", "pieces to cut: one for each layer", lambda row: row.part.quantity),
@@ -163,11 +143,8 @@ def write_schedule(
     OSError
         Where the file cannot be written whole.
     """
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        file.write(f"# lamella {csv_comment(version)} · project {csv_comment(name)}\n")
-        writer.writerow([column.name for column in COLUMNS])
-        writer.writerows(schedule_rows(parts, nesting, network, lamellas))
+    rows = schedule_rows(parts, nesting, network, lamellas)
+    write_table(path, [column.name for column in COLUMNS], rows, name=name, version=version)
 
 
 def schedule_rows(parts: Parts, nesting: Nesting, network: Network, lamellas: Lamellas) -> Iterator[list[object]]:

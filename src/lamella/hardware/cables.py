@@ -18,10 +18,11 @@ import numpy as np
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.hardware.diagonals import Diagonal, diagonals
+from lamella.hardware.fasteners import neck_hole
 from lamella.hardware.item import Item, Places
 from lamella.hardware.node_frames import NodeFrames
 from lamella.hardware.rules import FILLING, MM, CableRules, JointRules
-from lamella.hardware.shape import Prism, Sweep, circle, crossed, polygon
+from lamella.hardware.shape import Prism, Sweep, circle, crossed
 from lamella.network.network import Network
 from lamella.strip.lamellas import Section
 
@@ -158,9 +159,7 @@ def _clamps(
 ) -> list[Item]:
     """Clamps on top of the cables, one kind for nodes of one height."""
     reach = _beside(rules, measures) + measures.diameter
-    half = rules.size.neck / 2 + 1e-4
-    hole = polygon([[-half, -half], [half, -half], [half, half], [-half, half]])
-    plate = Prism(crossed(arm - ARM_BEYOND, reach, np.pi / 2), 0.0, rules.washer_thickness, (hole,))
+    plate = Prism(crossed(arm - ARM_BEYOND, reach, np.pi / 2), 0.0, rules.washer_thickness, (neck_hole(rules.size),))
     some = np.flatnonzero(has.any(axis=0))
     if not len(some):
         return []

@@ -18,10 +18,11 @@ from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.wording import rounded
 from lamella.hardware.classes import classes, rounded_down
+from lamella.hardware.fasteners import carriage_bolts, flange_nuts, neck_hole
 from lamella.hardware.item import Item, Places
 from lamella.hardware.node_frames import NodeFrames
-from lamella.hardware.rules import MM, NUT_HOLE, SEAT_PLAY, JointRules
-from lamella.hardware.shape import Prism, circle, crossed, hexagon, polygon, rhombus
+from lamella.hardware.rules import MM, SEAT_PLAY, JointRules
+from lamella.hardware.shape import Prism, crossed, rhombus
 from lamella.strip.lamellas import Lamellas
 
 KEY_STEP = 1e-3
@@ -90,7 +91,7 @@ def grid_joints(
     for kind, angle in enumerate(angle_values.tolist()):
         some = angle_class == kind
         # one hole for the neck: both washers of a node are the same part
-        star = Prism(crossed(length / 2, width / 2, np.radians(angle)), 0.0, thickness, (_square(size.neck),))
+        star = Prism(crossed(length / 2, width / 2, np.radians(angle)), 0.0, thickness, (neck_hole(size),))
         items.append(
             _item(
                 f"washer-{kind + 1}",
@@ -105,7 +106,9 @@ def grid_joints(
     items += keys
     above = thickness + (np.zeros(len(frames)) if clamp is None else clamp)
     grip = section.height + upper + lower + thickness + above
-    items += _bolts(rules, grip, on_top.moved(above), under.moved(np.full(len(frames), thickness)))
+    if len(frames):
+        items += carriage_bolts("bolt", rules, size, on_top.moved(above), grip)
+        items.append(flange_nuts("nut", rules, size, under.moved(np.full(len(frames), thickness))))
     return GridJoints(tuple(items), angle_play)
 
 
@@ -176,7 +179,7 @@ def _keys(
         for number, size in enumerate(sizes.tolist()):
             some = of_angle[key_class == number]
             turn = max(turn, float((half[some] + rules.play - size).max()) / size)
-            shape = Prism(rhombus(size, np.radians(angle)), -rules.washer_thickness, 0.0, (_square(rules.size.neck),))
+            shape = Prism(rhombus(size, np.radians(angle)), -rules.washer_thickness, 0.0, (neck_hole(rules.size),))
             items.append(
                 _item(
                     f"key-{len(items) + 1}",
@@ -211,40 +214,6 @@ def _key_sizes(half: Floats) -> tuple[Integers, Floats]:
     """Which of the sizes each node has, and these, m."""
     kind, smallest = classes(half, KEY_STEP, lowest=True)
     return kind, rounded_down(smallest, KEY_ROUNDING)
-
-
-def _bolts(rules: JointRules, grip: Floats, heads: Places, nuts: Places) -> list[Item]:
-    """Carriage bolts by length, and their nuts."""
-    size = rules.size
-    lengths = np.array([size.length(g) for g in grip.tolist()])
-    items = []
-    for number, length in enumerate(np.unique(lengths).tolist()):
-        shape = (
-            Prism(circle(size.head), 0.0, size.head_height),
-            Prism(circle(size.diameter), -length, 0.0),
-        )
-        items.append(
-            Item(
-                f"bolt-{number + 1}",
-                "bolt",
-                f"carriage bolt DIN 603 {size.name} x {MM * length:g}",
-                rules.material,
-                rules.density,
-                shape,
-                heads.chosen(lengths == length),
-                length=length,
-            )
-        )
-    if len(grip):
-        nut = Prism(hexagon(size.flats), 0.0, size.nut, (circle(NUT_HOLE * size.diameter),))
-        items.append(_item("nut-1", "nut", f"flange nut EN 1661 {size.name}", rules, nut, nuts))
-    return items
-
-
-def _square(side: float) -> Floats:
-    """Hole for a carriage bolt's neck, with a tenth of a millimetre of play on each side, m."""
-    reach = side / 2 + 1e-4
-    return polygon([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]])
 
 
 def _both(one: Places, other: Places) -> Places:

@@ -2,40 +2,18 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from lamella.base.drawing_origin import NOWHERE, Origin
 from lamella.files.whole import write_whole
+from lamella.files.write.table import Column, write_table
 from lamella.files.write.text import csv_comment, require_finite, rows
 from lamella.hardware.item import Hardware, Item
 from lamella.hardware.rules import MM
 
-
-@dataclass(frozen=True)
-class Column:
-    """A column of the hardware list; a new one is a line of `COLUMNS`.
-
-    Attributes
-    ----------
-    name : str
-        With its unit.
-    meaning : str
-        For the documentation, Markdown.
-    value : callable
-        What stands in an item's row.
-    """
-
-    name: str
-    meaning: str
-    value: Callable[[Item], object]
-
-
-COLUMNS = (
+COLUMNS: tuple[Column[Item], ...] = (
     Column("id", "of the kind of part", lambda item: item.id),
     Column("kind", "washer, key, bolt, nut, screw, block, ...", lambda item: item.kind),
     Column("description", "size and standard", lambda item: item.description),
@@ -55,11 +33,8 @@ PLACES_HEADER = "id,place,x_m,y_m,z_m,ax,ay,az,bx,by,bz"
 
 def write_hardware(path: Path, hardware: Hardware, *, name: str, version: str) -> None:
     """Write the list of kinds, a row each; OSError if it cannot be written whole."""
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        file.write(f"# lamella {csv_comment(version)} · project {csv_comment(name)}\n")
-        writer.writerow([column.name for column in COLUMNS])
-        writer.writerows([column.value(item) for column in COLUMNS] for item in hardware)
+    rows = ([column.value(item) for column in COLUMNS] for item in hardware)
+    write_table(path, [column.name for column in COLUMNS], rows, name=name, version=version)
 
 
 def write_places(path: Path, hardware: Hardware, *, name: str, version: str, origin: Origin = NOWHERE) -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
+from lamella.hardware.fasteners import flange_nuts, hexagon_screws
 from lamella.hardware.item import Item, Places
 from lamella.hardware.layer_faces import LayerFaces, ahead, ring
-from lamella.hardware.rules import MM, NUT_HOLE, SEAT_PLAY, JointRules
-from lamella.hardware.shape import Prism, circle, hexagon
+from lamella.hardware.rules import SEAT_PLAY, JointRules
 from lamella.strip.lamellas import Lamellas
 
 
@@ -40,39 +40,8 @@ def screws(
     end = ahead(faces.left[-1], faces.middles[-1], turned[:, 2]).max(axis=1) + SEAT_PLAY
     heads = Places(faces.middles[0] + begin[:, None] * axes[:, 2], axes, labels)
     nuts = Places(faces.middles[-1] + end[:, None] * turned[:, 2], turned, labels)
+    grip = np.linalg.norm(nuts.origins - heads.origins, axis=1)
     return [
-        *_by_length(rules, heads, np.linalg.norm(nuts.origins - heads.origins, axis=1), name),
-        _nuts(rules, nuts, name),
+        *hexagon_screws(f"{name}-screw", rules, size, heads, grip),
+        flange_nuts(f"{name}-nut", rules, size, nuts),
     ]
-
-
-def _by_length(rules: JointRules, heads: Places, grip: Floats, name: str) -> list[Item]:
-    size = rules.block_size
-    # rounded, so that equal ones have equal screws
-    lengths = np.array([size.length(g) for g in np.round(grip, 6).tolist()])
-    items = []
-    for number, length in enumerate(np.unique(lengths).tolist()):
-        shape = (
-            Prism(hexagon(size.flats), 0.0, size.hex_height),
-            Prism(circle(size.diameter), -length, 0.0),
-        )
-        items.append(
-            Item(
-                f"{name}-screw-{number + 1}",
-                "screw",
-                f"hexagon screw ISO 4017 {size.name} x {MM * length:g}",
-                rules.material,
-                rules.density,
-                shape,
-                heads.chosen(lengths == length),
-                length=length,
-            )
-        )
-    return items
-
-
-def _nuts(rules: JointRules, places: Places, name: str) -> Item:
-    size = rules.block_size
-    nut = Prism(hexagon(size.flats), 0.0, size.nut, (circle(NUT_HOLE * size.diameter),))
-    description = f"flange nut EN 1661 {size.name}"
-    return Item(f"{name}-nut-1", "nut", description, rules.material, rules.density, (nut,), places)

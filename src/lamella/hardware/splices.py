@@ -17,10 +17,11 @@ from lamella.base.errors import InputError
 from lamella.fabrication.flat import outline_points
 from lamella.fabrication.part import Part, Parts
 from lamella.hardware.bolts import BoltSize
+from lamella.hardware.fasteners import flange_nuts, hexagon_screws
 from lamella.hardware.item import Item, Places
 from lamella.hardware.layer_faces import ahead, ring
-from lamella.hardware.rules import MM, NUT_HOLE, SEAT_PLAY, JointRules
-from lamella.hardware.shape import Bent, Prism, circle, hexagon, rectangle
+from lamella.hardware.rules import MM, SEAT_PLAY, JointRules
+from lamella.hardware.shape import Bent, Prism, circle, rectangle
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 from lamella.strip.layer_map import LayerMap
@@ -245,17 +246,10 @@ def _screws(
         Places(np.concatenate([one for one, _ in ends]), np.concatenate([axes for _, axes in ends]), names)
         for ends in (heads, nuts)
     )
-    length = size.length(grip + CONTACT + 2 * SEAT_PLAY)
-    shape = (
-        Prism(hexagon(size.flats), 0.0, size.hex_height),
-        Prism(circle(size.diameter), -length, 0.0),
-    )
-    text = f"hexagon screw ISO 4017 {size.name} x {MM * length:g}"
-    of_nut = Prism(hexagon(size.flats), 0.0, size.nut, (circle(NUT_HOLE * size.diameter),))
-    same = (rules.material, rules.density)
+    every = np.full(len(head), grip + CONTACT + 2 * SEAT_PLAY)
     return [
-        Item("splice-screw-1", "screw", text, *same, shape, head, length=length),
-        Item("splice-nut-1", "nut", f"flange nut EN 1661 {size.name}", *same, (of_nut,), nut),
+        *hexagon_screws("splice-screw", rules, size, head, every),
+        flange_nuts("splice-nut", rules, size, nut),
     ]
 
 
