@@ -62,11 +62,12 @@ def linear_buckling(equilibrium: Equilibrium, count: int = 1) -> Buckling:
 
 def _about(tangent: Tangent, count: int) -> Buckling:
     equilibrium = tangent.equilibrium
-    loads, structure, state = equilibrium.loads, equilibrium.structure, equilibrium.state
+    loads, structure, state = equilibrium.loads, equilibrium.structure, equilibrium.whole
     if loads.natural.any():
         raise InputError("loads change the natural curvature", "give forces or motions", "loads.natural")
-    stress = structure.beams.law.stiffness * state.strain_rate(structure.gathered(tangent.motion()))
-    further = replace(state, lines=replace(state.lines, loads=loads.lines))
+    stress = state.stress_rate(structure.gathered(tangent.motion()))
+    lines = replace(state.beams.lines, loads=loads.lines)
+    further = replace(state, beams=replace(state.beams, lines=lines))
     geometric = [-block for block in further.geometric_stiffness(stress)]
     ratios, modes = tangent.modes(geometric, count)
     return Buckling(equilibrium, equilibrium.factor + ratios, modes)

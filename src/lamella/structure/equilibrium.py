@@ -12,6 +12,7 @@ from lamella.base.result import Result
 from lamella.structure.beam.beams import BeamState
 from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
 from lamella.structure.loads import Loads
+from lamella.structure.state import StructureState
 from lamella.structure.structure import Structure
 
 
@@ -44,26 +45,33 @@ class Equilibrium(Result):
         return f"load factor {self.factor:.6g}, {stable}, energy {self.energy:.6g} J"
 
     @cached_property
+    def whole(self) -> StructureState:
+        """Beams, cables and springs, with the natural curvature and the line loads of this load factor."""
+        return self.loads.state(self.structure, self.factor, self.poses)
+
+    @property
     def state(self) -> BeamState:
-        """The beams with the natural curvature and the line loads of this load factor."""
-        return self.loads.beams_at(self.structure.beams, self.factor, self.poses)
+        """The beams of `whole`."""
+        return self.whole.beams
 
     @property
     def energy(self) -> float:
         """Elastic energy, J."""
-        return float(self.state.energy.sum())
+        return self.whole.energy
 
     @cached_property
     def internal(self) -> Floats:
         """Derivative of elastic energy and line loads' potential with respect to the unknowns, (6 n + k,)."""
-        return self.structure.vector(self.state.forces())
+        return self.structure.vector(self.whole.forces())
 
     @property
     def reactions(self) -> Floats:
-        """Forces (N) and moments (N m) of the supports on the nodes, global, (n, 6); 0 where nothing is held."""
+        """Forces (N) and moments (N m) of supports and springs on the nodes, global, (n, 6); 0 where there are none."""
         nodes = slice(0, NODE_UNKNOWNS * len(self.poses.points))
         out = np.where(self.structure.held_unknowns, self.internal - self.loads.forces_at(self.factor), 0.0)
-        return np.asarray(out[nodes].reshape(-1, NODE_UNKNOWNS))
+        result = out[nodes].reshape(-1, NODE_UNKNOWNS)
+        result[self.structure.node_springs.nodes] -= self.whole.node_springs.forces().T
+        return np.asarray(result)
 
     @property
     def displacements(self) -> Floats:

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
-from lamella.structure.beam.beams import Beams, BeamState
 from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
+from lamella.structure.state import StructureState
 from lamella.structure.structure import Structure
 
 
@@ -45,11 +45,12 @@ class Loads:
         """Forces at the unknowns at a load factor, (6 n + k,)."""
         return np.asarray(self.constant_forces + factor * self.forces)
 
-    def beams_at(self, beams: Beams, factor: float, poses: Poses) -> BeamState:
-        """Beams in a pose under the line loads and natural curvatures of a load factor."""
+    def state(self, structure: Structure, factor: float, poses: Poses) -> StructureState:
+        """A structure in a pose under the line loads and natural curvatures of a load factor."""
+        beams = structure.beams
         if self.natural.any():
             beams = beams.with_natural(beams.law.natural + factor * self.natural)
-        return beams.at(poses, self.constant_lines + factor * self.lines)
+        return structure.at(poses, beams.at(poses, self.constant_lines + factor * self.lines))
 
 
 def no_loads(structure: Structure) -> Loads:

@@ -57,15 +57,15 @@ def step(start: Equilibrium, control: Control) -> Equilibrium:
     """
     structure, loads = start.structure, start.loads
     free, pattern = structure.free, structure.pattern
-    poses, factor, stress = start.poses, start.factor, start.state.stress
+    poses, factor, stress = start.poses, start.factor, start.whole.stress
     total, before = np.zeros(poses.unknowns), np.inf
     control.begin(start)
     for iteration in range(1, MOST_ITERATIONS + 1):
         trial = factor + control.ahead(iteration)
-        state = loads.beams_at(structure.beams, trial, poses)
+        state = loads.state(structure, trial, poses)
         blocks = state.stiffness(stress)
         residual = loads.forces_at(trial) - structure.vector(state.forces())
-        pull = pull_of(structure, loads, state)
+        pull = pull_of(structure, loads, state.beams)
         if loads.motions.any():
             by_motions = structure.multiplied(blocks, loads.motions)
             pull, residual = pull - by_motions, residual - (trial - factor) * by_motions
@@ -81,7 +81,7 @@ def step(start: Equilibrium, control: Control) -> Equilibrium:
         along += loads.motions
         more = control.more(iteration, total, motion, along)
         motion, factor = motion + more * along, trial + more
-        stress = structure.beams.law.stiffness * (state.strains.values + state.strain_rate(structure.gathered(motion)))
+        stress = state.expected(structure.gathered(motion))
         poses, total = poses.moved(motion), total + motion
         size = _size(motion, len(poses.points), structure.size)
         if not np.isfinite(size) or size > ROTATION_MAX or size > GROWTH_MAX * before:

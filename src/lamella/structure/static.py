@@ -35,7 +35,7 @@ def at_rest(structure: Structure, loads: Loads) -> Equilibrium:
         A part of the structure moves freely; no equilibrium is found.
     """
     own = Equilibrium(structure, loads, 0.0, structure.poses, 0, 0)
-    refuse_mechanism(structure, own.state.stiffness(own.state.stress))
+    refuse_mechanism(structure, own.whole.stiffness(own.whole.stress))
     try:
         return step(own, LoadControl(0.0))
     except StepError:

@@ -1,9 +1,9 @@
-"""A structure: beams on nodes, what is held, and its systems of equations."""
+"""A structure: beams on nodes, cables, springs, what is held, and its systems of equations."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -13,9 +13,13 @@ from lamella.base.errors import InputError
 from lamella.base.result import Lean
 from lamella.base.sparse import SymmetricPattern
 from lamella.base.vectors import diagonal
-from lamella.structure.beam.beams import Beams
+from lamella.structure.beam.beams import Beams, BeamState
 from lamella.structure.beam.columns import product
 from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
+from lamella.structure.cables import Cables, no_cables
+from lamella.structure.joint_springs import JointSprings, no_joint_springs
+from lamella.structure.node_springs import NodeSprings, no_node_springs
+from lamella.structure.state import StructureState
 
 # of the entries of a frame's square from the unit matrix; what rounding leaves in files of six digits is less
 NOT_A_ROTATION = 1e-5
@@ -34,12 +38,18 @@ class Structure(Lean):
         Shifts along and rotations about the global axes that supports hold.
     held_joints : (k,) bool
         Joints that are locked.
+    cables : Cables
+    node_springs : NodeSprings
+    joint_springs : JointSprings
     """
 
     poses: Poses
     beams: Beams
     held: Booleans
     held_joints: Booleans
+    cables: Cables = field(default_factory=no_cables)
+    node_springs: NodeSprings = field(default_factory=no_node_springs)
+    joint_springs: JointSprings = field(default_factory=no_joint_springs)
 
     def __post_init__(self) -> None:
         nodes = len(self.poses.points)
@@ -59,7 +69,7 @@ class Structure(Lean):
 
     def _check_poses(self) -> None:
         """Refuse poses that are no numbers or no rotations, and beams on what is not there."""
-        points, frames, on = self.poses.points, self.poses.frames, self.beams.attachment
+        points, frames = self.poses.points, self.poses.frames
         bad = np.flatnonzero(~np.isfinite(points).all(1))
         if len(bad):
             raise InputError(f"node {bad[0]} is at {points[bad[0]].tolist()}", "coordinates have to be finite", "poses")
@@ -71,14 +81,20 @@ class Structure(Lean):
                 "its columns are t, u = n x t and n, of unit length",
                 "poses",
             )
-        for what, numbers, count in (("node", on.nodes, len(points)), ("joint", on.joints, len(self.poses.angles))):
-            least = 0 if what == "node" else -1
+        joints = len(self.poses.angles)
+        for member, where, what, numbers, least, count in (
+            ("element", "beams", "node", self.beams.attachment.nodes, 0, len(points)),
+            ("element", "beams", "joint", self.beams.attachment.joints, -1, joints),
+            ("cable", "cables", "node", self.cables.attachment.nodes, 0, len(points)),
+            ("spring", "node_springs", "node", self.node_springs.nodes[:, None], 0, len(points)),
+            ("spring", "joint_springs", "joint", self.joint_springs.joints[:, None], 0, joints),
+        ):
             missing = np.flatnonzero(((numbers < least) | (numbers >= count)).any(1))
             if len(missing):
                 raise InputError(
-                    f"element {missing[0]} is on {what} {numbers[missing[0]].tolist()}",
+                    f"{member} {missing[0]} is on {what} {numbers[missing[0]].tolist()}",
                     f"there are {count}, the first is 0",
-                    "beams",
+                    where,
                 )
 
     @cached_property
@@ -98,8 +114,16 @@ class Structure(Lean):
 
     @cached_property
     def unknowns(self) -> list[Integers]:
-        """Of each element, in the groups of `Beams.unknowns`; -1: it has none there."""
-        return self.beams.unknowns(len(self.poses.points))
+        """Of each element; -1: it has none there. Groups: those of `Beams.unknowns`, cables, springs of nodes and of
+        joints."""
+        nodes = len(self.poses.points)
+        springs = [self.node_springs.unknowns(), self.joint_springs.unknowns(nodes)]
+        return [*self.beams.unknowns(nodes), self.cables.unknowns(nodes), *springs]
+
+    def at(self, poses: Poses, beams: BeamState) -> StructureState:
+        """In a pose, with its beams in it."""
+        turns = self.joint_springs.beyond(poses)
+        return StructureState(beams, self.cables.at(poses), self.node_springs.at(poses), self.joint_springs, turns)
 
     @cached_property
     def pattern(self) -> SymmetricPattern:
@@ -115,27 +139,27 @@ class Structure(Lean):
         return SymmetricPattern.from_pairs(one, other, len(self.free))
 
     def entries(self, blocks: list[Floats]) -> Floats:
-        """Entries in `pattern` of a matrix of element blocks, in the groups of `Beams.unknowns`."""
+        """Entries in `pattern` of a matrix of element blocks, in the groups of `unknowns`; last ones may be missing."""
         return self.pattern.assemble(np.concatenate([block[np.tril_indices(len(block))].ravel() for block in blocks]))
 
     def vector(self, parts: list[Floats]) -> Floats:
-        """Sum of element vectors, in the groups of `Beams.unknowns`, (6 n + k,)."""
+        """Sum of element vectors, in the groups of `unknowns`, of which last ones may be left out, (6 n + k,)."""
         size = self.poses.unknowns
         total = np.zeros(size + 1)
-        for unknowns, part in zip(self.unknowns, parts, strict=True):
+        for unknowns, part in zip(self.unknowns, parts, strict=False):
             # what has no unknown is counted to one place more
             places = np.where(unknowns < 0, size, unknowns)
             total += np.bincount(places.ravel(), part.ravel(), size + 1)
         return total[:-1]
 
     def gathered(self, motion: Floats) -> list[Floats]:
-        """A motion (6 n + k,) as elements have it, in the groups of `Beams.unknowns`."""
+        """A motion (6 n + k,) as elements have it, in the groups of `unknowns`."""
         padded = np.append(motion, 0.0)
         return [padded[unknowns] for unknowns in self.unknowns]
 
     def multiplied(self, blocks: list[Floats], motion: Floats) -> Floats:
         """Product of a matrix of element blocks with a motion (6 n + k,), (6 n + k,)."""
-        parts = [product(b, q) for b, q in zip(blocks, self.gathered(motion), strict=True)]
+        parts = [product(b, q) for b, q in zip(blocks, self.gathered(motion), strict=False)]
         return self.vector(parts)
 
 

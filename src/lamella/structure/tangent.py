@@ -23,7 +23,7 @@ class Tangent:
     ----------
     equilibrium : Equilibrium
     blocks : list of (m, k, k)
-        Of the elements, in the groups of `Beams.unknowns`.
+        Of the elements, in the groups of `Structure.unknowns`.
     entries : (nnz,)
         Of the matrix in the free unknowns, see `Structure.pattern`.
     factor : Factor
@@ -44,7 +44,7 @@ class Tangent:
             A motion meets no resistance.
         """
         structure = equilibrium.structure
-        blocks = equilibrium.state.stiffness(equilibrium.state.stress)
+        blocks = equilibrium.whole.stiffness(equilibrium.whole.stress)
         entries = structure.entries(blocks)
         try:
             factor = structure.pattern.factor(entries)

@@ -8,7 +8,6 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.result import Result
-from lamella.structure.beam.mass import consistent_mass
 from lamella.structure.equilibrium import Equilibrium
 from lamella.structure.tangent import Tangent
 
@@ -42,5 +41,5 @@ def vibration(equilibrium: Equilibrium, count: int = 1) -> Vibration:
     InputError
         The equilibrium is unstable, or a motion meets no resistance.
     """
-    ratios, modes = Tangent.of(equilibrium).modes(consistent_mass(equilibrium.state), count)
+    ratios, modes = Tangent.of(equilibrium).modes(equilibrium.whole.mass(), count)
     return Vibration(equilibrium, np.sqrt(ratios) / (2 * np.pi), modes)
