@@ -301,6 +301,12 @@ class FilesTable(Table):
         "they are at most 10,000 patches (10 MB).",
     )
 
+    solids: bool | None = Field(
+        default=None,
+        description="Whether model.3dm and model.glb hold the strips as solids with their thickness, slots and holes. "
+        "When not given, where [joint] is and they have at most a million triangles (some 60 MB).",
+    )
+
 
 class MaterialTable(Table):
     """A material of the project's own, SI units."""

@@ -16,6 +16,9 @@ from lamella.solid.solid import Solid
 from lamella.strip.lamellas import Lamellas
 from lamella.strip.layer_map import LayerMap
 
+AT_EDGE = 1e-6
+"""Share of the height within which a point lies on the strip's edge."""
+
 
 def strip_solid(part: Part, lamellas: Lamellas, row: int, *, step: float = 0.01) -> Solid:
     """One piece as it is built.
@@ -47,7 +50,14 @@ def layer_rows(part: Part, lamellas: Lamellas) -> range:
 
 def _flat(part: Part, outline: Floats) -> Floats:
     """Stations and heights of an outline's points, (n, 2), m."""
-    points = outline_points(outline)[:-1]
+    at_edge = np.abs(np.abs(_unrolled(part, outline[:, :2])[:, 1]) - part.height / 2) < AT_EDGE * part.height
+    # along the strip's edges the height does not change: arcs are straight lines of stations
+    straight = np.where(at_edge & np.roll(at_edge, -1), 0.0, outline[:, 2])
+    return _unrolled(part, outline_points(np.column_stack([outline[:, :2], straight]))[:-1])
+
+
+def _unrolled(part: Part, points: Floats) -> Floats:
+    """Stations and heights of points of the drawing, (n, 2), m."""
     stations = part.axis.stations(points)
     foot = part.place(stations, 0.0)
     heading = part.axis.heading(stations)

@@ -1,4 +1,4 @@
-"""Curves, points and repeated solids on a layer of their own, as stages add them to the model."""
+"""Curves, points and solids on a layer of their own, as stages add them to the model."""
 
 from __future__ import annotations
 
@@ -28,6 +28,8 @@ class Repeated:
         Name of each place.
     text : dict
         User text of the solid: `id`, where it is another one than the name, and more.
+    finish : str
+        "metal", "timber" or "fibre": what it looks like.
     """
 
     name: str
@@ -37,6 +39,31 @@ class Repeated:
     axes: Floats
     labels: tuple[str, ...]
     text: Mapping[str, str] = field(default_factory=dict)
+    finish: str = "metal"
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A solid in its place, like no other.
+
+    Attributes
+    ----------
+    name : str
+    vertices : (v, 3)
+        m.
+    triangles : (f, 3) int
+        Counter-clockwise seen from outside.
+    text : dict
+        User text: `id`, where it is another one than the name, and more.
+    finish : str
+        As that of `Repeated`.
+    """
+
+    name: str
+    vertices: Floats
+    triangles: Integers
+    text: Mapping[str, str] = field(default_factory=dict)
+    finish: str = "metal"
 
 
 @dataclass(frozen=True)
@@ -54,6 +81,7 @@ class DrawnLayer:
     colour : (int, int, int)
         Red, green, blue, 0 to 255.
     repeated : tuple of Repeated
+    bodies : tuple of Body
     """
 
     name: str
@@ -61,3 +89,4 @@ class DrawnLayer:
     points: tuple[Floats, ...] = ()
     colour: tuple[int, int, int] = (90, 90, 90)
     repeated: tuple[Repeated, ...] = ()
+    bodies: tuple[Body, ...] = ()

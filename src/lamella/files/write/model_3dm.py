@@ -8,7 +8,7 @@ import numpy as np
 import rhino3dm
 
 from lamella.base.arrays import Booleans, Floats, Integers
-from lamella.files.write.drawn_layer import DrawnLayer, Repeated
+from lamella.files.write.drawn_layer import Body, DrawnLayer, Repeated
 from lamella.files.write.nurbs_objects import nurbs_surface
 from lamella.files.write.rhino_blocks import add_block
 from lamella.files.write.rhino_file import IN_METRES, Frame, RhinoFile
@@ -122,16 +122,20 @@ class _Model:
             self.file.Objects.AddPoint(rhino3dm.Point3d(*self.rhino.placed(point).tolist()), attributes)
         for solid in layer.repeated:
             self._add_repeated(layer.name, solid)
+        for body in layer.bodies:
+            self._add_body(layer.name, body)
+
+    def _add_body(self, layer: str, body: Body) -> None:
+        """A mesh of a solid."""
+        require_finite(body.vertices)
+        text = {"id": body.name, **body.text}
+        attributes = self.rhino.attributes(layer, body.name, **text, version=self.version)
+        self.file.Objects.AddMesh(_mesh(self.rhino.placed(body.vertices), body.triangles), attributes)
 
     def _add_repeated(self, layer: str, solid: Repeated) -> None:
         """A block, and a reference to it for each place."""
         require_finite(solid.vertices, solid.origins, solid.axes)
-        mesh = rhino3dm.Mesh()
-        mesh.Vertices.UseDoublePrecisionVertices = True
-        for x, y, z in (solid.vertices / self.rhino.metres).tolist():
-            mesh.Vertices.AddPoint3d(x, y, z)
-        for a, b, c in solid.triangles.tolist():
-            mesh.Faces.AddFace(a, b, c)
+        mesh = _mesh(solid.vertices / self.rhino.metres, solid.triangles)
         definition = self.rhino.identity("block", solid.name)
         text = {"id": solid.name, **solid.text}
         inside = self.rhino.attributes(layer, f"{solid.name} block", **text, version=self.version)
@@ -227,6 +231,17 @@ class _Model:
             for i in members:
                 point = rhino3dm.Point(rhino3dm.Point3d(*points[i]))
                 self.file.Objects.Add(point, self.rhino.attributes(layer, str(i)))
+
+
+def _mesh(vertices: Floats, triangles: Integers) -> rhino3dm.Mesh:
+    """A mesh in double precision."""
+    mesh = rhino3dm.Mesh()
+    mesh.Vertices.UseDoublePrecisionVertices = True
+    for x, y, z in vertices.tolist():
+        mesh.Vertices.AddPoint3d(x, y, z)
+    for a, b, c in triangles.tolist():
+        mesh.Faces.AddFace(a, b, c)
+    return mesh
 
 
 def _known(followed: Booleans, first: int, end: int) -> tuple[int, int]:

@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-import numpy as np
-
 from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
 from lamella.base.progress import Progress
 from lamella.fabrication.parts import make_parts
 from lamella.fabrication.sheet import nest
-from lamella.files.write.drawn_layer import DrawnLayer, Repeated
-from lamella.hardware.item import Hardware, Item
+from lamella.files.whole import write_whole
+from lamella.files.write.drawn_layer import DrawnLayer
+from lamella.hardware.item import Hardware
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
 from lamella.stages.fabrication.defaults import cable_rules, check_fabrication, check_joint, joint_rules
@@ -25,23 +24,6 @@ from lamella.stages.lamellas.stage import strips_of
 from lamella.stages.network.stage import other_cells
 from lamella.stages.stage import File, Stage, Upstream
 from lamella.surface.surface import Surface
-
-COLOURS = {
-    "washer": (150, 150, 160),
-    "key": (120, 120, 130),
-    "bolt": (70, 70, 80),
-    "nut": (70, 70, 80),
-    "screw": (70, 70, 80),
-    "splice": (120, 120, 130),
-    "clamp": (120, 120, 130),
-    "cable": (40, 40, 40),
-    "block": (190, 170, 110),
-    "packer": (190, 170, 110),
-    "hub plate": (150, 110, 160),
-    "hub fin": (150, 110, 160),
-}
-"""Of the model's layers."""
-OTHER = (110, 110, 110)
 
 
 class FabricationStage(Stage[FabricationOutput]):
@@ -58,9 +40,13 @@ class FabricationStage(Stage[FabricationOutput]):
             "fabrication/hardware.csv, fabrication/places.csv, fabrication/plates.dxf",
             "where `[joint]` is given: the hardware, the place of every piece, and what of it is cut from plates",
         ),
+        ("model.glb", "where `[joint]` is given or `files.solids` is true: the same for viewers and renderers"),
     )
     figures = FIGURES
     report = ("Fabrication", REPORT)
+
+    def warned_by(self, project: Project) -> tuple[str, ...]:
+        return ("files",)
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
         return ("fabrication", "joint", "cables")
@@ -103,6 +89,10 @@ class FabricationStage(Stage[FabricationOutput]):
         named = ("fabrication.end_distance", "fabrication.hub_radius")
         yield from (with_keys(warning, *named) for warning in out.parts.warnings)
         yield from out.hardware.warnings
+        if up.project.joint is not None:
+            from lamella.stages.fabrication.scene import solids_left_out
+
+            yield from solids_left_out(up.project, out, up.outputs["lamellas"].lamellas)
 
     def files(self, out: FabricationOutput, up: Upstream) -> Iterator[File]:
         from lamella.fabrication.drawing import write_drawings
@@ -132,29 +122,19 @@ class FabricationStage(Stage[FabricationOutput]):
             yield File("fabrication/hardware.csv", lambda path: write_hardware(path, out.hardware, **signed))
             yield File("fabrication/places.csv", lambda path: write_places(path, out.hardware, **drawn))
             yield File("fabrication/plates.dxf", lambda path: write_plates(path, out.hardware, **signed))
+        if up.project.joint is not None or up.project.files.solids:
+            yield File("model.glb", lambda path: write_whole(path, self._glb(out, up)))
+
+    def _glb(self, out: FabricationOutput, up: Upstream) -> bytes:
+        from lamella.files.write.gltf import glb_bytes
+
+        signed: Any = {"name": up.project.name, "version": __version__}
+        return glb_bytes(self.scene(out, up), origin=drawing_origin(up.surface), **signed)
 
     def scene(self, out: FabricationOutput, up: Upstream) -> Iterator[DrawnLayer]:
-        for kind in dict.fromkeys(item.kind for item in out.hardware):
-            repeated = tuple(one for item in out.hardware.of(kind) for one in _repeated(item))
-            yield DrawnLayer(kind, colour=COLOURS.get(kind, OTHER), repeated=repeated)
+        from lamella.stages.fabrication.scene import hardware_layers, shows_solids, strip_layers
 
-
-def _repeated(item: Item) -> Iterator[Repeated]:
-    """A kind of hardware as a block of the model, or each piece as one of its own where pieces are bent."""
-    from lamella.solid.extrusion import item_solid, item_solids
-
-    places = item.places
-    text = {
-        "kind": item.kind,
-        "description": item.description,
-        "material": item.material,
-        "mass_kg": f"{item.mass:.6g}",
-    }
-    if item.bent:
-        here, axes = np.zeros((1, 3)), np.eye(3)[None]
-        for number, (label, solid) in enumerate(item_solids(item)):
-            inside = text | {"id": item.id}
-            yield Repeated(f"{item.id} {number + 1}", solid.vertices, solid.triangles, here, axes, (label,), inside)
-        return
-    solid = item_solid(item)
-    yield Repeated(item.id, solid.vertices, solid.triangles, places.origins, places.axes, places.labels, text)
+        lamellas = up.outputs["lamellas"].lamellas
+        if shows_solids(up.project, out, lamellas):
+            yield from strip_layers(out, lamellas, up.project.lamella.material)
+        yield from hardware_layers(out.hardware.items)
