@@ -21,6 +21,8 @@ from lamella.files.write.lamellas_json import COLUMNS, lamellas_schema
 from lamella.files.write.network_json import network_schema
 from lamella.files.write.optimise_json import optimise_schema
 from lamella.hardware.lists import COLUMNS as HARDWARE_LIST
+from lamella.project.load_tables import LIST_TABLES, RegionTable
+from lamella.project.structure_tables import PartialFactorsTable, SpringTable
 from lamella.project.tables import (
     FURTHER_TABLES,
     SURFACE_TABLES,
@@ -128,6 +130,13 @@ INNER_TABLES: dict[str, type[Table]] = {
     "adjust = {...}": AdjustTable,
 }
 
+# tables inside the others, by the tables they are in and their keys
+FURTHER_INNER: dict[str, dict[str, type[Table]]] = {
+    "structure": {"factors = {...}": PartialFactorsTable},
+    "support": {"spring = {...}": SpringTable},
+    "load": {"[[load.region]]": RegionTable},
+}
+
 
 def project_file_page() -> str:
     """docs/project-file.md."""
@@ -154,7 +163,9 @@ def project_file_page() -> str:
                 about = " ".join((inner.__doc__ or "").split())
                 parts += [f"#### `{name}`\n", f"{about}\n", _table_of(inner.model_fields, inner)]
     for name, model in FURTHER_TABLES.items():
-        parts += [f"## `[{name}]`\n", f"{model.__doc__}\n", _table_of(model.model_fields, model)]
+        parts += [f"## `[{name}]`\n", f"{model.__doc__}\n", _table_of(model.model_fields, model), *_inner(name)]
+    for name, model in LIST_TABLES.items():
+        parts += [f"## `[[{name}]]`\n", f"{model.__doc__}\n", _table_of(model.model_fields, model), *_inner(name)]
     parts += [
         "## `[materials.NAME]`\n",
         f"{MaterialTable.__doc__} Name it in `lamella.material`. A name with dots or spaces needs quotes: "
@@ -165,6 +176,12 @@ def project_file_page() -> str:
         _materials(),
     ]
     return "\n".join(parts)
+
+
+def _inner(name: str) -> Iterator[str]:
+    """Sections on the tables inside another."""
+    for key, inner in FURTHER_INNER.get(name, {}).items():
+        yield from (f"### `{key}`\n", f"{inner.__doc__}\n", _table_of(inner.model_fields, inner))
 
 
 def _table_of(fields: Any, model: type[Table]) -> str:
@@ -183,6 +200,8 @@ def _table_of(fields: Any, model: type[Table]) -> str:
 def _value(value: object) -> str:
     if value is None or value == "":
         return "-"
+    if isinstance(value, Table):
+        return "those of the table"
     return f"`{json.dumps(list(value) if isinstance(value, tuple) else value)}`"
 
 
@@ -192,7 +211,7 @@ def _type(choices: list[dict[str, Any]]) -> str:
 
 
 def _type_of(schema: dict[str, Any]) -> str:
-    names = {"number": "number", "integer": "whole number", "string": "text"}
+    names = {"number": "number", "integer": "whole number", "string": "text", "object": "table"}
     counts = {2: "two numbers", 3: "three numbers"}
     if "enum" in schema:
         return " or ".join(f'`"{word}"`' for word in schema["enum"])
@@ -203,7 +222,10 @@ def _type_of(schema: dict[str, Any]) -> str:
     if schema.get("type") == "array":
         if "prefixItems" in schema:
             return counts[len(schema["prefixItems"])]
-        return "list of points" if schema["items"].get("type") == "array" else "list of tables"
+        items = schema["items"]
+        if items.get("type") == "string":
+            return f"list of {_type_of(items)}"
+        return "list of points" if items.get("type") == "array" else "list of tables"
     return names.get(schema.get("type", ""), "")
 
 

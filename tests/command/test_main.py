@@ -16,8 +16,16 @@ import pytest
 from command.command_line import FILES, UNDULOID, contents, lamella
 from lamella import __version__
 from lamella.command.main import main
+from lamella.project.load_tables import LIST_TABLES
 from lamella.project.read import parse_project
-from lamella.project.tables import FURTHER_TABLES, SURFACE_TABLES, BoundaryTable, CablesTable, JointTable
+from lamella.project.structure_tables import StructureTable
+from lamella.project.tables import (
+    FURTHER_TABLES,
+    SURFACE_TABLES,
+    BoundaryTable,
+    CablesTable,
+    JointTable,
+)
 from messages import text_faults
 
 COMMANDS = ("run", "new", "check", "optimise", "examples", "schema")
@@ -99,7 +107,7 @@ def test_wrong_arguments(here: Path, capsys: pytest.CaptureFixture[str], argumen
 # --- new, check, examples, schema -------------------------------------------------------------------------------
 
 
-HEADER = re.compile(rf"(?:# )?\[+(surface|{'|'.join(FURTHER_TABLES)}|materials)\b.*?\]+")
+HEADER = re.compile(rf"(?:# )?\[+(surface|{'|'.join([*FURTHER_TABLES, *LIST_TABLES])}|materials)\b.*?\]+")
 
 
 @pytest.mark.parametrize("kind", SURFACE_TABLES)
@@ -116,7 +124,7 @@ def test_a_new_project_is_good_and_mentions_every_key(
             table = "boundary" if "boundary" in line else header[1]
         elif key := re.match(r"(?:# *)?([a-z]\w*) =", line):
             keys.add(f"{table}.{key[1]}")
-    models = {"surface": SURFACE_TABLES[kind], **FURTHER_TABLES}
+    models = {"surface": SURFACE_TABLES[kind], **FURTHER_TABLES, **LIST_TABLES}
     wanted = {f"{name}.{key}" for name, model in models.items() for key in model.model_fields}
     wanted -= {"surface.boundary"}
     assert wanted <= keys
@@ -153,13 +161,13 @@ def test_the_comments_of_a_new_project_are_its_defaults(
     )
     uncommented = re.sub(rf"^# (?!{others})([a-z]\w* = )", r"\1", text, flags=re.M)
     uncommented = uncommented.replace('# [materials."my steel"]', '[materials."my steel"]')
-    uncommented = re.sub(r"^# (\[(?:joint|cables)\])", r"\1", uncommented, flags=re.M)
+    uncommented = re.sub(r"^# (\[(?:joint|cables|structure)\])", r"\1", uncommented, flags=re.M)
     active, given = parse_project(tomllib.loads(uncommented)), parse_project(plain)
     # tables that do something by being there are commented out as a whole
-    whole = {"materials", "joint", "cables"}
+    whole = {"materials", "joint", "cables", "structure"}
     assert active.model_dump(exclude=whole) == given.model_dump(exclude=whole)
-    assert (given.joint, given.cables) == (None, None)
-    assert (active.joint, active.cables) == (JointTable(), CablesTable())
+    assert (given.joint, given.cables, given.structure) == (None, None, None)
+    assert (active.joint, active.cables, active.structure) == (JointTable(), CablesTable(), StructureTable())
 
 
 def test_new_to_the_screen_and_to_other_places(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,3 +14,14 @@ MOST_WAVES = 4
 MOST_MOVE, MOST_SCALE, MOST_TILT = 1000, 0.5, 45
 # of a net: a number of cells where neither that nor a spacing is given, and the least one
 DEFAULT_CELLS, CELLS_MIN = 24, 3
+# size of a load by kind, with its unit; what is beyond is a load in another unit: kN for N, N for kN, mm for m
+LOAD_LIMITS: dict[str, tuple[str, float, float]] = {
+    "self_weight": ("times the weight", 1e-3, 100),
+    "area": ("N/m2", 5, 1e5),
+    "line": ("N/m", 1, 1e6),
+    "point": ("N", 1, 1e7),
+    "temperature": ("K", 0.1, 500),
+    "settlement": ("m", 1e-6, 1),
+}
+# N/m and N m/rad of springs of supports and joints
+LEAST_STIFFNESS, MOST_STIFFNESS = 1e-3, 1e15

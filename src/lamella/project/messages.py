@@ -10,6 +10,7 @@ from pydantic_core import ErrorDetails
 
 from lamella.base.number_lists import Refusal
 from lamella.base.wording import cut, shown
+from lamella.project.load_tables import LIST_TABLES
 from lamella.project.tables import (
     FURTHER_TABLES,
     SURFACE_TABLES,
@@ -108,11 +109,14 @@ def _unknown(leaf: str, parent: dict[str, Any], at_top: bool) -> tuple[str, str]
     near = _nearest(leaf, parent)
     if leaf in Project.model_fields and not at_top:
         return "unknown key in this table", f"write {leaf} above all [tables]; keys of this table: {known}"
-    if leaf in BoundaryTable.model_fields and "boundary" in parent:
+    if leaf in BoundaryTable.model_fields and _model_of(getattr(parent.get("boundary"), "annotation", None)):
         return "unknown key here: it belongs in a table [[surface.boundary]]", "move it below [[surface.boundary]]"
     homes = [name for name, model in FURTHER_TABLES.items() if leaf in model.model_fields]
     if homes:
         return f"unknown key here: it belongs in the table [{homes[0]}]", f"move it below [{homes[0]}]"
+    lists = [name for name, model in LIST_TABLES.items() if leaf in model.model_fields]
+    if lists and not near:
+        return f"unknown key here: it belongs in a table [[{lists[0]}]]", f"move it below [[{lists[0]}]]"
     if near:
         return "unknown key" + _meant(near), f"write {near}; keys here: {known}"
     return "unknown key", f"keys here: {known}"

@@ -68,6 +68,9 @@ def _key(table: str, name: str, field: FieldInfo, active: dict[str, Any]) -> str
     value = active.get(f"{table}.{name}", value)
     if value is None:
         return "\n".join([*lines, f"# {name} ="])
+    if isinstance(value, BaseModel):
+        inside = ", ".join(f"{key} = {number}" for key, number in value.model_dump().items())
+        return "\n".join([*lines, f"# {name} = {{{inside}}}"])
     line = f"{name} = " + tomli_w.dumps({"x": value}, indent=0).partition(" = ")[2].strip().replace("\n", " ")
     line = line.replace("[ ", "[").replace(", ]", "]")
     written = required or f"{table}.{name}" in active or (bool(field.examples) and name == "scale")
@@ -81,6 +84,41 @@ def _table(name: str, model: type[BaseModel], active: dict[str, Any], skip: froz
     # a table that changes what is made by being there stands as a comment
     header = f"# [{name}]" if field.default is None and not field.is_required() else f"[{name}]"
     return "\n".join([*about, header, *keys])
+
+
+_ACTIONS = """\
+# What holds it and what acts on it; each of these tables may be there several times.
+# [[support]]
+#   boundary = "rim" # or the name of a curve; or ground, or near
+#   ground = 0.0 # [m] nodes below this height, up to
+#   tolerance = 0.01 # [m] above it
+#   near = [0.0, 0.0, 0.0] # [m] the nearest node, or all
+#   radius = 1.0 # [m] around it
+#   fixed = ["x", "y", "z"] # and "rx", "ry", "rz"
+#   spring = {z = 1e6} # [N/m], [N m/rad]
+
+# [[load]]
+#   name = "snow"
+#   kind = "area" # or "self_weight", "line", "point", "temperature", "settlement"
+#   category = "snow" # or "permanent", "wind", "H", ... for combinations of EN 1990
+#   value = 500 # [N/m2], [N/m], [N], [K], [m] by kind
+#   direction = [0.0, 0.0, -1.0] # or "normal": a pressure
+#   per = "plan" # or "true": area as seen along the direction, or of the surface
+#   coefficient = 0.8 # outside all tables [[load.region]] with their coefficients
+#   region = [{coefficient = -0.5, facing = [1.0, 0.0, 0.0]}] # or near and radius, low and high [m]
+#   psi = [0.5, 0.2, 0.0] # where they are not those of EN 1990
+#   group = "snow" # loads of one group never act together
+# Line loads have a boundary, point loads a place near and a moment = [0.0, 0.0, 0.0] [N m], settlements a place:
+#   boundary = "rim" # or ground with tolerance [m], or near with radius [m]
+#   ground = 0.0
+#   tolerance = 0.01
+#   near = [0.0, 0.0, 0.0]
+#   radius = 1.0
+#   moment = [0.0, 0.0, 0.0]
+
+# [[combination]]
+#   name = "snow full"
+#   factors = {snow = 1.5}"""
 
 
 def starter(kind: str, name: str, mesh: str = "surface.obj") -> str:
@@ -106,6 +144,7 @@ def starter(kind: str, name: str, mesh: str = "surface.obj") -> str:
         f"# Run it with:  lamella run FILE\n{tomli_w.dumps({'name': name}).strip()}",
         surface,
         *(_table(name, model, active) for name, model in FURTHER_TABLES.items()),
+        _ACTIONS,
         "# A material of your own (SI units), named in lamella.material:\n"
         '# [materials."my steel"]\n# density = 7850\n# youngs_modulus = 210e9\n# shear_modulus = 81e9\n'
         "# strength = 420e6",

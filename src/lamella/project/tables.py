@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 import tomli_w
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from lamella.base.limits import CELLS_MIN, DEFAULT_CELLS
 from lamella.base.material import MATERIALS, Material, find_material
@@ -21,6 +21,9 @@ from lamella.project.boundary_tables import (
     SlideTable,
 )
 from lamella.project.joint_table import CablesTable, JointTable
+from lamella.project.load_tables import LIST_TABLES, CombinationTable, LoadTable, check_actions
+from lamella.project.material_table import MaterialTable
+from lamella.project.structure_tables import StructureTable, SupportTable, check_list, list_key
 from lamella.project.surface_tables import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
 from lamella.project.values import (
     Name,
@@ -33,6 +36,7 @@ from lamella.project.values import (
 
 __all__ = [
     "FURTHER_TABLES",
+    "LIST_TABLES",
     "MATERIALS",
     "SURFACE_TABLES",
     "AdjustTable",
@@ -308,18 +312,6 @@ class FilesTable(Table):
     )
 
 
-class MaterialTable(Table):
-    """A material of the project's own, SI units."""
-
-    density: float = number("Density.", "kg/m3", gt=0, le=30000)
-    youngs_modulus: float = number("Young's modulus along the strip.", "Pa", ge=1e6, le=1e13)
-    shear_modulus: float = number("Shear modulus.", "Pa", ge=1e5, le=1e13)
-    strength: float = number("Limit of the normal (von Mises) stress.", "Pa", ge=1e3, le=1e11)
-    shear_strength: float | None = number(
-        "Limit of the shear stress where it is not that of von Mises (timber).", "Pa", ge=1e3, le=1e11, default=None
-    )
-
-
 # tables that may be left out, in the order of the documentation
 FURTHER_TABLES: dict[str, type[Table]] = {
     "network": NetworkTable,
@@ -327,6 +319,7 @@ FURTHER_TABLES: dict[str, type[Table]] = {
     "fabrication": FabricationTable,
     "joint": JointTable,
     "cables": CablesTable,
+    "structure": StructureTable,
     "files": FilesTable,
 }
 
@@ -349,11 +342,30 @@ class Project(Table):
     fabrication: FabricationTable = FabricationTable()
     joint: JointTable | None = Field(default=None, description=(JointTable.__doc__ or "").strip())
     cables: CablesTable | None = Field(default=None, description=(CablesTable.__doc__ or "").strip())
+    structure: StructureTable | None = Field(default=None, description=(StructureTable.__doc__ or "").strip())
+    support: Annotated[tuple[SupportTable, ...], Field(strict=False)] | None = list_key(SupportTable)
+    load: Annotated[tuple[LoadTable, ...], Field(strict=False)] | None = list_key(LoadTable)
+    combination: Annotated[tuple[CombinationTable, ...], Field(strict=False)] | None = list_key(CombinationTable)
     files: FilesTable = FilesTable()
     materials: dict[Name, MaterialTable] = Field(default={}, description="Materials by name.")
 
+    @field_validator(*LIST_TABLES, mode="before")
+    @classmethod
+    def _lists(cls, value: Any, info: ValidationInfo) -> Any:
+        return check_list(value, str(info.field_name))
+
+    @model_validator(mode="before")
+    @classmethod
+    def _analysed(cls, values: Any) -> Any:
+        # what holds it and what acts on it asks for the structure's analysis
+        if isinstance(values, dict) and "structure" not in values and set(LIST_TABLES) & set(values):
+            return values | {"structure": {}}
+        return values
+
     @model_validator(mode="after")
     def _possible(self) -> Project:
+        if self.structure is not None:
+            check_actions(self.structure, self.load or (), self.combination or ())
         if self.joint is not None and self.joint.slot_width is not None and self.fabrication.slot_width is not None:
             raise Refusal(
                 f"slot_width is given twice: {self.joint.slot_width:g} m here and {self.fabrication.slot_width:g} m in "
