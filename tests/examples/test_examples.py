@@ -417,6 +417,7 @@ def test_every_example_has_its_number():
 
 @pytest.mark.parametrize("name", NUMBERS)
 def test_example(name):
+    """Each example has the physical number that it stands for: a closed form, or a figure found on finer elements."""
     number, tolerance = NUMBERS[name]
     results = run_of_example(name)
     found, known = number(results)

@@ -14,6 +14,7 @@ NAMES = ["06_scherk", "10_saddle"]
 
 @pytest.mark.parametrize("name", NAMES)
 def test_examples_say_the_same_under_other_kernels(name: str) -> None:
+    """Figures of the summary within their own accuracy, counts and warnings alike, under older kernels."""
     own = orjson.loads(orjson.dumps(run_of_example(name).summary, option=orjson.OPT_SERIALIZE_NUMPY))
     found = {kernel: list(differences(own, summary_under(kernel, name), own)) for kernel in KERNELS}
     assert not any(found.values()), found

@@ -92,6 +92,7 @@ COSTLY = pytest.mark.slow
 
 @pytest.mark.parametrize("layout", [pytest.param(k, marks=COSTLY) if k == "four layers" else k for k in LAYOUTS])
 def test_no_two_solids_overlap(layout: str) -> None:
+    """Strips, washers, bolts and blocks have no volume in common, at eight nodes of each layout."""
     make, section = LAYOUTS[layout]
     lamellas = make().strips(section)
     # ends short enough not to meet beyond the rim
@@ -132,6 +133,7 @@ def test_cables_and_clamps_are_clear_of_the_joints() -> None:
 
 @pytest.mark.parametrize(("order", "layers"), [(3, 2), (4, 2), (5, 2), pytest.param(3, 4, marks=COSTLY)])
 def test_hubs_of_6_8_and_10_rays_are_clear_of_everything(order: int, layers: int) -> None:
+    """Plates, fins, packers and screws of hubs at singular nodes, against each other and all strips."""
     lamellas = lamella.net(lamella.Enneper(order, 0.8, 3.0), cells=10).strips(Section(0.08, 0.001, layers, 0.02))
     rules = JointRules()
     made = make_hardware(lamellas, lamellas.parts(hub_radius=0.08), rules)
