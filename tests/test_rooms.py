@@ -72,6 +72,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "structure": ("base", "structure.beam"),
     "structure.beam": ("base", "strip"),
     "structure.actions": ("base", "surface", "network", "hardware"),
+    "structure.model": ("base", "network", "strip", "hardware", "structure", "structure.beam", "structure.actions"),
     "fabrication": ("base", "network", "strip", "files.write"),
     "hardware": ("base", "network", "strip", "fabrication", "files", "files.write"),
     "solid": ("base", "network", "strip", "fabrication", "hardware"),

@@ -1,0 +1,1 @@
+"""From lamellas of a net to a structure of beams, cables and springs."""

@@ -1,0 +1,182 @@
+"""The structural model of a net: beams along its lamellas, joints, cables, supports."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.result import Result
+from lamella.base.wording import counted
+from lamella.hardware.rules import CableRules
+from lamella.strip.lamellas import Lamellas
+from lamella.structure.actions.node_supports import NodeSupports
+from lamella.structure.beam.beams import Beams, make_beams
+from lamella.structure.beam.cross_section import flat_strip
+from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
+from lamella.structure.joint_springs import JointSprings, make_joint_springs, no_joint_springs
+from lamella.structure.model.block_nodes import block_places
+from lamella.structure.model.bracing import brace
+from lamella.structure.model.curve_samples import CurveSamples
+from lamella.structure.model.divisions import Divisions
+from lamella.structure.model.layer_sections import layers_section
+from lamella.structure.model.lines import Lines
+from lamella.structure.model.node_poses import bare_nodes, joint_numbers, node_frames
+from lamella.structure.model.rules import ModelRules
+from lamella.structure.model.slots import slotted
+from lamella.structure.node_springs import make_node_springs
+from lamella.structure.structure import Structure
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Model(Result):
+    """A net as a structure.
+
+    Attributes
+    ----------
+    lamellas : Lamellas
+    rules : ModelRules
+    structure : Structure
+        Its first nodes are those of the network, in its order; its joints are at `joint_nodes`.
+    lines : Lines
+        Which element is where.
+    joint_nodes : (k,) int
+        Node of the network of each joint; none where joints are locked.
+    supports : NodeSupports
+    """
+
+    lamellas: Lamellas
+    rules: ModelRules
+    structure: Structure
+    lines: Lines
+    joint_nodes: Integers
+    supports: NodeSupports
+
+    def _line(self) -> str:
+        structure = self.structure
+        return (
+            f"{counted(len(structure.beams), 'element')}, {counted(len(structure.poses.points), 'node')}, "
+            f"{counted(len(self.joint_nodes), 'joint')}, {counted(len(structure.cables), 'cable')}"
+        )
+
+    @property
+    def nodes(self) -> int:
+        """Of the network."""
+        return len(self.lamellas.network.node_points)
+
+
+def make_model(
+    lamellas: Lamellas,
+    supports: NodeSupports,
+    rules: ModelRules | None = None,
+    *,
+    cables: CableRules | None = None,
+) -> Model:
+    """The model of a net as it was designed: curved and twisted strips, whose natural state is flat.
+
+    Nothing is imposed: the residual stress is what strips have that were cut straight, or to one radius, and are where
+    they were designed to be.
+
+    Parameters
+    ----------
+    lamellas : Lamellas
+    supports : NodeSupports
+        Of the network's nodes.
+    rules : ModelRules, optional
+    cables : CableRules, optional
+        Default: no cables.
+
+    Raises
+    ------
+    InputError
+        Rules that contradict each other.
+    """
+    rules = ModelRules() if rules is None else rules
+    network, section = lamellas.network, lamellas.section
+    joints = joint_numbers(network)
+    loose = rules.joints != "locked"
+    angles = np.zeros(int((joints >= 0).sum()) if loose else 0)
+    poses = Poses(network.node_points, node_frames(network), angles)
+    divisions = Divisions.of(network, rules.elements, rules.hub_radius)
+    if rules.layers == "each" and section.layers > 1:
+        poses, lines = _layer_lines(lamellas, divisions, poses, rules)
+        kind = flat_strip(lamellas.material, section.height, section.thickness)
+    else:
+        centre = CurveSamples.of_centre_lines(network)
+        lines = Lines.along(lamellas, centre, divisions, poses, _at_nodes(lamellas, divisions), -1)
+        kind = layers_section(lamellas.material, section)
+    poses = _with_inner(poses, lines)
+    beams = make_beams(
+        lines.nodes,
+        lines.length,
+        kind,
+        natural=(0.0, -network.normal_curvature, 0.0),
+        turns=lines.turns,
+        offsets=lines.offsets,
+        joints=lines.joints,
+    )
+    if rules.slots == "reduced":
+        beams = slotted(beams, lines.crossed.sum(1).astype(float), section.height, rules.slot_width)
+    structure = _supported(lamellas, poses, beams, supports)
+    structure = replace(
+        structure, cables=brace(network, poses, cables, section.height), joint_springs=_springs(poses, rules)
+    )
+    return Model(lamellas, rules, structure, lines, np.flatnonzero(joints >= 0) if loose else joints[:0], supports)
+
+
+def _at_nodes(lamellas: Lamellas, divisions: Divisions) -> Integers:
+    """Node of the network at the ends of edges, -1 between them, (e, elements + 1)."""
+    shared = np.full(divisions.arclengths.shape, -1)
+    shared[:, [0, -1]] = lamellas.network.stop_nodes[divisions.stops]
+    return shared
+
+
+def _layer_lines(lamellas: Lamellas, divisions: Divisions, poses: Poses, rules: ModelRules) -> tuple[Poses, Lines]:
+    """Lines of all layers, and the nodes with those of the shear blocks."""
+    network = lamellas.network
+    shared = _at_nodes(lamellas, divisions)
+    blocks = block_places(network, divisions, rules.block_spacing)
+    shared[blocks] = len(poses.points) + np.arange(int(blocks.sum()))
+    lamella = np.broadcast_to(divisions.lamella[:, None], blocks.shape)
+    points, frames = CurveSamples.of_centre_lines(network).at(lamella[blocks], divisions.arclengths[blocks])
+    poses = replace(poses, points=np.concatenate((poses.points, points)), frames=np.concatenate((poses.frames, frames)))
+    lines: Lines | None = None
+    there = poses
+    for row in range(lamellas.section.layers):
+        own = Lines.along(lamellas, CurveSamples.of_layer(lamellas, row), divisions, there, shared, row)
+        there = _with_inner(there, own)
+        lines = own if lines is None else lines.joined(own)
+    assert lines is not None
+    return poses, lines
+
+
+def _with_inner(poses: Poses, lines: Lines) -> Poses:
+    return replace(
+        poses,
+        points=np.concatenate((poses.points, lines.points)),
+        frames=np.concatenate((poses.frames, lines.frames)),
+    )
+
+
+def _supported(lamellas: Lamellas, poses: Poses, beams: Beams, supports: NodeSupports) -> Structure:
+    """The structure on its supports; nodes that no lamella reaches are held."""
+    count = len(lamellas.network.node_points)
+    held, springs = np.zeros((len(poses.points), NODE_UNKNOWNS), bool), np.zeros((len(poses.points), NODE_UNKNOWNS))
+    held[:count], springs[:count] = supports.fixed, supports.springs
+    held[bare_nodes(lamellas.network)] = True
+    springs[held] = 0.0
+    free: Booleans = np.zeros(len(poses.angles), bool)
+    return Structure(poses, beams, held, free, node_springs=make_node_springs(poses, springs))
+
+
+def _springs(poses: Poses, rules: ModelRules) -> JointSprings:
+    if rules.joints != "springs" or not len(poses.angles):
+        return no_joint_springs()
+    return make_joint_springs(poses, rules.joint_stiffness, gap=rules.joint_gap)
+
+
+def line_weights(model: Model) -> Floats:
+    """Mass of the elements per natural length, kg/m, (m,)."""
+    beams = model.structure.beams
+    return np.array([section.mass for section in beams.sections], float)[beams.section]
