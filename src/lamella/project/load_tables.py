@@ -189,6 +189,11 @@ class LoadTable(PlacedTable):
             raise Refusal(f"a load of kind {self.kind!r} is of category {own!r}", "leave category out", "category")
         return self
 
+    @property
+    def acts_as(self) -> str:
+        """Category of the action; permanent where nothing says otherwise."""
+        return self.category or _OWN_CATEGORY.get(self.kind, "permanent")
+
     def _check_value(self) -> None:
         """Refuse sizes that are meant in another unit."""
         unit, least, most = LOAD_LIMITS[self.kind]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -10,6 +11,8 @@ from lamella.base.arrays import Booleans, Floats
 from lamella.base.errors import InputError
 from lamella.base.result import Result
 from lamella.base.wording import counted
+from lamella.network.network import Network
+from lamella.structure.actions.places import NamedRims, Place, nodes_at
 
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 """Shifts along and rotations about the global axes, in the order of a node's unknowns."""
@@ -60,3 +63,43 @@ class NodeSupports(Result):
 def no_supports(count: int) -> NodeSupports:
     """Nothing holds so many nodes."""
     return NodeSupports(np.zeros((count, len(DIRECTIONS)), bool), np.zeros((count, len(DIRECTIONS))))
+
+
+@dataclass(frozen=True)
+class SupportRule:
+    """What is held in a place.
+
+    Attributes
+    ----------
+    place : Place
+    fixed : tuple of str
+        Of `DIRECTIONS`.
+    springs : mapping
+        Stiffness by direction, N/m and N m/rad.
+    """
+
+    place: Place
+    fixed: tuple[str, ...] = ("x", "y", "z")
+    springs: Mapping[str, float] = field(default_factory=dict)
+
+
+def supports_of(network: Network, rules: Sequence[SupportRule], rims: NamedRims) -> NodeSupports:
+    """Supports of a net's nodes: where rules share a node, what one of them fixes is fixed, and springs add up.
+
+    Raises
+    ------
+    InputError
+        A rule that holds no node, its number in `where` ("supports[1].ground").
+    """
+    none = no_supports(len(network.node_points))
+    fixed, springs = none.fixed, none.springs
+    for k, rule in enumerate(rules):
+        try:
+            nodes = nodes_at(network, rule.place, rims)
+        except InputError as error:
+            raise InputError(error.message, error.remedy, f"supports[{k}].{error.where}") from None
+        for way in rule.fixed:
+            fixed[nodes, DIRECTIONS.index(way)] = True
+        for way, stiffness in rule.springs.items():
+            springs[nodes, DIRECTIONS.index(way)] += stiffness
+    return NodeSupports(fixed, np.where(fixed, 0.0, springs))
