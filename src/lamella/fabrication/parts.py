@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 import numpy as np
 
-from lamella.base.arrays import Booleans, Floats
+from lamella.base.arrays import Floats, Integers
 from lamella.fabrication.axis import Axis, outline
 from lamella.fabrication.collisions import end_collisions
 from lamella.fabrication.defaults import default_end_distance, default_hub_radius, default_slot_width
@@ -15,7 +15,9 @@ from lamella.fabrication.flat import outline_area
 from lamella.fabrication.layer_strips import LayerStrip, LayerStrips
 from lamella.fabrication.part import Part, Parts
 from lamella.fabrication.rules import LENGTH_ROUNDING, Rules
-from lamella.fabrication.splitting import cut_stations
+from lamella.fabrication.spans import Span
+from lamella.fabrication.splits import split
+from lamella.fabrication.stock import Supply
 from lamella.fabrication.warnings import FabricationWarnings
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas, Section, crossings
@@ -34,6 +36,10 @@ def make_parts(
     foot_radius: float = 0.0,
     sheet: tuple[float, float] = (12.0, 2.0),
     gap: float = 0.01,
+    transport_length: float | None = None,
+    supply: Supply | None = None,
+    borders: Sequence[Integers] | None = None,
+    splice_room: float = 0.0,
     others: Callable[[Callable[[Network, Lamellas], bool]], str] | None = None,
 ) -> Parts:
     """Flat parts of every lamella.
@@ -62,6 +68,14 @@ def make_parts(
         Length and width of the sheets parts are cut from, m.
     gap : float
         Between parts, and from parts to the sheet's edge, m.
+    transport_length : float, optional
+        Longest part allowed, m.
+    supply : Supply, optional
+        Stock with which the splices of long strips are chosen, instead of the sheet.
+    borders : sequence of (b,) int, optional
+        Of each lamella: cells in whose middle it is cut, by the number of the node before.
+    splice_room : float
+        Half a splice and what it keeps from a slot, m; with stock no cut is nearer to a slot.
     others : callable, optional
         Finds another number of cells whose net and lamellas have no such fault, in words.
 
@@ -85,6 +99,9 @@ def make_parts(
         foot_radius=foot_radius,
         sheet=sheet,
         gap=gap,
+        transport_length=transport_length,
+        supply=supply,
+        splice_room=splice_room,
     )
     if slot_width is None:
         slot_width = default_slot_width(lamellas.section.thickness)
@@ -102,9 +119,20 @@ def make_parts(
         foot_radius=foot_radius,
         sheet=sheet,
         gap=gap,
+        transport_length=np.inf if transport_length is None else transport_length,
     )
     rules.check()
-    parts, before, after = _all_parts(network, strips, rules, notes)
+    spans = _spans(network, strips, rules, notes)
+    cuts = split(
+        spans,
+        rules,
+        notes,
+        quantity=1 if strips.kinds > 1 else rules.layers,
+        supply=supply,
+        borders=borders,
+        reach=splice_room,
+    )
+    parts, before, after = _all_parts(network, spans, cuts, rules, notes)
     notes.collisions, notes.too_far = end_collisions(network, before, after, strips.reach)
     if others and notes.collisions and not notes.ends_help(rules):
         notes.other_cells = others(lambda net, there: make(net, there).colliding)
@@ -143,100 +171,57 @@ def _hub_radius(
     return radius
 
 
-def _all_parts(
-    network: Network, strips: LayerStrips, rules: Rules, notes: FabricationWarnings
-) -> tuple[list[Part], Floats, Floats]:
-    """Parts of all lamellas; how far each lamella's reach beyond its first and its last node at most, m, (m,)."""
+def _spans(network: Network, strips: LayerStrips, rules: Rules, notes: FabricationWarnings) -> list[Span]:
+    """All strips of which something remains between their ends."""
     crossing, singular = crossings(network), network.node_kinds == SINGULAR
-    longest = rules.longest_on_sheet
-    parts: list[Part] = []
-    before, after = np.full((2, len(network.ids)), -np.inf)
+    spans = []
     for index in range(len(network.ids)):
-        stops = slice(int(network.stop_offsets[index]), int(network.stop_offsets[index + 1]))
-        nodes = network.stop_nodes[stops]
+        nodes = network.stop_nodes[int(network.stop_offsets[index]) : int(network.stop_offsets[index + 1])]
         family, closed = str(network.families[index]), bool(network.closed[index])
         for strip in strips.of_lamella(index):
-            pieces = list(
-                _lamella_parts(strip, family, closed, crossing[nodes], singular[nodes], rules, longest, notes)
-            )
-            if pieces:
-                before[index] = max(before[index], strip.stations[0] - pieces[0].start)
-                after[index] = max(after[index], pieces[-1].end - strip.stations[-1])
-            parts.extend(pieces)
+            span = Span.of(strip, family, closed, crossing[nodes], singular[nodes], rules)
+            if span.length > rules.slot_width:
+                spans.append(span)
+            else:
+                notes.left_out.append(strip.name)
+    return spans
+
+
+def _all_parts(
+    network: Network, spans: Sequence[Span], cuts: Sequence[Floats], rules: Rules, notes: FabricationWarnings
+) -> tuple[list[Part], Floats, Floats]:
+    """Parts of all strips; how far each lamella's reach beyond its first and its last node at most, m, (m,)."""
+    parts: list[Part] = []
+    before, after = np.full((2, len(network.ids)), -np.inf)
+    for span, own in zip(spans, cuts, strict=True):
+        if span.length > rules.longest_ring and not len(own):
+            notes.left_out.append(span.strip.name)
+            continue
+        parts.extend(_pieces(span, own, rules, notes))
+        index, stations = span.strip.lamella, span.strip.stations
+        before[index] = max(before[index], stations[0] - span.start)
+        after[index] = max(after[index], span.end - stations[-1])
     return parts, before, after
 
 
-def _lamella_parts(
-    strip: LayerStrip,
-    family: str,
-    closed: bool,
-    crossing: Booleans,
-    hub: Booleans,
-    rules: Rules,
-    longest: float,
-    notes: FabricationWarnings,
-) -> Iterator[Part]:
+def _pieces(span: Span, cuts: Floats, rules: Rules, notes: FabricationWarnings) -> Iterator[Part]:
     """Parts of one strip."""
-    stations, shifts, width = strip.stations, strip.shifts, strip.slot_width
-    if closed:
-        # the ring opens in the middle of its last cell, so that no slot lies at the cut
-        half = 0.5 * float(stations[-1] - stations[-2])
-        start, end = float(stations[0]) - half, float(stations[-1]) - half
-        stations, crossing, shifts, width = stations[:-1], crossing[:-1], shifts[:-1], width[:-1]
-    else:
-        # little beyond the rim, lest strips meet their neighbours out there, unless the last slot asks for more
-        at, room = stations[crossing], np.maximum(rules.end_distance, 1.5 * width[crossing] / rules.edge_scale)
-        first = np.min(np.append(at + shifts[crossing, 0] - room, stations[0] - rules.rim_overhang))
-        last = np.max(np.append(at + shifts[crossing, -1] + room, stations[-1] + rules.rim_overhang))
-        start = float(stations[0] + rules.hub_radius if hub[0] else first)
-        end = float(stations[-1] - rules.hub_radius if hub[-1] else last)
-    if end - start <= rules.slot_width:
-        notes.left_out.append(strip.name)
-        return
-    cuts = _cuts(strip.name, start, end, stations, rules, longest, notes)
-    if end - start > rules.longest_ring and not len(cuts):
-        notes.left_out.append(strip.name)
-        return
-    bounds = np.concatenate(([start], cuts, [end]))
+    strip, stations, crossing, width = span.strip, span.stations, span.crossing, span.width
+    bounds = np.concatenate(([span.start], cuts, [span.end]))
     for piece, (low, high) in enumerate(zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)):
         # a hub's node lies beyond the strip's end but belongs to its first or last piece
         inside = (stations > (low if piece else -np.inf)) & (stations < (high if piece < len(cuts) else np.inf))
         yield _part(
             f"{strip.name}.{piece + 1}" if len(cuts) else strip.name,
             strip,
-            family,
+            span.family,
             strip.axis(low, high),
             stations[inside],
-            (stations[:, None] + shifts)[inside & crossing],
+            (stations[:, None] + span.shifts)[inside & crossing],
             float(width[inside & crossing].max(initial=rules.slot_width)),
             rules,
             notes,
         )
-
-
-def _cuts(
-    name: str,
-    start: float,
-    end: float,
-    stations: Floats,
-    rules: Rules,
-    longest: float,
-    notes: FabricationWarnings,
-) -> Floats:
-    """Where a lamella is split; notes why."""
-    cuts = cut_stations(start, end, stations, min(longest, rules.longest_ring))
-    if cuts is None:
-        notes.oversize.append((name, end - start))
-        cuts = cut_stations(start, end, stations, rules.longest_ring)
-    if cuts is None:
-        return np.empty(0)
-    if len(cuts):
-        notes.pieces += len(cuts) + 1
-        if end - start > rules.longest_ring:
-            notes.too_round += 1
-        else:
-            notes.too_long.append(end - start)
-    return cuts
 
 
 def _part(

@@ -8,12 +8,13 @@ import numpy as np
 
 from lamella.base.errors import InputError
 from lamella.base.wording import rounded
+from lamella.cutting.lanes import LENGTH_ROUNDING
 from lamella.fabrication.flat import longest_fitting
+
+__all__ = ["LARGEST_TURN", "LENGTH_ROUNDING", "Rules", "clear_hub", "edge_scale"]
 
 # a flat ring closer to a full turn than this would leave its ends no room
 LARGEST_TURN = 1.9 * np.pi
-# m; what computed lengths of parts, which are metres long and cut to a tenth of a millimetre, differ by in rounding
-LENGTH_ROUNDING = 1e-9
 
 
 def clear_hub(rays: int, layers: int, offset: float, thickness: float) -> float:
@@ -65,6 +66,8 @@ class Rules:
         Of the corners of a slot's foot, m.
     bow : float
         How far outlines of layers that are cut to their own curvature leave the others' at most, m.
+    transport_length : float
+        Longest part allowed, m.
     """
 
     layers: int
@@ -82,6 +85,7 @@ class Rules:
     slot_play: float = 0.0
     foot_radius: float = 0.0
     bow: float = 0.0
+    transport_length: float = np.inf
 
     @property
     def edge_scale(self) -> float:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from bisect import bisect_left, insort
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from math import cos, sin, sqrt
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
 from lamella.base.result import Shown
 from lamella.base.wording import counted
-from lamella.fabrication.part import Part, Parts
+from lamella.fabrication.blanks import Blank, blank_of, longest_first
+from lamella.fabrication.columns import stacked
+from lamella.fabrication.part import Parts
 from lamella.fabrication.rules import LENGTH_ROUNDING
+from lamella.fabrication.stock import Stock
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,6 +42,8 @@ class Nesting(Shown):
         Between pieces and to the sheet's edge, m.
     source : Parts
         The parts.
+    stocks : tuple of Stock
+        What each sheet is of, where it is cut from given stock (a bar, a coil as far as it is unrolled); else empty.
 
     Examples
     --------
@@ -62,6 +66,7 @@ class Nesting(Shown):
     oversize: int
     gap: float
     source: Parts = field(compare=False)
+    stocks: tuple[Stock, ...] = ()
 
     def _line(self) -> str:
         larger = f", {self.oversize} of them larger than requested" if self.oversize else ""
@@ -71,22 +76,6 @@ class Nesting(Shown):
     def sheet_count(self) -> int:
         """Number of sheets."""
         return len(self.sizes)
-
-
-@dataclass(frozen=True)
-class _Blank:
-    """A piece turned so that it opens upwards: its tips, not its middle, are its highest points."""
-
-    piece: int
-    half_width: float
-    bow: float
-    top: float
-    bottom: float
-    length: float
-    half_angle: float
-    radius: float
-    height: float
-    turned: bool
 
 
 def nest(parts: Parts, *, sheet: tuple[float, float] = (12.0, 2.0), gap: float = 0.01) -> Nesting:
@@ -109,16 +98,14 @@ def nest(parts: Parts, *, sheet: tuple[float, float] = (12.0, 2.0), gap: float =
     -------
     Nesting
     """
-    quantities = np.array([part.quantity for part in parts.parts], dtype=np.int64)
-    of_part = np.repeat(np.arange(len(quantities)), quantities)
-    copies = np.arange(len(of_part)) - np.repeat(np.cumsum(quantities) - quantities, quantities) + 1
+    of_part, copies = pieces_of(parts)
     plan = _Plan(len(of_part), max(sheet), min(sheet), gap)
-    straight: list[_Blank] = []
-    rounds: dict[tuple[float, float], list[_Blank]] = {}
+    straight: list[Blank] = []
+    rounds: dict[tuple[float, float], list[Blank]] = {}
     bow = max((part.bow for part in parts.parts), default=0.0)
-    blanks = [_blank(part) for part in parts.parts]
+    blanks = [blank_of(part) for part in parts.parts]
     for piece, index in enumerate(of_part.tolist()):
-        blank = _Blank(piece, *blanks[index])
+        blank = replace(blanks[index], piece=piece)
         if not plan.fits(blank):
             plan.alone(blank)
         elif blank.half_angle == 0.0:
@@ -126,14 +113,14 @@ def nest(parts: Parts, *, sheet: tuple[float, float] = (12.0, 2.0), gap: float =
         else:
             rounds.setdefault((round(blank.radius, 9), blank.height), []).append(blank)
     for height in sorted({blank.height for blank in straight}):
-        plan.rows(_longest_first([blank for blank in straight if blank.height == height]))
+        plan.rows(longest_first([blank for blank in straight if blank.height == height]))
     for key in sorted(rounds):
-        plan.columns(_longest_first(rounds[key]), bow)
+        plan.columns(longest_first(rounds[key]), bow)
     # sheets of the asked size come first
     order = np.argsort(plan.oversize, kind="stable")
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
-    turned = np.array([blanks[index][-1] for index in of_part.tolist()], dtype=bool)
+    turned = np.array([blanks[index].turned for index in of_part.tolist()], dtype=bool)
     return Nesting(
         of_part,
         copies,
@@ -148,21 +135,11 @@ def nest(parts: Parts, *, sheet: tuple[float, float] = (12.0, 2.0), gap: float =
     )
 
 
-def _blank(part: Part) -> tuple[float, float, float, float, float, float, float, float, bool]:
-    """The fields of a part's `_Blank` behind the piece's number."""
-    left, low, right, high = part.bounds
-    turned = part.curvature < 0
-    if turned:
-        low, high = -high, -low
-    curvature = abs(part.curvature)
-    radius = 1 / curvature if curvature else 0.0
-    half_angle = 0.5 * curvature * part.length
-    return max(right, -left), part.bow, high, low, part.length, half_angle, radius, part.height, turned
-
-
-def _longest_first(blanks: list[_Blank]) -> list[_Blank]:
-    # rounded, so that noise in equal lengths does not reorder pieces
-    return sorted(blanks, key=lambda blank: (-round(blank.length, 7), blank.piece))
+def pieces_of(parts: Parts) -> tuple[Integers, Integers]:
+    """Of all pieces, part by part: the part's index, and the number among its equal ones from 1, (p,)."""
+    quantities = np.array([part.quantity for part in parts.parts], dtype=np.int64)
+    of_part = np.repeat(np.arange(len(quantities)), quantities)
+    return of_part, np.arange(len(of_part)) - np.repeat(np.cumsum(quantities) - quantities, quantities) + 1
 
 
 class _Plan:
@@ -175,7 +152,7 @@ class _Plan:
         self.sizes: list[tuple[float, float]] = []
         self.oversize: list[bool] = []
 
-    def fits(self, blank: _Blank) -> bool:
+    def fits(self, blank: Blank) -> bool:
         """Whether a piece fits a sheet of the asked size."""
         return (
             2 * blank.half_width + 2 * self.gap <= self.length + LENGTH_ROUNDING
@@ -188,16 +165,16 @@ class _Plan:
         self.sizes.append((length or self.length, width or self.width))
         return len(self.sizes) - 1
 
-    def put(self, blank: _Blank, sheet: int, x: float, y: float) -> None:
+    def put(self, blank: Blank, sheet: int, x: float, y: float) -> None:
         self.sheets[blank.piece], self.x[blank.piece], self.y[blank.piece] = sheet, x, y
 
-    def alone(self, blank: _Blank) -> None:
+    def alone(self, blank: Blank) -> None:
         """A piece on a sheet of its own, as large as it needs."""
         length = max(self.length, 2 * blank.half_width + 2 * self.gap)
         width = max(self.width, blank.top - blank.bottom + 2 * self.gap)
         self.put(blank, self.sheet(length, width), self.gap + blank.half_width, self.gap - blank.bottom)
 
-    def rows(self, blanks: Sequence[_Blank]) -> None:
+    def rows(self, blanks: Sequence[Blank]) -> None:
         """Best fit of straight pieces of one height into rows."""
         # straight pieces that are bowed lean out of their rows on either side
         below = max(-blank.bottom for blank in blanks)
@@ -222,36 +199,13 @@ class _Plan:
             self.put(blank, on, self.length - room + blank.half_width, y)
             insort(free, (room - need, row))
 
-    def columns(self, blanks: Sequence[_Blank], bow: float) -> None:
+    def columns(self, blanks: Sequence[Blank], bow: float) -> None:
         """Circular pieces of one radius, within `bow` (m), stacked into columns side by side."""
-        sheet, left, right = -1, 0.0, np.inf
-        below: _Blank | None = None
-        y = 0.0
-        for blank in blanks:
-            if below is not None:
-                y += self._rise(below, blank, bow)
-            if below is None or y + blank.top > self.width - self.gap + LENGTH_ROUNDING:
-                left = right + self.gap
-                if sheet < 0 or left + 2 * blank.half_width > self.length - self.gap + LENGTH_ROUNDING:
-                    sheet, left = self.sheet(), self.gap
-                right = left + 2 * blank.half_width
-                y = self.gap - blank.bottom
-            self.put(blank, sheet, 0.5 * (left + right), y)
-            below = blank
-
-    def _rise(self, below: _Blank, above: _Blank, bow: float) -> float:
-        """How far ``above``, which is no longer, has to be moved up from ``below``.
-
-        Its lower edge, of radius ro, has to stay inside the circle of radius ri - gap about the centre of
-        the one below, where ri is that one's inner radius. The distance from that centre is largest at the
-        tips, at the half angle phi: ro^2 - 2 ro d cos(phi) + d^2 = (ri - gap)^2 for the least move d.
-        """
-        boxes = below.top - above.bottom + self.gap
-        outer, inner = above.radius + 0.5 * above.height + bow, below.radius - 0.5 * below.height - bow
-        reach = inner - self.gap
-        across = outer * sin(above.half_angle)
-        # beyond a half circle, and where tips come above the centre, the circle says nothing
-        if below.half_angle >= 0.5 * np.pi or reach <= across or inner * cos(below.half_angle) < self.gap:
-            return boxes
-        nested = outer * cos(above.half_angle) - sqrt(reach * reach - across * across)
-        return min(boxes, nested)
+        sheet, right = -1, np.inf
+        for column in stacked(blanks, self.width, self.gap, bow):
+            left = right + self.gap
+            if sheet < 0 or left + 2 * column.half_width > self.length - self.gap + LENGTH_ROUNDING:
+                sheet, left = self.sheet(), self.gap
+            right = left + 2 * column.half_width
+            for blank, y in column.places:
+                self.put(blank, sheet, 0.5 * (left + right), y)

@@ -30,11 +30,40 @@ def cut_stations(start: float, end: float, nodes: Floats, longest: float) -> Flo
     (c,) array or None
         Ascending stations, m, empty where the strip is short enough; None where a single cell is too long.
     """
+    return cut_bounds(bounds_between(start, end, nodes), longest)
+
+
+def bounds_between(start: float, end: float, nodes: Floats, slots: Floats | None = None, reach: float = 0.0) -> Floats:
+    """Stations where a strip may be cut, midway between nodes, and those of its ends, ascending, m.
+
+    Parameters
+    ----------
+    start, end, nodes
+        As in `cut_stations`.
+    slots : (k,), optional
+        Ascending stations of the slots' axes, m.
+    reach : float
+        Least distance from a cut to a slot's axis, m.
+    """
+    middles = 0.5 * (nodes[1:] + nodes[:-1])
+    middles = middles[(middles > start) & (middles < end)]
+    if slots is not None and len(slots):
+        after = np.searchsorted(slots, middles)
+        behind = np.where(after > 0, middles - slots[after - 1], np.inf)
+        ahead = np.where(after < len(slots), slots[np.minimum(after, len(slots) - 1)] - middles, np.inf)
+        middles = middles[np.minimum(behind, ahead) >= reach]
+    return np.concatenate(([start], middles, [end]))
+
+
+def cut_bounds(bounds: Floats, longest: float) -> Floats | None:
+    """Where to cut a strip that may be cut at some stations (b,), m, the first and last of which are its ends.
+
+    See `cut_stations`.
+    """
+    start, end = float(bounds[0]), float(bounds[-1])
     reach = longest * (1 + 1e-12)
     if end - start <= reach:
         return np.empty(0)
-    middles = 0.5 * (nodes[1:] + nodes[:-1])
-    bounds = np.concatenate(([start], middles[(middles > start) & (middles < end)], [end]))
     chosen = [0]
     while chosen[-1] < len(bounds) - 1:
         step = int(np.searchsorted(bounds, bounds[chosen[-1]] + reach, side="right")) - 1

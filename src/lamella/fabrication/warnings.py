@@ -40,6 +40,12 @@ class FabricationWarnings:
         Radius (m) asked of the hubs where it would have taken the first slots with it, else 0.
     hub_needed : float
         Radius (m) the hubs should have where theirs lets strips run into each other, else 0.
+    chosen : int
+        Lamellas split where stock is used up by it.
+    too_far_to_carry : int
+        Lamellas split since they are longer than what is carried.
+    at_borders : int
+        Lamellas split at borders of segments alone.
     """
 
     too_long: list[float] = field(default_factory=list)
@@ -53,6 +59,23 @@ class FabricationWarnings:
     other_cells: str = ""
     hub_cut: float = 0.0
     hub_needed: float = 0.0
+    chosen: int = 0
+    too_far_to_carry: int = 0
+    at_borders: int = 0
+
+    def split(self, length: float, pieces: int, rules: Rules, *, chosen: bool) -> None:
+        """Note that a strip of a length (m) is cut into pieces."""
+        self.pieces += pieces
+        if length > rules.longest_ring:
+            self.too_round += 1
+        elif chosen:
+            self.chosen += 1
+        elif length > rules.longest_on_sheet:
+            self.too_long.append(length)
+        elif length > rules.transport_length:
+            self.too_far_to_carry += 1
+        else:
+            self.at_borders += 1
 
     def sentences(self, rules: Rules, lamellas: int, parts: int) -> Iterator[Message]:
         """One warning a matter, given the numbers of all lamellas and parts."""
@@ -65,9 +88,17 @@ class FabricationWarnings:
                 reasons.append(f"{len(self.too_long)} do not fit the sheet of {sheet}{arcs} ({longest})")
             if self.too_round:
                 reasons.append(f"{self.too_round} turn through more than 1.9 pi and would overlap themselves")
+            if self.chosen:
+                reasons.append(f"{self.chosen} so that stock is used up")
+            if self.too_far_to_carry:
+                length = f"{rules.transport_length:g} m that are carried"
+                reasons.append(f"{self.too_far_to_carry} are longer than the {length}")
+            if self.at_borders:
+                reasons.append(f"{self.at_borders} at borders of segments")
+            split = len(self.too_long) + self.too_round + self.chosen + self.too_far_to_carry + self.at_borders
             yield Message(
                 "lamellas_split",
-                f"{len(self.too_long) + self.too_round} of {lamellas} lamellas were split midway between "
+                f"{split} of {lamellas} lamellas were split midway between "
                 f"nodes into {self.pieces} pieces: {'; '.join(reasons)}",
             )
         if self.oversize:

@@ -1,0 +1,1 @@
+"""Cutting stock: pieces in lanes (bars, rows of sheets), rectangles on sheets."""
