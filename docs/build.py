@@ -21,7 +21,8 @@ from lamella.files.write.lamellas_json import COLUMNS, lamellas_schema
 from lamella.files.write.network_json import network_schema
 from lamella.files.write.optimise_json import optimise_schema
 from lamella.hardware.lists import COLUMNS as HARDWARE_LIST
-from lamella.project.load_tables import LIST_TABLES, RegionTable
+from lamella.project.list_tables import LIST_TABLES
+from lamella.project.load_tables import RegionTable
 from lamella.project.structure_tables import PartialFactorsTable, SpringTable
 from lamella.project.tables import (
     FURTHER_TABLES,

@@ -16,7 +16,7 @@ import pytest
 from command.command_line import FILES, UNDULOID, contents, lamella
 from lamella import __version__
 from lamella.command.main import main
-from lamella.project.load_tables import LIST_TABLES
+from lamella.project.list_tables import LIST_TABLES
 from lamella.project.read import parse_project
 from lamella.project.structure_tables import StructureTable
 from lamella.project.tables import (
@@ -157,7 +157,8 @@ def test_the_comments_of_a_new_project_are_its_defaults(
     plain = tomllib.loads(text)
     # all keys active but those that exclude another, and the ones without a default
     others = (
-        "spacing|slot_width|end_distance|hub_radius|volume|unit|origin|normal_curvature|washer_length|splice_thickness"
+        "spacing|slot_width|end_distance|hub_radius|volume|unit|origin|normal_curvature|washer_length|splice_thickness|"
+        "transport_length|splice_worth|kerf|lead_in|tabs|tab_width|csv"
     )
     uncommented = re.sub(rf"^# (?!{others})([a-z]\w* = )", r"\1", text, flags=re.M)
     uncommented = uncommented.replace('# [materials."my steel"]', '[materials."my steel"]')

@@ -469,6 +469,7 @@ def test_defaults_filled_in_read_back_the_same(name):
     unset = {"spacing"} if project.network.spacing is None else {"cells"}
     unset |= {"normal_curvature"} if project.network.normal_curvature is None else set()
     unset |= {"surface_3dm"} if project.files.surface_3dm is None else set()
+    unset |= {key for key, value in project.fabrication if value is None}
     for table, model in FURTHER_TABLES.items():
         assert set(full.get(table, ())) == (set(model.model_fields) - unset if getattr(project, table) else set())
 

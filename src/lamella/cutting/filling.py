@@ -295,7 +295,9 @@ class _Filling:
 
     def _further(self, room: int, taken: set[int]) -> list[tuple[int, int, int]]:
         """A piece of a strip that is cut once more than it has to be, where the room is worth more than that."""
-        worth = min(cost / capacity for cost, capacity in zip(self.measures.costs, self.measures.capacities, strict=True))
+        worth = min(
+            cost / capacity for cost, capacity in zip(self.measures.costs, self.measures.capacities, strict=True)
+        )
         if room * worth <= self.splice_cost:
             return []
         best: tuple[int, int, int] | None = None

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.fabrication.engraving import engrave
 from lamella.fabrication.part import Part, Parts
 from lamella.fabrication.sheet import Nesting
@@ -16,6 +17,8 @@ from lamella.files.write.dxf_text import Block, BlockWriter, DxfFile, Placed
 MM = 1e3
 # between sheets in the drawing, as a share of their length
 SHEET_SPACE = 0.05
+# width over length of a sheet that the next one is drawn below
+NARROW = 0.04
 
 
 def write_drawings(folder: Path, parts: Parts, nesting: Nesting, *, name: str, version: str) -> tuple[Path, ...]:
@@ -82,24 +85,39 @@ def _rows(rows: list[tuple[Part, Block]], gap: float) -> Iterator[Placed]:
 
 def _sheets(nesting: Nesting, blocks: list[Block], owner: str) -> Iterator[Placed]:
     """Sheets from left to right and the pieces on them."""
-    lengths = nesting.sizes[:, 0] * (1 + SHEET_SPACE)
-    left = np.cumsum(lengths) - lengths
-    sizes = nesting.sizes.tolist()
-    for number, ((length, width), corner) in enumerate(zip(sizes, left.tolist(), strict=True)):
-        writer = BlockWriter(owner)
-        corners = np.array([(0.0, 0.0), (length, 0.0), (length, width), (0.0, width)])
-        writer.polyline("SHEET", MM * corners, closed=True, tag="")
-        size = 0.05 * width
-        for stroke in text_strokes(f"SHEET {number + 1}"):
-            writer.polyline("SHEET", MM * (size * stroke + (0.0, width + 0.5 * size)), closed=False, tag="")
-        yield Placed(writer.block(), MM * corner, 0.0)
-    x = MM * (left[nesting.sheets] + nesting.x)
+    corners = _corners(nesting)
+    for number, ((length, width), (left, low)) in enumerate(zip(nesting.sizes.tolist(), corners.tolist(), strict=True)):
+        kind = nesting.stocks[number].kind.upper() if nesting.stocks else "SHEET"
+        yield Placed(sheet_block(owner, length, width, f"{kind} {number + 1}"), MM * left, MM * low)
+    x = MM * (corners[nesting.sheets, 0] + nesting.x)
+    y = MM * (corners[nesting.sheets, 1] + nesting.y)
     for index, copy, x_mm, y_mm, turned in zip(
         nesting.parts.tolist(),
         nesting.copies.tolist(),
         x.tolist(),
-        (MM * nesting.y).tolist(),
+        y.tolist(),
         (nesting.rotations == 180.0).tolist(),
         strict=True,
     ):
         yield Placed(blocks[index], x_mm, y_mm, turned, copy)
+
+
+def _corners(nesting: Nesting) -> Floats:
+    """Lower left corners of the sheets in the drawing, (s, 2), m: side by side; bars below each other."""
+    lengths, widths = nesting.sizes.T
+    narrow = (widths < NARROW * lengths) & bool(nesting.stocks)
+    beside = np.where(narrow, 0.0, lengths * (1 + SHEET_SPACE))
+    below = np.where(narrow, -2 * widths, 0.0)
+    return np.column_stack([np.where(narrow, 0.0, np.cumsum(beside) - beside), np.cumsum(below)])
+
+
+def sheet_block(owner: str, length: float, width: float, label: str) -> Block:
+    """Outline of a sheet (m) and what is written above it, on layer SHEET."""
+    writer = BlockWriter(owner)
+    corners = np.array([(0.0, 0.0), (length, 0.0), (length, width), (0.0, width)])
+    writer.polyline("SHEET", MM * corners, closed=True, tag="")
+    # a bar is narrow
+    size = (0.05 if width > NARROW * length else 0.3) * width
+    for stroke in text_strokes(label):
+        writer.polyline("SHEET", MM * (size * stroke + (0.0, width + 0.5 * size)), closed=False, tag="")
+    return writer.block()

@@ -42,9 +42,7 @@ class Span:
     width: Floats
 
     @classmethod
-    def of(
-        cls, strip: LayerStrip, family: str, closed: bool, crossing: Booleans, hub: Booleans, rules: Rules
-    ) -> Span:
+    def of(cls, strip: LayerStrip, family: str, closed: bool, crossing: Booleans, hub: Booleans, rules: Rules) -> Span:
         """Of a strip whose nodes are crossings, or hubs, (n,) each."""
         stations, shifts, width = strip.stations, strip.shifts, strip.slot_width
         if closed:

@@ -71,6 +71,8 @@ class Supply:
         Those that serve; a bar's width is the strips' height.
     thickness : float
         Of the strips, m.
+    material : str
+        Its name.
     density : float
         kg/m3.
     gap : float
@@ -81,6 +83,7 @@ class Supply:
 
     stocks: tuple[Stock, ...]
     thickness: float
+    material: str
     density: float
     gap: float
     splice_worth: float = DEFAULT_SPLICE_WORTH
@@ -106,20 +109,24 @@ class Supply:
             There is none.
         """
         fitting = tuple(
-            Stock(one.kind, one.length, height, thickness, material, one.price, one.weight) if one.kind == "bar" else one
+            Stock(one.kind, one.length, height, thickness, material, one.price, one.weight)
+            if one.kind == "bar"
+            else one
             for one in stocks
             if one.serves(thickness, material)
-            and (straight if one.kind == "bar" else one.width > height + 2 * gap - SAME or abs(one.width - height) < SAME)
+            and (
+                straight if one.kind == "bar" else one.width > height + 2 * gap - SAME or abs(one.width - height) < SAME
+            )
         )
         if not fitting:
             curved = "" if straight else ", and lamellas that are no straight lines are not cut from bars"
             raise InputError(
-                f"no stock is there for strips {1e3 * height:g} x {1e3 * thickness:g} mm of {material}: sheets and coils "
-                f"have to be {1e3 * (height + 2 * gap):.4g} mm wide or more (strip and gaps){curved}",
+                f"no stock is there for strips {1e3 * height:g} x {1e3 * thickness:g} mm of {material}: sheets and "
+                f"coils have to be {1e3 * (height + 2 * gap):.4g} mm wide or more (strip and gaps){curved}",
                 f"add a sheet at least {height + 2 * gap:.4g} m wide with thickness = {thickness:g} or without one",
                 "stock",
             )
-        return cls(fitting, thickness, density, gap, splice_worth)
+        return cls(fitting, thickness, material, density, gap, splice_worth)
 
     def cost(self, stock: Stock) -> float:
         """Of one piece of a stock."""

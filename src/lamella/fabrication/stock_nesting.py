@@ -12,7 +12,7 @@ from lamella.fabrication.blanks import blank_of
 from lamella.fabrication.part import Parts
 from lamella.fabrication.sheet import Nesting, nest, pieces_of
 from lamella.fabrication.stock import Supply
-from lamella.fabrication.stock_layout import Laid, lay
+from lamella.fabrication.stock_layout import lay
 
 
 def nest_on_stock(parts: Parts, supply: Supply) -> Nesting:

@@ -91,8 +91,7 @@ class FabricationWarnings:
             if self.chosen:
                 reasons.append(f"{self.chosen} so that stock is used up")
             if self.too_far_to_carry:
-                length = f"{rules.transport_length:g} m that are carried"
-                reasons.append(f"{self.too_far_to_carry} are longer than the {length}")
+                reasons.append(f"{self.too_far_to_carry} are longer than the {rules.transport_length:g} m carried")
             if self.at_borders:
                 reasons.append(f"{self.at_borders} at borders of segments")
             split = len(self.too_long) + self.too_round + self.chosen + self.too_far_to_carry + self.at_borders

@@ -238,7 +238,7 @@ class CombinationTable(Table):
         return factors
 
 
-LIST_TABLES: dict[str, type[Table]] = {"support": SupportTable, "load": LoadTable, "combination": CombinationTable}
+ACTION_TABLES: dict[str, type[Table]] = {"support": SupportTable, "load": LoadTable, "combination": CombinationTable}
 """Tables that may be there several times, [[support]] and so on."""
 
 

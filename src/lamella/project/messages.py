@@ -10,7 +10,7 @@ from pydantic_core import ErrorDetails
 
 from lamella.base.number_lists import Refusal
 from lamella.base.wording import cut, shown
-from lamella.project.load_tables import LIST_TABLES
+from lamella.project.list_tables import LIST_TABLES
 from lamella.project.tables import (
     FURTHER_TABLES,
     SURFACE_TABLES,

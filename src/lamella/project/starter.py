@@ -86,6 +86,19 @@ def _table(name: str, model: type[BaseModel], active: dict[str, Any], skip: froz
     return "\n".join([*about, header, *keys])
 
 
+_STOCK = """\
+# What strips and plates are cut from, instead of fabrication.sheet; there may be several of these tables.
+# [[stock]]
+#   kind = "bar" # of the strips' own section; "sheet" and "coil" for plates and curved strips too
+#   length = 6.0 # [m] of a bar or coil
+#   width = 0.1 # [m] of a coil
+#   size = [3.0, 1.5] # [m] of a sheet
+#   thickness = 0.0015 # [m] of every thickness when not given
+#   material = "1.4301" # of every material when not given
+#   price = 120.0 # of one piece, for all stock or for none
+#   weight = 53.3 # [kg] of one piece"""
+
+
 _ACTIONS = """\
 # What holds it and what acts on it; each of these tables may be there several times.
 # [[support]]
@@ -144,6 +157,7 @@ def starter(kind: str, name: str, mesh: str = "surface.obj") -> str:
         f"# Run it with:  lamella run FILE\n{tomli_w.dumps({'name': name}).strip()}",
         surface,
         *(_table(name, model, active) for name, model in FURTHER_TABLES.items()),
+        _STOCK,
         _ACTIONS,
         "# A material of your own (SI units), named in lamella.material:\n"
         '# [materials."my steel"]\n# density = 7850\n# youngs_modulus = 210e9\n# shear_modulus = 81e9\n'

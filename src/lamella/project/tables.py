@@ -9,7 +9,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from lamella.base.limits import CELLS_MIN, DEFAULT_CELLS
 from lamella.base.material import MATERIALS, Material, find_material
-from lamella.base.number_lists import Refusal, two_numbers
+from lamella.base.number_lists import Refusal
 from lamella.base.wording import is_byte, shown
 from lamella.project.boundary_tables import (
     AdjustTable,
@@ -20,14 +20,16 @@ from lamella.project.boundary_tables import (
     PlaceTable,
     SlideTable,
 )
+from lamella.project.fabrication_table import FabricationTable
 from lamella.project.joint_table import CablesTable, JointTable
-from lamella.project.load_tables import LIST_TABLES, CombinationTable, LoadTable, check_actions
+from lamella.project.list_tables import LIST_TABLES
+from lamella.project.load_tables import ACTION_TABLES, CombinationTable, LoadTable, check_actions
 from lamella.project.material_table import MaterialTable
+from lamella.project.stock_table import StockTable, check_stock
 from lamella.project.structure_tables import StructureTable, SupportTable, check_list, list_key
 from lamella.project.surface_tables import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
 from lamella.project.values import (
     Name,
-    Range,
     Table,
     Unit,
     length,
@@ -215,73 +217,6 @@ class LamellaTable(Table):
         return self
 
 
-class FabricationTable(Table):
-    """Cutting the strips."""
-
-    sheet: Range = number("Length and width of a sheet.", "m", default=(12.0, 2.0))
-    gap: float = number("Distance between parts on a sheet, and to its edge.", "m", gt=0, le=1, default=0.01)
-    end_distance: float | None = number(
-        "Least distance from the last slot to the strip's end; the larger of 0.05 m and two slot widths when not "
-        "given.",
-        "m",
-        gt=0,
-        le=5,
-        default=None,
-        examples=[0.05],
-    )
-    rim_overhang: float = number(
-        "Least distance from the rim's node to the strip's end.", "m", ge=0, le=5, default=0.01
-    )
-    hub_radius: float | None = number(
-        "A strip stops this far from a singular node; when not given 0.02 m, or more where the strips of "
-        "neighbouring rays would run into each other.",
-        "m",
-        ge=0,
-        le=5,
-        default=None,
-        examples=[0.05],
-    )
-    slot_width: float | None = number(
-        "Width of the slots; 2 x thickness when not given.", "m", gt=0, le=1, default=None, examples=[0.003]
-    )
-    slot_play: float = number(
-        "How far the foot of a slot lies beyond the centre line: play for what cuts and strips are off.",
-        "m",
-        ge=0,
-        le=1,
-        default=0.0,
-    )
-    foot_radius: float = number(
-        "Of the rounded corners of a slot's foot, where cracks begin; at most half of what the slot is wider than the "
-        "strip.",
-        "m",
-        ge=0,
-        le=1,
-        default=0.0,
-    )
-
-    @field_validator("sheet", mode="before")
-    @classmethod
-    def _positive(cls, value: Any) -> Any:
-        sides = two_numbers(value, "[length, width]", "a sheet")
-        for x in sides:
-            if not 0 < x <= 1000:
-                remedy = "lengths are in metres, not millimetres" if x > 0 else "write both sides in metres"
-                raise Refusal(f"a side of {x:g} m is out of range: has to be above 0 and at most 1000 m", remedy)
-        return sides
-
-    @model_validator(mode="after")
-    def _possible(self) -> FabricationTable:
-        if min(self.sheet) <= 2 * self.gap:
-            raise Refusal(
-                f"the sheet is {min(self.sheet):g} m wide, nothing of it is left between gaps of {self.gap:g} m at "
-                "either edge",
-                "choose a larger sheet or a smaller gap",
-                "sheet",
-            )
-        return self
-
-
 class FilesTable(Table):
     """What is written."""
 
@@ -342,6 +277,7 @@ class Project(Table):
     fabrication: FabricationTable = FabricationTable()
     joint: JointTable | None = Field(default=None, description=(JointTable.__doc__ or "").strip())
     cables: CablesTable | None = Field(default=None, description=(CablesTable.__doc__ or "").strip())
+    stock: Annotated[tuple[StockTable, ...], Field(strict=False)] | None = list_key(StockTable)
     structure: StructureTable | None = Field(default=None, description=(StructureTable.__doc__ or "").strip())
     support: Annotated[tuple[SupportTable, ...], Field(strict=False)] | None = list_key(SupportTable)
     load: Annotated[tuple[LoadTable, ...], Field(strict=False)] | None = list_key(LoadTable)
@@ -358,12 +294,13 @@ class Project(Table):
     @classmethod
     def _analysed(cls, values: Any) -> Any:
         # what holds it and what acts on it asks for the structure's analysis
-        if isinstance(values, dict) and "structure" not in values and set(LIST_TABLES) & set(values):
+        if isinstance(values, dict) and "structure" not in values and set(ACTION_TABLES) & set(values):
             return values | {"structure": {}}
         return values
 
     @model_validator(mode="after")
     def _possible(self) -> Project:
+        check_stock(self.stock or ())
         if self.structure is not None:
             check_actions(self.structure, self.load or (), self.combination or ())
         if self.joint is not None and self.joint.slot_width is not None and self.fabrication.slot_width is not None:

@@ -10,8 +10,10 @@ from lamella.base.drawing_origin import drawing_origin
 from lamella.base.material import find_material
 from lamella.fabrication.defaults import default_end_distance, default_hub_radius, default_slot_width
 from lamella.fabrication.rules import Rules, clear_hub
+from lamella.fabrication.stock import DEFAULT_SPLICE_WORTH, SAME, Stock, Supply
 from lamella.hardware.rules import CableRules, JointRules
-from lamella.project.tables import JointTable, Project
+from lamella.hardware.splices import splice_length
+from lamella.project.tables import FabricationTable, JointTable, Project
 from lamella.stages.keys import keys
 from lamella.strip.lamellas import Section
 from lamella.surface.surface import Surface
@@ -55,6 +57,42 @@ def cable_rules(project: Project) -> CableRules | None:
     return None if project.cables is None else CableRules(**project.cables.model_dump())
 
 
+def stocks_of(project: Project) -> tuple[Stock, ...]:
+    """The stock a project has; bars get their width with the strips."""
+    found = []
+    for table in project.stock or ():
+        length, width = table.size or (table.length or 0.0, table.width or 0.0)
+        sides = (max(length, width), min(length, width)) if table.kind == "sheet" else (length, width)
+        found.append(Stock(table.kind, *sides, table.thickness, table.material, table.price, table.weight))
+    return tuple(found)
+
+
+def supply_of(project: Project, surface: Surface[Any]) -> Supply | None:
+    """What a project's strips are cut from; None where it has no stock."""
+    strip, cut = project.lamella, project.fabrication
+    if not project.stock:
+        return None
+    worth = DEFAULT_SPLICE_WORTH if cut.splice_worth is None else cut.splice_worth
+    return Supply.of(
+        stocks_of(project),
+        height=strip.height,
+        thickness=strip.thickness,
+        material=strip.material,
+        density=project.material().density,
+        gap=cut.gap,
+        straight=not _normal_curvature(project, surface),
+        splice_worth=worth,
+    )
+
+
+def splice_room(project: Project) -> float:
+    """Half a splice and a slot's width, which a splice keeps from a slot, m; 0 where there are no splices."""
+    if project.joint is None or not project.joint.splice:
+        return 0.0
+    slot_width = project.fabrication.slot_width or default_slot_width(project.lamella.thickness)
+    return splice_length(joint_rules(project, project.joint)) / 2 + slot_width + SAME
+
+
 @keys("joint")
 def check_joint(project: Project) -> None:
     """Refuse hardware that cannot be made with the project's strips.
@@ -68,7 +106,7 @@ def check_joint(project: Project) -> None:
         joint_rules(project, project.joint).check(section)
 
 
-@keys("fabrication", height="lamella.height")
+@keys("fabrication", height="lamella.height", stock="stock")
 def check_fabrication(project: Project, surface: Surface[Any]) -> None:
     """Refuse measures that no part can be made with, by the key in the project.
 
@@ -78,6 +116,7 @@ def check_fabrication(project: Project, surface: Surface[Any]) -> None:
     """
     filled = fill_in(project, surface)
     strip, cut = filled.lamella, filled.fabrication
+    supply_of(project, surface)
     rules = Rules(
         layers=strip.layers,
         offset=strip.offset,
@@ -85,9 +124,15 @@ def check_fabrication(project: Project, surface: Surface[Any]) -> None:
         thickness=strip.thickness,
         curvature=float(_normal_curvature(filled, surface)),
         density=filled.material().density,
-        **cut.model_copy(update={"hub_radius": cut.hub_radius or 0.0}).model_dump(),
+        **part_measures(cut.model_copy(update={"hub_radius": cut.hub_radius or 0.0})),
     )
     rules.check()
+
+
+def part_measures(cut: FabricationTable) -> dict[str, Any]:
+    """The measures of a table that decide parts."""
+    measures = cut.model_dump(exclude={"splice_worth"})
+    return measures | {"transport_length": cut.transport_length or np.inf}
 
 
 def _normal_curvature(project: Project, surface: Surface[Any]) -> float:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
 from lamella.fabrication.schedule import congruent_parts
 from lamella.stages.fabrication.output import FabricationOutput
-from lamella.stages.figure import INTEGER, NUMBER, Figure, line, record
+from lamella.stages.fabrication.stock_figures import STOCK_FIGURES, sheet_use
+from lamella.stages.figure import INTEGER, NUMBER, Figure, line, nullable, record
 
 Rows = Iterator[tuple[str, str, str]]
 
@@ -44,11 +43,6 @@ def _hardware_rows(value: dict[str, Any], summary: dict[str, Any]) -> Rows:
     for kind, of_kind in value.items():
         several = f", {of_kind['different']} kinds" if of_kind["different"] > 1 else ""
         yield f"{kind.capitalize()}{several}", f"{of_kind['count']:,}", f"pieces, {of_kind['mass']:.3g} kg"
-
-
-def _sheet_use(out: FabricationOutput) -> float:
-    area = sum(part.quantity * part.area for part in out.parts.parts)
-    return area / float(np.prod(out.nesting.sizes, axis=1).sum())
 
 
 FIGURES: tuple[Figure[FabricationOutput], ...] = (
@@ -102,8 +96,15 @@ FIGURES: tuple[Figure[FabricationOutput], ...] = (
         {"type": "object", "additionalProperties": OF_KIND},
         rows=_hardware_rows,
     ),
-    Figure("sheet_use", "", "area of the parts over area of the sheets", _sheet_use, NUMBER),
+    Figure(
+        "sheet_use",
+        "",
+        "area of the parts over area of the sheets and coils they are cut from; null where all are cut from bars",
+        sheet_use,
+        nullable(NUMBER),
+    ),
+    *STOCK_FIGURES,
 )
 
-REPORT = ("parts", "parts_different", "sheets", "bow_max", "mass", "surface_weight", "hardware")
+REPORT = ("parts", "parts_different", "sheets", "bow_max", "mass", "surface_weight", "hardware", "stock", "cut_length")
 """Order of the report's lines."""

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from lamella.base.message import Message
 from lamella.fabrication.part import Parts
 from lamella.fabrication.sheet import Nesting
+from lamella.fabrication.stock import Supply
 from lamella.hardware.item import Hardware
+from lamella.hardware.plate_sheets import PlateSheets
 
 
 @dataclass(frozen=True)
@@ -21,9 +24,18 @@ class FabricationOutput:
         m2.
     hardware : Hardware
         What joins the parts; nothing where the project has no table [joint].
+    supply : Supply or None
+        What the strips are cut from, where the project has stock.
+    plates : tuple of PlateSheets
+        Plates of the hardware on such stock.
+    notes : tuple of Message
+        What the user should know about them.
     """
 
     parts: Parts
     nesting: Nesting
     surface_area: float
     hardware: Hardware = field(default_factory=Hardware)
+    supply: Supply | None = None
+    plates: tuple[PlateSheets, ...] = ()
+    notes: tuple[Message, ...] = ()

@@ -9,19 +9,15 @@ from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
 from lamella.base.progress import Progress
-from lamella.fabrication.parts import make_parts
-from lamella.fabrication.sheet import nest
 from lamella.files.whole import write_whole
 from lamella.files.write.drawn_layer import DrawnLayer
-from lamella.hardware.item import Hardware
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
-from lamella.stages.fabrication.defaults import cable_rules, check_fabrication, check_joint, joint_rules
+from lamella.stages.fabrication.defaults import check_fabrication, check_joint
 from lamella.stages.fabrication.figures import FIGURES, REPORT
+from lamella.stages.fabrication.making import laid, made_parts
 from lamella.stages.fabrication.output import FabricationOutput
-from lamella.stages.keys import keys, with_keys
-from lamella.stages.lamellas.stage import strips_of
-from lamella.stages.network.stage import other_cells
+from lamella.stages.keys import with_keys
 from lamella.stages.stage import File, Stage, Upstream
 from lamella.surface.surface import Surface
 
@@ -41,6 +37,7 @@ class FabricationStage(Stage[FabricationOutput]):
             "where `[joint]` is given: the hardware, the place of every piece, and what of it is cut from plates",
         ),
         ("model.glb", "where `[joint]` is given or `files.solids` is true: the same for viewers and renderers"),
+        ("fabrication/plate_sheets.dxf", "where `[[stock]]` is given too: all these plates on their sheets"),
     )
     figures = FIGURES
     report = ("Fabrication", REPORT)
@@ -49,7 +46,7 @@ class FabricationStage(Stage[FabricationOutput]):
         return ("files",)
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
-        return ("fabrication", "joint", "cables")
+        return ("fabrication", "joint", "cables", "stock")
 
     def check(self, project: Project, surface: Surface[Any] | None) -> None:
         check_joint(project)
@@ -60,27 +57,7 @@ class FabricationStage(Stage[FabricationOutput]):
         return "parts and sheets"
 
     def run(self, up: Upstream, progress: Progress) -> FabricationOutput:
-        project, cut = up.project, up.project.fabrication
-        net, strips = up.outputs["network"], strips_of(up.project, up.surface)
-        others = other_cells(net, up)
-        with keys("fabrication", height="lamella.height"):
-            parts = make_parts(
-                net.network,
-                up.outputs["lamellas"].lamellas,
-                density=project.material().density,
-                others=lambda fault: others.without(lambda net: fault(net, strips(net))),
-                **cut.model_dump(),
-            )
-        hardware = Hardware()
-        if project.joint is not None:
-            from lamella.hardware.make_hardware import make_hardware
-
-            measures = joint_rules(project, project.joint), cable_rules(project)
-            with keys("joint", prestress="cables.prestress"):
-                joined = make_hardware(up.outputs["lamellas"].lamellas, parts, *measures)
-            hardware, parts = joined.hardware, joined.parts
-        nesting = nest(parts, sheet=cut.sheet, gap=cut.gap)
-        return FabricationOutput(parts, nesting, up.figures["surface"]["area"], hardware)
+        return laid(up, *made_parts(up))
 
     def result(self, figures: Mapping[str, Any], out: FabricationOutput) -> str:
         return f"{figures['parts']:,} parts, {figures['mass']:.4g} kg, {figures['sheets']} sheets"
@@ -89,6 +66,7 @@ class FabricationStage(Stage[FabricationOutput]):
         named = ("fabrication.end_distance", "fabrication.hub_radius")
         yield from (with_keys(warning, *named) for warning in out.parts.warnings)
         yield from out.hardware.warnings
+        yield from out.notes
         if up.project.joint is not None:
             from lamella.stages.fabrication.scene import solids_left_out
 
@@ -122,6 +100,10 @@ class FabricationStage(Stage[FabricationOutput]):
             yield File("fabrication/hardware.csv", lambda path: write_hardware(path, out.hardware, **signed))
             yield File("fabrication/places.csv", lambda path: write_places(path, out.hardware, **drawn))
             yield File("fabrication/plates.dxf", lambda path: write_plates(path, out.hardware, **signed))
+        if out.plates:
+            from lamella.hardware.plate_sheets_drawing import write_plate_sheets
+
+            yield File("fabrication/plate_sheets.dxf", lambda path: write_plate_sheets(path, out.plates, **signed))
         if up.project.joint is not None or up.project.files.solids:
             yield File("model.glb", lambda path: write_whole(path, self._glb(out, up)))
 

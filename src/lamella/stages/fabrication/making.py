@@ -1,0 +1,65 @@
+"""Parts, what joins them, and where all of it is cut from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from lamella.base.arrays import Integers
+from lamella.fabrication.part import Parts
+from lamella.fabrication.parts import make_parts
+from lamella.fabrication.sheet import nest
+from lamella.fabrication.stock_nesting import nest_on_stock
+from lamella.hardware.item import Hardware
+from lamella.hardware.plate_sheets import plate_sheets
+from lamella.stages.fabrication.defaults import (
+    cable_rules,
+    joint_rules,
+    part_measures,
+    splice_room,
+    stocks_of,
+    supply_of,
+)
+from lamella.stages.fabrication.output import FabricationOutput
+from lamella.stages.keys import keys
+from lamella.stages.lamellas.stage import strips_of
+from lamella.stages.network.stage import other_cells
+from lamella.stages.stage import Upstream
+
+
+def made_parts(up: Upstream, borders: Sequence[Integers] | None = None) -> tuple[Parts, Hardware]:
+    """Parts and hardware of a project, lamellas cut in some cells too (see `lamella.fabrication.splits.split`)."""
+    project, cut = up.project, up.project.fabrication
+    net, strips = up.outputs["network"], strips_of(project, up.surface)
+    lamellas = up.outputs["lamellas"].lamellas
+    others = other_cells(net, up)
+    with keys("fabrication", height="lamella.height", stock="stock"):
+        parts = make_parts(
+            net.network,
+            lamellas,
+            density=project.material().density,
+            others=lambda fault: others.without(lambda net: fault(net, strips(net))),
+            supply=supply_of(project, up.surface),
+            borders=borders,
+            splice_room=splice_room(project),
+            **part_measures(cut),
+        )
+    if project.joint is None:
+        return parts, Hardware()
+    from lamella.hardware.make_hardware import make_hardware
+
+    measures = joint_rules(project, project.joint), cable_rules(project)
+    with keys("joint", prestress="cables.prestress"):
+        joined = make_hardware(lamellas, parts, *measures)
+    return joined.parts, joined.hardware
+
+
+def laid(up: Upstream, parts: Parts, hardware: Hardware) -> FabricationOutput:
+    """Parts, and plates where there is stock, on what they are cut from."""
+    project, area = up.project, up.figures["surface"]["area"]
+    cut = project.fabrication
+    with keys("fabrication", stock="stock"):
+        supply = supply_of(project, up.surface)
+        if supply is None:
+            return FabricationOutput(parts, nest(parts, sheet=cut.sheet, gap=cut.gap), area, hardware)
+        plates, notes = plate_sheets(hardware, stocks_of(project), cut.gap)
+        return FabricationOutput(parts, nest_on_stock(parts, supply), area, hardware, supply, plates, notes)

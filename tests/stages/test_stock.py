@@ -1,0 +1,115 @@
+"""A project with [[stock]]: figures, plates on their sheets as drawn, one message for what cannot be."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+from ezdxf.path import make_path
+
+import lamella
+from lamella import InputError, compute, parse_project, write
+from lamella.stages.check import check_project
+
+PROJECT = {
+    "surface": {"kind": "enneper", "order": 3, "radius": 0.8, "scale": 3.0},
+    "network": {"cells": 8},
+    "lamella": {"layer_curves": "offset"},
+    "joint": {"block_bolt": 0.005},
+    "stock": [{"kind": "bar", "length": 3.0}, {"kind": "sheet", "size": [0.5, 1.0]}],
+}
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[lamella.Results, Path]:
+    results = compute(parse_project(PROJECT))
+    folder = tmp_path_factory.mktemp("stock") / "run"
+    write(results, folder)
+    return results, folder
+
+
+def closed(path: Path) -> dict[str, list[tuple[str, int, np.ndarray]]]:
+    """Closed outlines of a drawing by layer: id, copy, points in mm."""
+    found: dict[str, list[tuple[str, int, np.ndarray]]] = {}
+    for entity in ezdxf.readfile(path).modelspace().query("LWPOLYLINE"):
+        if not entity.closed:
+            continue
+        points = np.array([(p.x, p.y) for p in make_path(entity).flattening(0.01)])
+        tag = entity.get_xdata("LAMELLA") if entity.has_xdata("LAMELLA") else []
+        values = dict(tag)
+        found.setdefault(entity.dxf.layer, []).append((values.get(1000, ""), values.get(1071, 0), points))
+    return found
+
+
+def test_every_plate_lies_once_on_a_sheet_of_its_own_thickness(written: tuple[lamella.Results, Path]) -> None:
+    results, folder = written
+    drawn = closed(folder / "fabrication" / "plate_sheets.dxf")
+    hardware = results._of("fabrication", "hardware")
+    plates = {item.id: item for item in hardware if item.plate}
+    # outlines and holes
+    wanted = Counter()
+    for item in plates.values():
+        wanted[item.id] = item.quantity * (1 + len(item.cut.holes))
+    assert Counter(tag for tag, _, _ in drawn["CUT"]) == wanted
+    assert len({(tag, copy) for tag, copy, _ in drawn["CUT"]}) == sum(item.quantity for item in plates.values())
+    outer = {}
+    for tag, copy, points in drawn["CUT"]:
+        box = np.stack([points.min(axis=0), points.max(axis=0)])
+        have = outer.get((tag, copy))
+        outer[tag, copy] = box if have is None or np.prod(box[1] - box[0]) > np.prod(have[1] - have[0]) else have
+    sheets = [np.stack([points.min(axis=0), points.max(axis=0)]) for *_, points in drawn["SHEET"]]
+    where = {}
+    for key, box in outer.items():
+        inside = [k for k, sheet in enumerate(sheets) if (box[0] > sheet[0]).all() and (box[1] < sheet[1]).all()]
+        assert len(inside) == 1
+        where.setdefault(inside[0], []).append((plates[key[0]].thickness, box))
+    for here in where.values():
+        assert len({round(thickness, 9) for thickness, _ in here}) == 1
+        low, high = np.array([box[0] for _, box in here]), np.array([box[1] for _, box in here])
+        apart = np.maximum(low[:, None] - high, low - high[:, None]).max(axis=2) + np.eye(len(here)) * 1e9
+        assert apart.min() >= 10 - 0.05
+
+
+def test_figures_of_stock_fit_together(written: tuple[lamella.Results, Path]) -> None:
+    results, folder = written
+    figures = results.summary["fabrication"]
+    assert figures["bar_use"] >= 0.9
+    assert figures["sheet_use"] is None
+    bars, *sheets = figures["stock"]
+    assert bars["pieces"] == figures["sheets"]
+    # mass of the stock = parts without their holes, and what is left over
+    whole = 7900 * 0.0015 * 0.1 * 3.0 * bars["pieces"]
+    assert whole == pytest.approx(bars["cost"])
+    strips = results.parts
+    area = sum(part.quantity * part.area for part in strips.parts)
+    assert bars["offcut_mass"] == pytest.approx(whole - 7900 * 0.0015 * area)
+    assert {one["thickness"] for one in sheets} == {
+        one["thickness"] for one in figures["cut_length"] if one["thickness"] != 0.0015
+    }
+    # of the drawing, to its own rounding
+    drawn = closed(folder / "fabrication" / "sheets.dxf")["CUT"]
+    length = sum(float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) for *_, points in drawn)
+    told = {one["thickness"]: one["length"] for one in figures["cut_length"]}
+    assert told[0.0015] == pytest.approx(length / 1e3, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("stock", "where"),
+    [
+        ([{"kind": "bar"}], "stock[0].length"),
+        ([{"kind": "sheet", "size": [3.0, 1.5], "length": 2.0}], "stock[0].length"),
+        ([{"kind": "bar", "length": 3.0, "thickness": 0.002}], "stock[0].thickness"),
+        ([{"kind": "coil", "width": 0.1}], "stock[0].length"),
+        ([{"kind": "sheet", "size": [3000, 150000]}], "stock[0].size"),
+        ([{"kind": "bar", "length": 6.0, "price": 3.0}, {"kind": "bar", "length": 3.0}], "stock[1].price"),
+        ([{"kind": "sheet", "size": [3.0, 1.5], "thickness": 0.002}], "stock"),
+        ([{"kind": "sheet", "size": [3.0, 0.1]}], "stock"),
+    ],
+)
+def test_stock_that_cannot_be_is_refused_with_its_key(stock: list[dict[str, object]], where: str) -> None:
+    with pytest.raises(InputError) as refused:
+        check_project(parse_project(PROJECT | {"stock": stock}))
+    assert refused.value.where == where
