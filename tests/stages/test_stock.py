@@ -106,7 +106,7 @@ def test_figures_of_stock_fit_together(written: tuple[lamella.Results, Path]) ->
         ([{"kind": "sheet", "size": [3000, 150000]}], "stock[0].size"),
         ([{"kind": "bar", "length": 6.0, "price": 3.0}, {"kind": "bar", "length": 3.0}], "stock[1].price"),
         ([{"kind": "sheet", "size": [3.0, 1.5], "thickness": 0.002}], "stock"),
-        ([{"kind": "sheet", "size": [3.0, 0.1]}], "stock"),
+        ([{"kind": "sheet", "size": [3.0, 0.11]}], "stock"),
     ],
 )
 def test_stock_that_cannot_be_is_refused_with_its_key(stock: list[dict[str, object]], where: str) -> None:

@@ -23,7 +23,7 @@ TOLERANCES = (0.0005, 0.004, 0.02)
 # a piece of a strip that is cut once more than it has to be has this many cells at least, and so has its rest
 LEAST_CELLS = 2
 # strips looked at for a piece that fills what is left of a lane
-LOOKED_AT = 24
+STRIPS_LOOKED_AT = 24
 # places of a strip's first cut that are tried
 FIRST_CUTS = 12
 
@@ -303,9 +303,11 @@ class _Filling:
         best: tuple[int, int, int] | None = None
         # strips that are laid whole go from the list as they are met
         self.longest = [
-            number for number in self.longest[:LOOKED_AT] if self.begin[number] < len(self.strips[number].bounds) - 1
-        ] + self.longest[LOOKED_AT:]
-        for number in [one for one in self.longest[:LOOKED_AT] if one not in taken]:
+            number
+            for number in self.longest[:STRIPS_LOOKED_AT]
+            if self.begin[number] < len(self.strips[number].bounds) - 1
+        ] + self.longest[STRIPS_LOOKED_AT:]
+        for number in [one for one in self.longest[:STRIPS_LOOKED_AT] if one not in taken]:
             found = self.strips[number].further(self.begin[number], room)
             if found and (best is None or found[0] > best[0]):
                 best = found[0], number, found[1]
