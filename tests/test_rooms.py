@@ -75,7 +75,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "structure.model": ("base", "network", "strip", "hardware", "structure", "structure.beam", "structure.actions"),
     "cutting": ("base",),
     "fabrication": ("base", "network", "strip", "cutting", "files.write"),
-    "hardware": ("base", "network", "strip", "cutting", "fabrication", "files", "files.write"),
+    "hardware": ("base", *SURFACES, "network", "strip", "cutting", "fabrication", "files", "files.write"),
     "solid": ("base", "network", "strip", "fabrication", "hardware"),
     "view": ("base", *SURFACES, "surface.boundary", "network", "strip", "fabrication", *FILES, *PROJECTIONS),
     "stages": STAGE_NEEDS,

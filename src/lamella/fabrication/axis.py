@@ -152,6 +152,7 @@ def outline(
     *,
     slot_play: float = 0.0,
     foot_radius: float = 0.0,
+    ends: Floats | None = None,
 ) -> Floats:
     """Closed counter-clockwise outline of a strip, its slots as notches.
 
@@ -172,6 +173,9 @@ def outline(
         Whether slots begin at the +n edge.
     slot_play, foot_radius : float
         m.
+    ends : (2, 2), optional
+        Of the start and of the end the stations of the corners at the -n and at the +n edge, m; perpendicular to the
+        centre line where it is not given.
 
     Returns
     -------
@@ -179,24 +183,29 @@ def outline(
         x, y in m and the bulge (tangent of a quarter of the arc's angle) of the segment to the next vertex.
     """
     side = 0.5 * height if from_above else -0.5 * height
-    plain = _chain(axis, -side, slots[:0], slot_width)
-    notched = _chain(axis, side, slots, slot_width, slot_play, foot_radius)
+    corners = axis.knots[[[0, 0], [-1, -1]]] if ends is None else ends
+    lower, upper = corners[:, 0], corners[:, 1]
+    plain = _chain(axis, -side, lower if from_above else upper, slots[:0], slot_width)
+    notched = _chain(axis, side, upper if from_above else lower, slots, slot_width, slot_play, foot_radius)
     below, above = (plain, notched) if from_above else (notched, plain)
     back = above[::-1].copy()
     back[:-1, 2], back[-1, 2] = -above[-2::-1, 2], 0.0
     return np.concatenate((below, back))
 
 
-def _chain(axis: Axis, z: float, slots: Floats, width: float, play: float = 0.0, radius: float = 0.0) -> Floats:
+def _chain(
+    axis: Axis, z: float, ends: Floats, slots: Floats, width: float, play: float = 0.0, radius: float = 0.0
+) -> Floats:
     """One edge from start to end with its notches, (v, 3) as in `outline`."""
     p = 0.5 * width
     begin, end = axis.edge_stations(slots, z, -p), axis.edge_stations(slots, z, p)
     inner = axis.knots[1:-1]
+    inner = inner[(inner > ends[0]) & (inner < ends[1])]
     # arcs go over into each other inside of a notch too, where there is no edge
     notch = np.searchsorted(begin, inner, side="right") - 1
     if len(slots):
         inner = inner[(notch < 0) | (inner >= end[notch])]
-    edge = np.sort(np.concatenate((axis.knots[[0]], inner, begin, end, axis.knots[[-1]])))
+    edge = np.sort(np.concatenate((ends[:1], inner, begin, end, ends[1:])))
     points = axis.develop(edge, z)
     inwards = -np.sign(z)
     feet = axis.develop(slots, inwards * play)

@@ -102,12 +102,15 @@ class LayerStrips:
     slot_width: Floats
 
     @classmethod
-    def of(cls, network: Network, lamellas: Lamellas, slot_width: float) -> LayerStrips:
-        """The strips of lamellas whose slots are `slot_width` (m) wide where they cross at a right angle."""
+    def of(cls, network: Network, lamellas: Lamellas, slot_width: float, *, own: bool = False) -> LayerStrips:
+        """The strips of lamellas whose slots are `slot_width` (m) wide where they cross at a right angle.
+
+        `own` makes every layer a strip of its own.
+        """
         section, layers = lamellas.section, lamellas.layers
         oblique = Oblique.of(network)
         stations = lamellas.stop_stations[None]
-        if (section.own_parts or not oblique.right) and section.layers > 1:
+        if (own or section.own_parts or not oblique.right) and section.layers > 1:
             at = crossings(network)[network.stop_nodes]
             off = [np.where(at, oblique.shift(d), 0.0) for d in section.layer_offsets.tolist()]
             stations = layers.stop_stations + np.stack(off)

@@ -75,6 +75,9 @@ class Part(Shown):
         Of one piece, kg.
     holes : (b, 3)
         Round holes: station, height over the centre line and diameter, m.
+    corners : (2, 2)
+        Of the start and of the end the stations of the corners at the -n and at the +n edge, m: equal but at edge
+        beams, where strips are cut obliquely.
 
     Examples
     --------
@@ -104,6 +107,7 @@ class Part(Shown):
     mass: float
     slot_play: float = 0.0
     holes: Floats = field(default_factory=lambda: np.empty((0, 3)))
+    corners: Floats = field(default_factory=lambda: np.empty((0, 2)))
 
     def _line(self) -> str:
         return f"{self.label}: {self.length:.4g} m, {counted(len(self.slots), 'slot')}, {self.mass:.4g} kg"

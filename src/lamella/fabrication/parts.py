@@ -15,9 +15,10 @@ from lamella.fabrication.flat import outline_area
 from lamella.fabrication.layer_strips import LayerStrip, LayerStrips
 from lamella.fabrication.part import Part, Parts
 from lamella.fabrication.rules import LENGTH_ROUNDING, Rules
-from lamella.fabrication.spans import Span
+from lamella.fabrication.spans import SQUARE, Span
 from lamella.fabrication.splits import split
 from lamella.fabrication.stock import Supply
+from lamella.fabrication.trims import Trims
 from lamella.fabrication.warnings import FabricationWarnings
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas, Section, crossings
@@ -40,6 +41,7 @@ def make_parts(
     supply: Supply | None = None,
     borders: Sequence[Integers] | None = None,
     splice_room: float = 0.0,
+    trims: Trims | None = None,
     others: Callable[[Callable[[Network, Lamellas], bool]], str] | None = None,
 ) -> Parts:
     """Flat parts of every lamella.
@@ -76,6 +78,8 @@ def make_parts(
         Of each lamella: cells in whose middle it is cut, by the number of the node before.
     splice_room : float
         Half a splice and what it keeps from a slot, m; with stock no cut is nearer to a slot.
+    trims : Trims, optional
+        Where strips end at edge beams; every layer is then a part of its own.
     others : callable, optional
         Finds another number of cells whose net and lamellas have no such fault, in words.
 
@@ -107,7 +111,7 @@ def make_parts(
         slot_width = default_slot_width(lamellas.section.thickness)
     if end_distance is None:
         end_distance = default_end_distance(slot_width, network.normal_curvature, lamellas.section.height)
-    strips = LayerStrips.of(network, lamellas, slot_width)
+    strips = LayerStrips.of(network, lamellas, slot_width, own=trims is not None)
     notes = FabricationWarnings()
     hub_radius = _hub_radius(network, strips, hub_radius, slot_width, notes)
     rules = _rules(network, lamellas.section, density, strips.bow)(
@@ -122,7 +126,7 @@ def make_parts(
         transport_length=np.inf if transport_length is None else transport_length,
     )
     rules.check()
-    spans = _spans(network, strips, rules, notes)
+    spans = _spans(network, strips, rules, trims, notes)
     cuts = split(
         spans,
         rules,
@@ -171,7 +175,9 @@ def _hub_radius(
     return radius
 
 
-def _spans(network: Network, strips: LayerStrips, rules: Rules, notes: FabricationWarnings) -> list[Span]:
+def _spans(
+    network: Network, strips: LayerStrips, rules: Rules, trims: Trims | None, notes: FabricationWarnings
+) -> list[Span]:
     """All strips of which something remains between their ends."""
     crossing, singular = crossings(network), network.node_kinds == SINGULAR
     spans = []
@@ -179,7 +185,8 @@ def _spans(network: Network, strips: LayerStrips, rules: Rules, notes: Fabricati
         nodes = network.stop_nodes[int(network.stop_offsets[index]) : int(network.stop_offsets[index + 1])]
         family, closed = str(network.families[index]), bool(network.closed[index])
         for strip in strips.of_lamella(index):
-            span = Span.of(strip, family, closed, crossing[nodes], singular[nodes], rules)
+            ends = SQUARE if trims is None else trims.of(index, strip.layer or 1)
+            span = Span.of(strip, family, closed, crossing[nodes], singular[nodes], rules, ends)
             if span.length > rules.slot_width:
                 spans.append(span)
             else:
@@ -211,11 +218,16 @@ def _pieces(span: Span, cuts: Floats, rules: Rules, notes: FabricationWarnings) 
     for piece, (low, high) in enumerate(zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)):
         # a hub's node lies beyond the strip's end but belongs to its first or last piece
         inside = (stations > (low if piece else -np.inf)) & (stations < (high if piece < len(cuts) else np.inf))
+        corners = np.array([[low, low], [high, high]])
+        for side, at_end in enumerate((piece == 0, piece == len(cuts))):
+            if at_end and not np.isnan(span.trims[side, 0]):
+                corners[side] = span.trims[side]
         yield _part(
             f"{strip.name}.{piece + 1}" if len(cuts) else strip.name,
             strip,
             span.family,
             strip.axis(low, high),
+            corners,
             stations[inside],
             (stations[:, None] + span.shifts)[inside & crossing],
             float(width[inside & crossing].max(initial=rules.slot_width)),
@@ -229,6 +241,7 @@ def _part(
     strip: LayerStrip,
     family: str,
     axis: Axis,
+    corners: Floats,
     nodes: Floats,
     wanted: Floats,
     slot_width: float,
@@ -237,12 +250,11 @@ def _part(
 ) -> Part:
     """One part with its slots, all as wide as its widest one, or without where they would come too close."""
     slots = np.sort(wanted.ravel())
-    start, end = float(axis.knots[0]), float(axis.knots[-1])
     left_out = 0
     if len(slots):
         scale = axis.least_scale(0.5 * rules.height if family == "A" else -0.5 * rules.height)
         between = scale * np.diff(slots)
-        outside = scale * min(slots[0] - start, end - slots[-1])
+        outside = scale * min(slots[0] - corners[0].max(), corners[1].min() - slots[-1])
         needed = 2 * slot_width - LENGTH_ROUNDING
         if outside < 0.75 * needed or (len(between) and between.min() < needed):
             left_out, slots = len(slots), slots[:0]
@@ -255,6 +267,7 @@ def _part(
         family == "A",
         slot_play=rules.slot_play,
         foot_radius=rules.foot_radius,
+        ends=corners,
     )
     area = outline_area(vertices)
     return Part(
@@ -277,4 +290,5 @@ def _part(
         outline=vertices,
         area=area,
         mass=rules.density * rules.thickness * area,
+        corners=corners,
     )

@@ -39,6 +39,9 @@ class SlotReadBack:
         x, y (mm) and bulge.
     holes : (b, 3)
         Distance along the centre line, height over it and diameter of round holes, mm.
+    corners : (2, 2)
+        Of the start and of the end the distances along the centre line of the corners at the -n and at the +n edge,
+        mm; equal but where it is cut obliquely.
     """
 
     slots: Floats
@@ -48,6 +51,7 @@ class SlotReadBack:
     curvature: float
     outline: Floats
     holes: Floats
+    corners: Floats
 
 
 def read_slots(path: Path) -> dict[str, SlotReadBack]:
@@ -103,7 +107,6 @@ def _measure(outline: Floats, marks: list[tuple[float, float]], circles: list[Fl
     reflex = turn < -SHARP_CORNER
     foot = reflex & np.roll(reflex, -1)
     feet = 0.5 * (points + np.roll(points, -1, axis=0))[foot]
-    start, height = 0.5 * (points[0] + points[-1]), float(np.hypot(*(points[-1] - points[0])))
     # on the edge without notches the strip's end is the first corner; notches begin with one and a reflex one
     corners = np.flatnonzero(np.abs(turn) > SHARP_CORNER)
     corners = corners[(corners > 0) & (corners < len(points) - 1)]
@@ -113,28 +116,46 @@ def _measure(outline: Floats, marks: list[tuple[float, float]], circles: list[Fl
     angle = 4 * np.arctan(bulges[edge]) * (1 if lower else -1)
     chord = np.hypot(*ahead[edge].T)
     arc = chord / np.sinc(0.5 * angle / np.pi)
+    begin, other = (points[0], points[-1]) if lower else (points[-1], points[0])
+    heading = float(leave[0]) if lower else float(come[-1]) + np.pi
+    height = abs(_away(other - begin, heading, float(angle[0] / arc[0])))
     # an edge at the height z is shorter than the centre line by z times its turn
-    steps = arc + angle * (-0.5 * height if lower else 0.5 * height)
+    z = -0.5 * height if lower else 0.5 * height
+    steps = arc + angle * z
     knots = np.append(0.0, np.cumsum(steps))
     axis = Axis.of(knots, angle / steps)
     # from the axis' own frame into the drawing
-    middle = axis.develop(knots[[0, -1]], 0.0)
-    turn = _angle(points[-1] - points[0]) - _angle(_upwards(axis, knots[0]))
+    corner_place, far = axis.develop(knots[[0, -1]], z)
+    turned = _angle(points[corner if lower else corner + 1] - begin) - _angle(far - corner_place)
     holes = np.array(circles).reshape(-1, 2, 3)[:, :, :2]
-    places = np.concatenate((feet, np.array(marks).reshape(-1, 2), holes.mean(axis=1)))
-    flat = _turned(places - start, -turn) + middle[0]
+    ends = points[[0, -1, corner, corner + 1]]
+    places = np.concatenate((ends, feet, np.array(marks).reshape(-1, 2), holes.mean(axis=1)))
+    flat = _turned(places - begin, -turned) + corner_place
     stations = axis.stations(flat)
-    length = float(knots[-1])
-    first = len(feet) + len(marks)
+    start, end = float(stations[:2].min()), float(stations[2:4].max())
+    stations = stations - start
+    first = 4 + len(feet)
+    last = first + len(marks)
+    bored = _holes(axis, flat[last:], np.linalg.norm(holes[:, 1] - holes[:, 0], axis=1))
+    bored[:, 0] -= start
     return SlotReadBack(
-        np.sort(stations[: len(feet)]),
-        np.sort(stations[len(feet) : first]),
-        length,
+        np.sort(stations[4:first]),
+        np.sort(stations[first:last]),
+        end - start,
         height,
-        float(angle.sum() / length),
+        float(angle.sum() / knots[-1]),
         measured,
-        _holes(axis, flat[first:], np.linalg.norm(holes[:, 1] - holes[:, 0], axis=1)),
+        bored,
+        stations[:4].reshape(2, 2),
     )
+
+
+def _away(vector: Floats, heading: float, curvature: float) -> float:
+    """Distance to the left of a circle through the origin, with a heading and a curvature there, of a point, signed."""
+    ahead = float(vector[0] * np.cos(heading) + vector[1] * np.sin(heading))
+    left = float(vector[1] * np.cos(heading) - vector[0] * np.sin(heading))
+    square = ahead**2 + left**2
+    return float((2 * left - curvature * square) / (1 + np.sqrt(1 + curvature**2 * square - 2 * curvature * left)))
 
 
 def _sharp(outline: Floats) -> Floats:
@@ -158,12 +179,6 @@ def _holes(axis: Axis, centres: Floats, diameters: Floats) -> Floats:
     holes = np.column_stack([stations, away[:, 1] * np.cos(heading) - away[:, 0] * np.sin(heading), diameters])
     # rounded, so that holes above each other come in the order of their heights
     return np.asarray(holes[np.lexsort((holes[:, 1], np.round(holes[:, 0], 6)))])
-
-
-def _upwards(axis: Axis, station: float) -> Floats:
-    """The axis' perpendicular at a station."""
-    heading = float(axis.heading(np.array([station]))[0])
-    return np.array([-np.sin(heading), np.cos(heading)])
 
 
 def _angle(vector: Floats) -> float:

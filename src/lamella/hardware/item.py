@@ -74,6 +74,8 @@ class Item(Result):
         Of what is bought by the metre, m; 0 where that says nothing.
     bent : tuple of Bent
         Plates that are bent into place: each one as it is built; else empty.
+    marks : tuple of (k, 2)
+        Lines that are engraved on a plate, m: where it is folded.
     """
 
     id: str
@@ -86,6 +88,7 @@ class Item(Result):
     plate: bool = False
     length: float = 0.0
     bent: tuple[Bent, ...] = ()
+    marks: tuple[Floats, ...] = ()
 
     def _line(self) -> str:
         return f"{self.id}: {self.quantity} x {self.description}, {self.mass:.4g} kg each"

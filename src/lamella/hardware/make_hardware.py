@@ -12,8 +12,10 @@ from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.wording import counted
 from lamella.fabrication.part import Parts
+from lamella.hardware.beam_axes import EdgeBeamAxes
 from lamella.hardware.bores import Bores, drilled
 from lamella.hardware.cables import cables
+from lamella.hardware.edge_beams import edge_beams
 from lamella.hardware.grid_joint import grid_joints, seats
 from lamella.hardware.hubs import hubs, singular_rays
 from lamella.hardware.item import Hardware, Item
@@ -42,7 +44,13 @@ class Joined:
     parts: Parts
 
 
-def make_hardware(lamellas: Lamellas, parts: Parts, rules: JointRules, cable_rules: CableRules | None = None) -> Joined:
+def make_hardware(
+    lamellas: Lamellas,
+    parts: Parts,
+    rules: JointRules,
+    cable_rules: CableRules | None = None,
+    beams: EdgeBeamAxes | None = None,
+) -> Joined:
     """Hardware for lamellas and their parts.
 
     Parameters
@@ -53,6 +61,8 @@ def make_hardware(lamellas: Lamellas, parts: Parts, rules: JointRules, cable_rul
     rules : JointRules
     cable_rules : CableRules, optional
         Without it there are no cables; they need washers.
+    beams : EdgeBeamAxes, optional
+        Edge beams, whose trims the parts were made with.
 
     Raises
     ------
@@ -68,7 +78,7 @@ def make_hardware(lamellas: Lamellas, parts: Parts, rules: JointRules, cable_rul
     notes: list[Message] = []
     frames = NodeFrames.of(network)
     length = rules.star_length(section, frames.least_angle)
-    half_joint = length / 2 if rules.washer else section.offset * section.layers / 2
+    half_joint = half_joint_of(lamellas, rules)
     keep_clear = np.full(len(network.stop_nodes), half_joint)
     if rules.washer:
         above = np.zeros(len(frames))
@@ -91,6 +101,12 @@ def make_hardware(lamellas: Lamellas, parts: Parts, rules: JointRules, cable_rul
     keep_clear = np.where(
         network.node_kinds[network.stop_nodes] == SINGULAR, np.maximum(keep_clear, hub_radius), keep_clear
     )
+    if beams is not None:
+        edge = edge_beams(lamellas, beams, rules, half_joint)
+        items += edge.items
+        bores.append(edge.bores)
+        keep_clear = np.maximum(keep_clear, edge.keep_clear)
+        notes += edge.warnings
     if rules.block_spacing and section.layers > 1:
         blocks = shear_blocks(lamellas, rules, keep_clear, _spliced(parts, lamellas, rules))
         items += blocks.items
@@ -102,6 +118,14 @@ def make_hardware(lamellas: Lamellas, parts: Parts, rules: JointRules, cable_rul
         items += joined.items
         drilled_parts = joined.parts
     return Joined(Hardware(tuple(items), tuple(notes)), drilled_parts)
+
+
+def half_joint_of(lamellas: Lamellas, rules: JointRules) -> float:
+    """From a node to where its joint ends along its lamellas, m."""
+    section = lamellas.section
+    if rules.washer:
+        return rules.star_length(section, NodeFrames.of(lamellas.network).least_angle) / 2
+    return section.offset * section.layers / 2
 
 
 def _hub_radius(parts: Parts) -> float:

@@ -18,7 +18,7 @@ TEXT, SPACE = 0.008, 0.02
 
 
 def write_plates(path: Path, hardware: Hardware, *, name: str, version: str) -> None:
-    """Write the drawing: outlines and holes on layer CUT, what a plate is on layer TEXT beside it.
+    """Write the drawing: outlines and holes on layer CUT, folds on layer MARK, what a plate is on layer TEXT beside it.
 
     Entities carry extended data of the application "LAMELLA": the plate's id.
 
@@ -48,6 +48,8 @@ def _block(item: Item, owner: str, width: float) -> Block:
     prism = item.cut
     for outline in (prism.outline, *prism.holes):
         writer.polyline("CUT", outline * (MM, MM, 1.0), closed=True, tag=item.id)
+    for line in item.marks:
+        writer.polyline("MARK", MM * line, closed=False, tag=item.id)
     left = float(outline_points(prism.outline)[:, 0].min())
     at = np.array([left + width + SPACE, -TEXT / 2])
     text = f"{item.id.upper()}  {item.quantity} PIECES  T {MM * item.thickness:g}  {item.material.upper()}"

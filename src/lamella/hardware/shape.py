@@ -60,12 +60,16 @@ class Sweep:
         Where the cross section's y points, about.
     holes : tuple of (w, 3)
         Outlines of what is hollow.
+    cuts : (2, 3), optional
+        Normals of the planes that cut its start and its end; perpendicular to it where they are not given. Cut through
+        the axis, it keeps its volume.
     """
 
     outline: Floats
     points: Floats
     up: Floats
     holes: tuple[Floats, ...] = ()
+    cuts: Floats | None = None
 
     @property
     def closed(self) -> bool:

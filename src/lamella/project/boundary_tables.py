@@ -10,6 +10,7 @@ from pydantic import Field, field_validator, model_validator
 from lamella.base.limits import MOST_MOVE, MOST_SCALE, MOST_TILT, MOST_WAVES
 from lamella.base.number_lists import Refusal
 from lamella.base.units import METRES
+from lamella.project.edge_beam_table import EdgeBeamTable
 from lamella.project.values import (
     Direction,
     Name,
@@ -230,6 +231,11 @@ class BoundaryTable(Table):
     slide: SlideTable | None = Field(default=None, description="Where the loop may slide; fixed when not given.")
     adjust: AdjustTable | None = Field(
         default=None, description='How far the loop may be changed where network.closing = "adjust".'
+    )
+
+    edge_beam: EdgeBeamTable | Literal[False] | None = Field(
+        default=None,
+        description="An edge beam of its own instead of the table [edge_beam], or false: none along this loop.",
     )
 
     _default = model_validator(mode="before")(_with_interpolation)

@@ -20,6 +20,7 @@ from lamella.project.boundary_tables import (
     PlaceTable,
     SlideTable,
 )
+from lamella.project.edge_beam_table import EdgeBeamTable
 from lamella.project.fabrication_table import FabricationTable
 from lamella.project.joint_table import CablesTable, JointTable
 from lamella.project.list_tables import LIST_TABLES
@@ -46,6 +47,7 @@ __all__ = [
     "BoundaryTable",
     "CablesTable",
     "CircleTable",
+    "EdgeBeamTable",
     "FabricationTable",
     "FilesTable",
     "FormFoundTable",
@@ -254,6 +256,7 @@ FURTHER_TABLES: dict[str, type[Table]] = {
     "fabrication": FabricationTable,
     "joint": JointTable,
     "cables": CablesTable,
+    "edge_beam": EdgeBeamTable,
     "structure": StructureTable,
     "files": FilesTable,
 }
@@ -278,6 +281,7 @@ class Project(Table):
     joint: JointTable | None = Field(default=None, description=(JointTable.__doc__ or "").strip())
     cables: CablesTable | None = Field(default=None, description=(CablesTable.__doc__ or "").strip())
     stock: Annotated[tuple[StockTable, ...], Field(strict=False)] | None = list_key(StockTable)
+    edge_beam: EdgeBeamTable | None = Field(default=None, description=(EdgeBeamTable.__doc__ or "").strip())
     structure: StructureTable | None = Field(default=None, description=(StructureTable.__doc__ or "").strip())
     support: Annotated[tuple[SupportTable, ...], Field(strict=False)] | None = list_key(SupportTable)
     load: Annotated[tuple[LoadTable, ...], Field(strict=False)] | None = list_key(LoadTable)
@@ -315,6 +319,12 @@ class Project(Table):
                 "cables are clamped by the bolts of the joints, and there are none",
                 "add a table [joint] with washer = true, its default",
                 "cables",
+            )
+        if self.joint is None and self.edge_beam is not None:
+            raise Refusal(
+                "lamellas are bolted to edge beams with the screws of the joints, and there are none",
+                "add a table [joint]",
+                "edge_beam",
             )
         return self
 

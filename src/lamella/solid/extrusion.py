@@ -108,6 +108,9 @@ def sweep_solid(sweep: Sweep) -> Solid:
     section = np.concatenate(rings)
     across = section[:, 0, None] * left[:, None] + section[:, 1, None] * up[:, None]
     across += np.einsum("kvi,ki->kv", across, side)[..., None] * (1 / cosine - 1)[:, None, None] * side[:, None]
+    if sweep.cuts is not None:
+        for end, normal in zip((0, -1), sweep.cuts, strict=True):
+            across[end] -= (across[end] @ normal / (ahead[end] @ normal))[:, None] * ahead[end]
     placed = points[:, None] + across
     count, size = len(points) - closed, len(section)
     triangles = []

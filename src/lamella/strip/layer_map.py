@@ -28,12 +28,15 @@ class LayerMap:
         By the station on the flat strip, or by the arc length of the lamella's centre line, m.
     first, last : float
         Between which the layer's curve is known, m; beyond it goes on straight.
+    whole : (2,)
+        Whether the curve is known up to the lamella's start, and to its end: what lies beyond is cut to its own length.
     """
 
     curve: CubicSpline
     normal: CubicSpline
     first: float
     last: float
+    whole: tuple[bool, bool]
 
     @classmethod
     def of(cls, lamellas: Lamellas, lamella: int, row: int, *, by_arclength: bool = False) -> LayerMap:
@@ -49,6 +52,7 @@ class LayerMap:
             CubicSpline(stations, layers.normals[row, known]),
             float(stations[0]),
             float(stations[-1]),
+            (bool(layers.followed[span.start]), bool(layers.followed[span.stop - 1])),
         )
 
     def frames(self, stations: Floats) -> tuple[Floats, Floats, Floats, Floats]:
@@ -57,6 +61,9 @@ class LayerMap:
         beyond = (stations - at)[:, None]
         point, along = self.curve(at), self.curve(at, 1)
         normal, turning = self.normal(at), self.normal(at, 1)
+        own = ((beyond < 0) & self.whole[0]) | ((beyond > 0) & self.whole[1])
+        speed = np.where(own, np.linalg.norm(along, axis=1)[:, None], 1.0)
+        along, turning = along / speed, turning / speed
         raised = normal + beyond * turning
         length = np.linalg.norm(raised, axis=1)[:, None]
         return point + beyond * along, along, raised / length, turning / length

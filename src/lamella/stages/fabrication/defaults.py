@@ -11,9 +11,11 @@ from lamella.base.material import find_material
 from lamella.fabrication.defaults import default_end_distance, default_hub_radius, default_slot_width
 from lamella.fabrication.rules import Rules, clear_hub
 from lamella.fabrication.stock import DEFAULT_SPLICE_WORTH, SAME, Stock, Supply
+from lamella.hardware.edge_rules import EdgeBeamRules
 from lamella.hardware.rules import CableRules, JointRules
 from lamella.hardware.splices import splice_length
-from lamella.project.tables import FabricationTable, JointTable, Project
+from lamella.project.surface_tables import MOST_LOOPS
+from lamella.project.tables import EdgeBeamTable, FabricationTable, JointTable, Project
 from lamella.stages.keys import keys
 from lamella.strip.lamellas import Section
 from lamella.surface.surface import Surface
@@ -91,6 +93,29 @@ def splice_room(project: Project) -> float:
         return 0.0
     slot_width = project.fabrication.slot_width or default_slot_width(project.lamella.thickness)
     return splice_length(joint_rules(project, project.joint)) / 2 + slot_width + SAME
+
+
+def edge_beam_rules(project: Project, surface: Surface[Any]) -> dict[int, EdgeBeamRules]:
+    """The measures of the edge beams, by boundary loop; nothing where there are none."""
+    if project.joint is None:
+        return {}
+    origin = drawing_origin(surface)
+    tables = [table.edge_beam for table in getattr(project.surface, "boundary", ())]
+    loops = max(len(tables), MOST_LOOPS)
+    found = {}
+    for loop in range(loops):
+        own = tables[loop] if loop < len(tables) else None
+        table = project.edge_beam if own is None else own
+        if table:
+            found[loop] = _edge_beam_rules(project, table, origin[2])
+    return found
+
+
+def _edge_beam_rules(project: Project, table: EdgeBeamTable, origin_height: float) -> EdgeBeamRules:
+    measures = table.model_dump()
+    if table.ground is not None:
+        measures["ground"] = table.ground - origin_height
+    return EdgeBeamRules(density=find_material(table.material, project.known_materials()).density, **measures)
 
 
 @keys("joint")

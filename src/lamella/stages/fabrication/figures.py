@@ -31,7 +31,7 @@ def _hardware(out: FabricationOutput) -> dict[str, Any]:
     for item in out.hardware:
         one = found.setdefault("hub" if item.kind in HUB else item.kind, {"count": 0, "different": 0, "mass": 0.0})
         one["mass"] += item.quantity * item.mass
-        if item.kind == "cable":
+        if item.kind in ("cable", "edge_beam"):
             one["length"] = one.get("length", 0.0) + item.quantity * item.length
         if item.kind not in HUB[1:]:
             one["count"] += item.quantity // 2 if item.kind in HUB else item.quantity
@@ -91,7 +91,7 @@ FIGURES: tuple[Figure[FabricationOutput], ...] = (
         "hardware",
         "",
         "by kind, where `[joint]` is given: `count` (of pieces; of whole hubs), `different` (kinds of them), `mass` "
-        "(kg, of all), of cables `length` (m, of all)",
+        "(kg, of all), of cables and edge beams `length` (m, of all)",
         _hardware,
         {"type": "object", "additionalProperties": OF_KIND},
         rows=_hardware_rows,

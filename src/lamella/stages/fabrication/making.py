@@ -9,10 +9,12 @@ from lamella.fabrication.part import Parts
 from lamella.fabrication.parts import make_parts
 from lamella.fabrication.sheet import nest
 from lamella.fabrication.stock_nesting import nest_on_stock
+from lamella.hardware.beam_axes import EdgeBeamAxes
 from lamella.hardware.item import Hardware
 from lamella.hardware.plate_sheets import plate_sheets
 from lamella.stages.fabrication.defaults import (
     cable_rules,
+    edge_beam_rules,
     joint_rules,
     part_measures,
     splice_room,
@@ -24,6 +26,7 @@ from lamella.stages.keys import keys
 from lamella.stages.lamellas.stage import strips_of
 from lamella.stages.network.stage import other_cells
 from lamella.stages.stage import Upstream
+from lamella.strip.lamellas import Lamellas
 
 
 def made_parts(up: Upstream, borders: Sequence[Integers] | None = None) -> tuple[Parts, Hardware]:
@@ -32,6 +35,7 @@ def made_parts(up: Upstream, borders: Sequence[Integers] | None = None) -> tuple
     net, strips = up.outputs["network"], strips_of(project, up.surface)
     lamellas = up.outputs["lamellas"].lamellas
     others = other_cells(net, up)
+    beams = _edge_beams(up, lamellas)
     with keys("fabrication", height="lamella.height", stock="stock"):
         parts = make_parts(
             net.network,
@@ -41,6 +45,7 @@ def made_parts(up: Upstream, borders: Sequence[Integers] | None = None) -> tuple
             supply=supply_of(project, up.surface),
             borders=borders,
             splice_room=splice_room(project),
+            trims=None if beams is None else beams.trims,
             **part_measures(cut),
         )
     if project.joint is None:
@@ -48,9 +53,23 @@ def made_parts(up: Upstream, borders: Sequence[Integers] | None = None) -> tuple
     from lamella.hardware.make_hardware import make_hardware
 
     measures = joint_rules(project, project.joint), cable_rules(project)
-    with keys("joint", prestress="cables.prestress"):
-        joined = make_hardware(lamellas, parts, *measures)
+    with keys("joint", prestress="cables.prestress", end_plate_leg="edge_beam.end_plate_leg"):
+        joined = make_hardware(lamellas, parts, *measures, beams)
     return joined.parts, joined.hardware
+
+
+def _edge_beams(up: Upstream, lamellas: Lamellas) -> EdgeBeamAxes | None:
+    """Axes of the edge beams, where there are some."""
+    project = up.project
+    rules = edge_beam_rules(project, up.surface)
+    if not rules or project.joint is None:
+        return None
+    from lamella.hardware.beam_axes import edge_beam_axes
+    from lamella.hardware.make_hardware import half_joint_of
+
+    joints = joint_rules(project, project.joint)
+    with keys("edge_beam", block_bolt="joint.block_bolt", offset="lamella.offset"):
+        return edge_beam_axes(lamellas, rules, joints, half_joint_of(lamellas, joints))
 
 
 def laid(up: Upstream, parts: Parts, hardware: Hardware) -> FabricationOutput:

@@ -46,7 +46,7 @@ class FabricationStage(Stage[FabricationOutput]):
         return ("files",)
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
-        return ("fabrication", "joint", "cables", "stock")
+        return ("fabrication", "joint", "cables", "edge_beam", "stock")
 
     def check(self, project: Project, surface: Surface[Any] | None) -> None:
         check_joint(project)

@@ -1,0 +1,252 @@
+"""Edge beams: tubes or flat bars along the rim, in segments, with end plates for the lamellas and base plates.
+
+A beam's axis runs at one distance beside the rim, and its cross section turns with the surface's normal. Segments are
+cut midway between the ends of lamellas that are nearest to them, so that no end plate lies on a joint of the beam; in
+corners of the rim they are mitred. What a segment is bent to is told by the curvatures of its axis c: with the forward
+direction T, the normal n and m = T x n outwards, T' = -kg m + kn n and the twist of the section is tg = n' . m: a tube
+is bent to the radius 1 / sqrt(kg^2 + kn^2), a flat bar about its weak axis by kg, and is cut from a plate to the
+curvature kn and twisted by tg.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lamella.base.arrays import Floats
+from lamella.base.message import Message
+from lamella.base.wording import counted
+from lamella.hardware.base_plates import base_plates
+from lamella.hardware.beam_axes import LEAST_ANGLE, BeamAxis, EdgeBeamAxes
+from lamella.hardware.bores import Bores
+from lamella.hardware.end_plates import end_plates
+from lamella.hardware.item import Item, Places
+from lamella.hardware.rules import MM, JointRules
+from lamella.hardware.shape import Sweep
+from lamella.strip.lamellas import Lamellas
+
+SAG = 2e-5
+"""m; how far straight pieces of a bent beam, as it is drawn, may leave its axis."""
+
+PIECES_MAX = 4000
+"""Straight pieces of a beam at most."""
+
+LEAST_SEGMENT = 0.05
+"""m; what is shorter is no segment."""
+
+STRAIGHT = 1e-3
+"""1/m; a beam that is bent less is straight."""
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeBeams:
+    """Beams with all that is on them.
+
+    Attributes
+    ----------
+    items : tuple of Item
+    bores : Bores
+        Of the layers.
+    keep_clear : (q,)
+        By stop, how far from it no shear block may reach, m.
+    warnings : tuple of Message
+    """
+
+    items: tuple[Item, ...]
+    bores: Bores
+    keep_clear: Floats
+    warnings: tuple[Message, ...]
+
+
+def edge_beams(lamellas: Lamellas, found: EdgeBeamAxes, joints: JointRules, half_joint: float) -> EdgeBeams:
+    """Beams, end plates and base plates.
+
+    Parameters
+    ----------
+    lamellas : Lamellas
+    found : EdgeBeamAxes
+    joints : JointRules
+    half_joint : float
+        From a node to where its joint ends along its lamellas, m.
+    """
+    network = lamellas.network
+    plates = end_plates(lamellas, found, joints, half_joint)
+    items: list[Item] = []
+    for number, axis in enumerate(found.axes):
+        places = np.sort(plates.ends.along[plates.ends.axes == number])
+        items += _segments(axis, places, found.axes)
+    items += plates.items
+    items += base_plates(found.axes)
+    keep_clear = np.zeros(len(network.stop_nodes))
+    ends = plates.ends
+    stops = np.where(ends.last, network.stop_offsets[ends.lamellas + 1] - 1, network.stop_offsets[ends.lamellas])
+    keep_clear[stops] = plates.reach
+    return EdgeBeams(tuple(items), plates.bores, keep_clear, tuple(_notes(found, plates.without)))
+
+
+def _notes(found: EdgeBeamAxes, without: int) -> list[Message]:
+    notes = []
+    every = counted(len(found.ends) + found.askew, "lamella end")
+    if without:
+        notes.append(
+            Message(
+                "ends_without_plate",
+                f"{without} of {every} at edge beams have no end plate: the next joint, a neighbour's plate or a "
+                "corner of the rim is in the way; a smaller end_plate_leg or another number of cells helps",
+            )
+        )
+    if found.askew:
+        notes.append(
+            Message(
+                "ends_askew",
+                f"{found.askew} of {every} at edge beams meet the rim at less than {np.degrees(LEAST_ANGLE):g} deg "
+                "and are not joined to its beam",
+            )
+        )
+    return notes
+
+
+def _segments(axis: BeamAxis, places: Floats, axes: tuple[BeamAxis, ...]) -> list[Item]:
+    """The segments along one piece of the rim, with lamella ends at places, m."""
+    begin, end = _extent(axis, axes)
+    bounds = _bounds(axis, places, begin, end)
+    items = []
+    for number, (low, high) in enumerate(zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)):
+        if high - low < LEAST_SEGMENT:
+            continue
+        mitred = (number == 0 and not axis.piece.closed, number == len(bounds) - 2 and not axis.piece.closed)
+        items.append(_segment(axis, low, high, mitred, axes, f"{axis.name}.{number + 1}"))
+    return items
+
+
+def _extent(axis: BeamAxis, axes: tuple[BeamAxis, ...]) -> tuple[float, float]:
+    """Parameters at which the beam begins and ends, m: where it meets its neighbours in the corners of the rim."""
+    piece = axis.piece
+    if piece.closed:
+        return 0.0, piece.length
+    reach = []
+    for other, at_end in ((_beside(axis, axes, -1), False), (_beside(axis, axes, 1), True)):
+        mine = piece.frames(np.array([piece.length if at_end else 0.0]))
+        if other is None:
+            reach.append(0.0)
+            continue
+        there = other.piece.frames(np.array([0.0 if at_end else other.piece.length]))
+        turn = np.arctan2(
+            float(np.cross(mine.ahead, there.ahead)[0] @ mine.up[0]), float(mine.ahead[0] @ there.ahead[0])
+        )
+        # outwards of a corner that turns to the left the beams go on
+        reach.append(axis.distance * np.tan((turn if at_end else -turn) / 2))
+    return -reach[0], piece.length + reach[1]
+
+
+def _beside(axis: BeamAxis, axes: tuple[BeamAxis, ...], step: int) -> BeamAxis | None:
+    """The beam along the piece of the rim before or after this one."""
+    mine = [one for one in axes if one.piece.loop == axis.piece.loop]
+    index = next(k for k, one in enumerate(mine) if one is axis)
+    return mine[(index + step) % len(mine)] if len(mine) > 1 else None
+
+
+def _bounds(axis: BeamAxis, places: Floats, begin: float, end: float) -> Floats:
+    """Parameters at which segments begin and end, m, the true lengths in between at most as asked for."""
+    piece = axis.piece
+    if piece.closed:
+        begin = _widest(places, piece.length)
+        end = begin + piece.length
+        places = begin + np.sort(np.mod(places - begin, piece.length))
+    middles = (places[1:] + places[:-1]) / 2
+    fine = np.linspace(begin, end, 257)
+    along = np.linalg.norm(np.diff(piece.frames(fine).beside(axis.distance), axis=0), axis=1)
+    true = np.append(0.0, np.cumsum(along))
+    whole = float(true[-1])
+    number = int(np.ceil(whole / axis.rules.segment - 1e-9))
+    at = np.interp(middles, fine, true)
+    bounds = [begin]
+    done = 0.0
+    for left in range(number, 0, -1):
+        # as equal as the places between the ends allow
+        if whole - done <= axis.rules.segment * (1 + 1e-9):
+            break
+        wanted = done + (whole - done) / left
+        free = np.flatnonzero((at > done + LEAST_SEGMENT) & (at <= done + axis.rules.segment))
+        done = float(at[free[np.argmin(np.round(np.abs(at[free] - wanted), 6))]]) if len(free) else wanted
+        bounds.append(float(np.interp(done, true, fine)))
+    return np.array([*bounds, end])
+
+
+def _widest(places: Floats, length: float) -> float:
+    """Middle of the widest gap between places around a closed piece, m."""
+    if len(places) < 2:
+        return 0.0
+    gaps = np.diff(np.append(places, places[0] + length))
+    k = int(np.argmax(np.round(gaps, 6)))
+    return float(places[k] + gaps[k] / 2)
+
+
+def _segment(
+    axis: BeamAxis, low: float, high: float, mitred: tuple[bool, bool], axes: tuple[BeamAxis, ...], name: str
+) -> Item:
+    curve = axis.piece.frames(np.linspace(low, high, 257))
+    middle = curve.beside(axis.distance)
+    length = float(np.linalg.norm(np.diff(middle, axis=0), axis=1).sum())
+    kn, kg, tg = _bend(middle, curve.up)
+    bend = np.hypot(kn, kg)
+    pieces = int(np.clip(np.ceil(length * np.sqrt(bend.max() / (8 * SAG))), 1, PIECES_MAX))
+    if np.abs(tg).max() * length > STRAIGHT and not axis.beam.round:
+        pieces = max(pieces, 64)
+    frames = axis.piece.frames(np.linspace(low, high, pieces + 1))
+    points = frames.beside(axis.distance)
+    cuts = _cuts(axis, frames.ahead, mitred, axes)
+    shape = Sweep(axis.beam.outline, points, frames.up, axis.beam.holes, cuts)
+    here = f"boundary {axis.piece.loop + 1} from {MM * low:.0f} to {MM * high:.0f} mm"
+    places = Places(np.zeros((1, 3)), np.eye(3)[None], (here,))
+    text = f"{axis.beam.name}, {MM * shape.length:.1f} mm, {_bent_to(axis, kn, kg, tg)}"
+    rules = axis.rules
+    return Item(name, "edge_beam", text, rules.material, rules.density, (shape,), places, length=shape.length)
+
+
+def _bend(points: Floats, up: Floats) -> tuple[Floats, Floats, Floats]:
+    """kn, kg and tg of an axis with points and normals (k, 3), at its inner points, 1/m."""
+    step = np.linalg.norm(np.diff(points, axis=0), axis=1)[:, None]
+    ahead = np.diff(points, axis=0) / step
+    half = (step[1:] + step[:-1]) / 2
+    turn = (ahead[1:] - ahead[:-1]) / half
+    normal = up[1:-1]
+    out = np.cross(ahead[1:] + ahead[:-1], normal)
+    out /= np.linalg.norm(out, axis=1)[:, None]
+    twist = (up[2:] - up[:-2]) / (2 * half)
+    return tuple(np.einsum("ij,ij->i", one, two) for one, two in ((turn, normal), (-turn, out), (twist, out)))
+
+
+def _bent_to(axis: BeamAxis, kn: Floats, kg: Floats, tg: Floats) -> str:
+    """What the workshop has to know of a segment's shape."""
+    if axis.beam.round:
+        bend = np.hypot(kn, kg)
+        return _radius(bend)
+    parts = [_radius(np.abs(kg)) + " about its weak axis", "cut " + _radius(np.abs(kn))]
+    turn = np.degrees(np.abs(tg).max())
+    return ", ".join(parts) + (f", twisted by up to {turn:.3g} deg/m" if turn > 0.05 else ", not twisted")
+
+
+def _radius(bend: Floats) -> str:
+    if bend.max() < STRAIGHT:
+        return "straight"
+    least, most = MM / bend.max(), MM / max(bend.min(), STRAIGHT)
+    return f"radius {least:.0f} mm" if most < 1.01 * least else f"radius {least:.0f} mm or more"
+
+
+def _cuts(axis: BeamAxis, ahead: Floats, mitred: tuple[bool, bool], axes: tuple[BeamAxis, ...]) -> Floats | None:
+    """Planes of mitres at the ends of a segment."""
+    if not any(mitred):
+        return None
+    cuts = ahead[[0, -1]].copy()
+    for side, (here, step) in enumerate(zip(mitred, (-1, 1), strict=True)):
+        other = _beside(axis, axes, step) if here else None
+        if other is None:
+            continue
+        at = np.array([other.piece.length if step < 0 else 0.0])
+        both = cuts[side] + other.piece.frames(at).ahead[0]
+        size = float(np.linalg.norm(both))
+        if size > 0.2:
+            cuts[side] = both / size
+    return cuts

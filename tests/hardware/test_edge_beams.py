@@ -1,0 +1,218 @@
+"""Edge beams: their axes, segments, end plates, base plates, and the lamellas' ends at them."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import lamella
+from lamella import InputError, Section
+from lamella.fabrication.drawing import write_drawings
+from lamella.fabrication.parts import make_parts
+from lamella.fabrication.read_back import read_slots
+from lamella.hardware.beam_axes import EdgeBeamAxes, edge_beam_axes
+from lamella.hardware.edge_rules import EdgeBeamRules
+from lamella.hardware.make_hardware import Joined, half_joint_of, make_hardware
+from lamella.hardware.rims import rim_pieces
+from lamella.hardware.rules import JointRules
+from lamella.hardware.shape import Sweep
+from lamella.strip.lamellas import Lamellas
+from lamella.strip.layer_map import LayerMap
+from solid.overlaps import Structure
+
+SECTION = Section(0.1, 0.0015, 2, 0.025)
+JOINTS = JointRules()
+TUBE = EdgeBeamRules(ground=0.0)
+FLAT = EdgeBeamRules(section=None, flat=(0.1, 0.01), segment=2.0)
+
+NETS = {
+    # straight edges of a film, which lamellas meet at right angles
+    "skew square": lambda: lamella.net(
+        lamella.film([lamella.polyline([(0, 0, 0), (4, 0, 1.2), (4, 4, 0), (0, 4, 1.2)])]), cells=8
+    ),
+    # a rim met at all angles, crossings next to it
+    "wavy rim": lambda: lamella.net(lamella.Enneper(3, 0.8, 3.0), cells=8),
+    # two rims, met at 45 degrees
+    "rings": lambda: lamella.net(lamella.Unduloid(1.0, 1.6, (-1.0, 1.0)), cells=8),
+}
+
+
+@cache
+def strips_of(name: str) -> Lamellas:
+    return NETS[name]().strips(SECTION)
+
+
+@cache
+def beams_of(name: str, rules: EdgeBeamRules) -> tuple[EdgeBeamAxes, Joined]:
+    lamellas = strips_of(name)
+    axes = edge_beam_axes(lamellas, {0: rules, 1: rules}, JOINTS, half_joint_of(lamellas, JOINTS))
+    parts = make_parts(lamellas.network, lamellas, density=7900, trims=axes.trims)
+    return axes, make_hardware(lamellas, parts, JOINTS, None, axes)
+
+
+def test_rims_of_known_length_with_the_surface_to_their_left() -> None:
+    # parallels of an unduloid, edges of a square, a circle of the parameter disc
+    unduloid = lamella.Unduloid(1.0, 1.6, (-1.0, 1.0))
+    pieces = rim_pieces(unduloid)
+    assert [piece.closed for piece in pieces] == [True, True]
+    for piece in pieces:
+        radius = np.hypot(*piece.points[0, :2])
+        assert piece.length == pytest.approx(2 * np.pi * radius, rel=1e-4)
+        there = piece.frames(np.linspace(0, piece.length, 7))
+        # outwards is away from the waist
+        assert (there.out[:, 2] * np.sign(there.points[:, 2]) > 0).all()
+        assert np.abs(np.hypot(*there.points[:, :2].T) - radius).max() < 1e-9
+    square = rim_pieces(lamella.Scherk(1.0, 2.5))
+    assert [piece.closed for piece in square] == [False] * 4
+    for piece in square:
+        ends = piece.points[[0, -1]]
+        assert np.abs(ends[:, :2]).max(axis=0) == pytest.approx([2.5, 2.5], rel=1e-12)
+        middle = piece.frames(np.array([piece.length / 2]))
+        assert middle.out[0] @ (middle.points[0] * (1, 1, 0)) > 0
+    corners = {
+        tuple(piece.points[0].round(9).tolist()) for piece in rim_pieces(strips_of("skew square").network.surface)
+    }
+    assert corners == {(0, 0, 0), (4, 0, 1.2), (4, 4, 0), (0, 4, 1.2)}
+
+
+@pytest.mark.parametrize("name", NETS)
+def test_beams_keep_their_distance_from_the_rim_and_their_length(name: str) -> None:
+    axes, made = beams_of(name, FLAT)
+    beams = made.hardware.of("edge_beam")
+    total = 0.0
+    for axis in axes.axes:
+        mine = [item for item in beams if item.id.startswith(f"{axis.name}.")]
+        assert all(item.length <= FLAT.segment + 2 * 0.1 for item in mine)
+        fine = axis.piece.frames(np.linspace(0, axis.piece.length, 4001))
+        curve = fine.beside(axis.distance)
+        total += np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()
+        for item in mine:
+            (shape,) = item.shape
+            assert isinstance(shape, Sweep)
+            assert item.length == pytest.approx(shape.length, rel=1e-12)
+            inner = shape.points[1:-1]
+            if len(inner):
+                away = np.linalg.norm(inner[:, None] - curve[None], axis=2).min(axis=1)
+                assert away.max() < np.linalg.norm(np.diff(curve, axis=0), axis=1).max() / 2 + 1e-4
+    # closed forms of revolution have no corners, a square's sides go on in its corners by the distance
+    corners = 2 * sum(not axis.piece.closed for axis in axes.axes) * axes.axes[0].distance
+    assert sum(item.length for item in beams) == pytest.approx(total + corners, rel=1e-3)
+
+
+def test_a_square_of_straight_tubes_is_mitred() -> None:
+    _, made = beams_of("skew square", TUBE)
+    beams = made.hardware.of("edge_beam")
+    side = np.hypot(4.0, 1.2)
+    assert [item.length for item in beams] == pytest.approx([side] * 4, rel=1e-9)
+    assert all(item.description.endswith("straight") for item in beams)
+    metal = np.pi / 4 * (0.0603**2 - (0.0603 - 2 * 0.0032) ** 2)
+    assert beams[0].mass == pytest.approx(7900 * metal * side, rel=1e-9)
+    # planes of the mitres halve the angle of the corner
+    for item in beams:
+        cuts = item.shape[0].cuts
+        ahead = np.diff(item.shape[0].points, axis=0)[0] / side
+        corner = np.arccos(np.clip((np.array([4, 0, 1.2]) / side) @ (np.array([0, 4, -1.2]) / side), -1, 1))
+        assert np.arccos(cuts @ ahead) == pytest.approx([corner / 2] * 2, abs=1e-6)
+    # of eight corners' ends on the ground two plates are left, one a corner
+    assert [item.quantity for item in made.hardware.of("base plate")] == [2]
+
+
+@pytest.mark.parametrize("name", NETS)
+def test_each_end_plate_has_the_fold_of_its_lamella(name: str) -> None:
+    axes, made = beams_of(name, TUBE)
+    plates = made.hardware.of("end plate")
+    network = strips_of(name).network
+    ids = {one: k for k, one in enumerate(network.ids)}
+    checked = 0
+    for item in plates:
+        fold = float(item.description.split("folded by ")[1].split()[0])
+        for label in item.places.labels:
+            lamella_id, which = label.split()
+            k = ids[lamella_id]
+            at = network.sample_offsets[k + 1] - 1 if which == "end" else network.sample_offsets[k]
+            point, tangent = network.sample_points[at], network.sample_tangents[at]
+            # the rim's direction from its samples alone
+            nearest = min(
+                (axis.piece for axis in axes.axes), key=lambda p: np.linalg.norm(p.points - point, axis=1).min()
+            )
+            at = int(np.argmin(np.linalg.norm(nearest.points - point, axis=1)))
+            chord = nearest.points[min(at + 1, len(nearest.points) - 1)] - nearest.points[max(at - 1, 0)]
+            angle = np.degrees(np.arccos(min(abs(tangent @ chord) / np.linalg.norm(chord), 1.0)))
+            # a plate's distance from the rim turns it by its share of the rim's radius
+            assert fold == pytest.approx(angle, abs=8.0 if name == "wavy rim" else 0.6)
+            checked += 1
+    assert checked == sum(item.quantity for item in plates) > 10
+    told = sum("no end plate" in note for note in made.hardware.warnings)
+    assert checked == len(axes.ends) or told == 1
+    # two screws and two packers a plate
+    screws = [item for item in made.hardware.of("screw") if item.id.startswith("end")]
+    assert sum(item.quantity for item in screws) == 2 * checked
+    assert sum(item.quantity for item in made.hardware.of("end-packer")) == 2 * checked
+
+
+@pytest.mark.parametrize("name", NETS)
+def test_ends_of_both_layers_rebuilt_from_the_drawings_lie_before_the_beam(name: str, tmp_path: Path) -> None:
+    lamellas = strips_of(name)
+    axes, made = beams_of(name, TUBE)
+    write_drawings(tmp_path, made.parts, made.parts.nest(), name="x", version="0")
+    drawn = read_slots(tmp_path / "A.dxf") | read_slots(tmp_path / "B.dxf")
+    told_ends = (values.tolist() for values in (axes.ends.lamellas, axes.ends.last, axes.ends.axes))
+    ends = {(k, last): number for k, last, number in zip(*told_ends, strict=True)}
+    checked, shifts = 0, []
+    for part in made.parts.parts:
+        told = drawn[part.id]
+        assert told.corners / 1e3 + part.start == pytest.approx(part.corners, abs=2e-7)
+        layer = LayerMap.of(lamellas, part.lamella, part.layer - 1)
+        for last in (False, True):
+            if (part.lamella, last) not in ends:
+                continue
+            axis = axes.axes[ends[part.lamella, last]]
+            for z, station in zip((-0.05, 0.05), told.corners[int(last)] / 1e3 + part.start, strict=True):
+                point, _, normal, _ = layer.frames(np.array([station]))
+                corner = (point + z * normal)[0]
+                fine = axis.piece.frames(np.linspace(0, axis.piece.length, 20001))
+                k = int(np.argmin(np.linalg.norm(fine.points - corner, axis=1)))
+                out = (corner - fine.points[k]) @ fine.out[k]
+                assert out == pytest.approx(axis.trim, abs=1e-4)
+            shifts.append(float(np.ptp(told.corners[int(last)])))
+            checked += 1
+    assert checked == 2 * len(axes.ends)
+    # mm: they are cut obliquely
+    assert max(shifts) > 0.5 or name == "skew square"
+
+
+@pytest.mark.parametrize("name", NETS)
+def test_no_two_solids_overlap_at_the_ends(name: str) -> None:
+    lamellas = strips_of(name)
+    _, made = beams_of(name, TUBE)
+    structure = Structure(lamellas, made.parts, made.hardware.items)
+    plates = [k for k in structure.of("end-") if structure.names[k].split()[0].split("-")[1].isdigit()]
+    middles = (structure.low[plates] + structure.high[plates]) / 2
+    assert [pair for place in middles[:: max(len(plates) // 3, 1)] for pair in structure.overlaps(place)] == []
+
+
+@pytest.mark.parametrize(
+    ("rules", "where"),
+    [
+        (EdgeBeamRules(section="tube 30x2"), "end_plate_height"),
+        (EdgeBeamRules(section="pipe 30x2"), "section"),
+        (EdgeBeamRules(section="tube 30x15"), "section"),
+        (EdgeBeamRules(section=None, flat=(0.03, 0.01)), "end_plate_height"),
+        (EdgeBeamRules(section=None, flat=(0.01, 0.1)), "flat"),
+        (EdgeBeamRules(end_plate_height=0.2, section=None, flat=(0.3, 0.01)), "end_plate_height"),
+        (EdgeBeamRules(end_plate_height=0.01), "end_plate_height"),
+        (EdgeBeamRules(end_plate=0.03), "end_plate"),
+        (EdgeBeamRules(end_plate_leg=0.008), "end_plate_leg"),
+        (EdgeBeamRules(ground=0.0, base_plate=0.06, anchor=0.02), "base_plate"),
+        (EdgeBeamRules(distance=-0.5), "distance"),
+        (EdgeBeamRules(end_plate_leg=0.9), "end_plate_leg"),
+    ],
+)
+def test_bad_measures_are_refused_with_their_limit(rules: EdgeBeamRules, where: str) -> None:
+    with pytest.raises(InputError) as refused:
+        beams_of("skew square", rules)
+    assert refused.value.where == where
+    assert any(digit.isdigit() for digit in refused.value.remedy)
