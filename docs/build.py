@@ -39,7 +39,7 @@ from lamella.project.tables import (
     Table,
     project_schema,
 )
-from lamella.stages.all_stages import STAGES, TO_COME, WRITES
+from lamella.stages.all_stages import STAGES, WRITES
 from lamella.stages.results import Results
 from lamella.stages.schema import summary_schema
 from lamella.view.drawing_picture import draw_part, draw_sheets
@@ -285,7 +285,7 @@ def _figures_table() -> str:
         for figure in stage.figures:
             rows.append(f"| `{stage.name}.{figure.key}` | {figure.unit} | {figure.meaning} |")
     further = summary_schema()["properties"]
-    for key in (*TO_COME, "warnings", "seconds", "files", "seal"):
+    for key in ("warnings", "seconds", "files", "seal"):
         rows.append(f"| `{key}` | | {further[key]['description']} |")
     return "\n".join(rows) + "\n"
 

@@ -63,7 +63,8 @@ def test_run_help_lists_every_stage_and_its_files(capsys: pytest.CaptureFixture[
     told = capsys.readouterr().out
     every, *stages = re.split(r"^  (\w+)(?:, after \w+)?$", told, flags=re.M)
     listed = dict(zip(stages[::2], stages[1::2], strict=True))
-    assert list(listed) == list(FILES)
+    assert list(listed) == [*FILES, "structure"]
+    assert "structure/results.json" in listed.pop("structure")
     for stage, files in FILES.items():
         for file in files:
             assert file in listed[stage] + (every if stage == "surface" else "")
@@ -320,7 +321,7 @@ def test_details_are_told_only_when_asked(here: Path, capsys: pytest.CaptureFixt
 
 @pytest.mark.parametrize(
     ("until", "names"),
-    [("netwrk", ["'netwrk'", "'network'"]), ("", ["''"]), ("structure", ["'structure'", __version__])],
+    [("netwrk", ["'netwrk'", "'network'"]), ("", ["''"]), ("structures", ["'structures'", "'structure'"])],
 )
 def test_stages_that_are_not_there(
     here: Path, capsys: pytest.CaptureFixture[str], until: str, names: list[str]

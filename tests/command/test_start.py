@@ -14,7 +14,7 @@ FILES = ("ezdxf", "rhino3dm", "lamella.files.write.network_json", "lamella.files
 SOLVERS = ("scipy.sparse", "scipy.spatial", "scipy.optimize", "scipy.interpolate", "rslab", "pythoncdt")
 ELEMENTS = ("lamella.surface.element.surface", "lamella.surface.form_finding", "lamella.surface.from_mesh")
 CLOSED_FORM = (*FILES, *SOLVERS, *ELEMENTS, "matplotlib", "lamella.view")
-STAGES = ("lamella.stages", "lamella.network", "lamella.strip", "lamella.fabrication")
+STAGES = ("lamella.stages", "lamella.network", "lamella.strip", "lamella.fabrication", "lamella.structure")
 NOTHING = ("numpy", "scipy", "pydantic", "orjson", "ezdxf", "rhino3dm", "tomli_w", "lamella.project", *STAGES)
 
 

@@ -211,7 +211,7 @@ def test_a_measure_of_fabrication_does_not_stop_an_earlier_stage() -> None:
 
 
 def test_unknown_stages() -> None:
-    for until in ("structure", "bogus", ""):
+    for until in ("structures", "bogus", ""):
         with pytest.raises(InputError) as refused:
             compute(parse_project(PROJECT), until=until)
         assert refused.value.where == "--until"

@@ -43,6 +43,9 @@ class JointStiffnessTable(Table):
     stiffness: float = number(
         "Moment that turns a joint by 1 rad.", "N m/rad", ge=LEAST_STIFFNESS, le=MOST_STIFFNESS, examples=[100.0]
     )
+    gap: float = number(
+        "By which it turns freely to either side before that: the play of its slot.", "deg", ge=0, le=90, default=0.0
+    )
 
 
 class PartialFactorsTable(Table):
@@ -65,6 +68,22 @@ class StructureTable(Table):
         default="locked",
         description='About the node\'s normal: "locked" at the angle they have, "hinged" or {stiffness = N m/rad}.',
     )
+    layers: Literal["combined", "each"] = Field(
+        default="combined",
+        description='"combined": the layers of a lamella are one line of beams, with the stiffness of all of them '
+        'beside each other; "each": every layer is a line of its own, coupled by nodes and shear blocks.',
+    )
+    slots: Literal["reduced", "whole"] = Field(
+        default="reduced",
+        description='"reduced": a slot turns like a notch of half the height under strong-axis bending; "whole": slots '
+        "take nothing from the strips' stiffness. Stresses count the half that is left either way.",
+    )
+    cables: Literal["designed", "let go"] = Field(
+        default="designed",
+        description='When the cables of [cables] get their prestress: "designed": in the designed shape, which they '
+        'then help to keep; "let go": once the net is off its props and has sprung back.',
+    )
+    modes: int = number("Buckling factors of each case, and natural frequencies.", "", ge=0, le=50, default=3)
     combinations: Literal["listed", "EN 1990 6.10", "EN 1990 6.10a/b"] = Field(
         default="listed",
         description='"listed": those of [[combination]] alone; else those of EN 1990 for persistent situations as '
@@ -82,16 +101,20 @@ class StructureTable(Table):
     def _hold(cls, value: Any) -> Any:
         if isinstance(value, JointStiffnessTable) or value in get_args(JointHold):
             return value
-        remedy = 'write "locked", "hinged" or {stiffness = 100.0}, N m/rad'
-        if not isinstance(value, dict) or set(value) != {"stiffness"}:
+        remedy = 'write "locked", "hinged" or {stiffness = 100.0}, N m/rad, with gap = ... in degrees or without'
+        if not isinstance(value, dict) or not {"stiffness"} <= set(value) <= {"stiffness", "gap"}:
             raise Refusal(f"{shown(value)} says not what joints hold", remedy)
-        stiffness = value["stiffness"]
-        if isinstance(stiffness, bool) or not isinstance(stiffness, int | float):
-            raise Refusal(f"a stiffness of {shown(stiffness)} is not a number", remedy)
-        if not LEAST_STIFFNESS <= stiffness <= MOST_STIFFNESS:
-            limits = f"from {LEAST_STIFFNESS:g} to {MOST_STIFFNESS:g}"
-            raise Refusal(f"a stiffness of {shown(stiffness)} N m/rad is out of range: has to be {limits}", remedy)
-        return JointStiffnessTable(stiffness=float(stiffness))
+        for key, unit, least, most in (
+            ("stiffness", "N m/rad", LEAST_STIFFNESS, MOST_STIFFNESS),
+            ("gap", "deg", 0, 90),
+        ):
+            given = value.get(key, least)
+            if isinstance(given, bool) or not isinstance(given, int | float):
+                raise Refusal(f"a {key} of {shown(given)} is not a number", remedy)
+            if not least <= given <= most:
+                limits = f"from {least:g} to {most:g}"
+                raise Refusal(f"a {key} of {shown(given)} {unit} is out of range: has to be {limits}", remedy)
+        return JointStiffnessTable(**{key: float(given) for key, given in value.items()})
 
 
 class SpringTable(Table):

@@ -8,12 +8,16 @@ from lamella.stages.fabrication.stage import FabricationStage
 from lamella.stages.lamellas.stage import LamellasStage
 from lamella.stages.network.stage import NetworkStage
 from lamella.stages.stage import Stage
+from lamella.stages.structure.stage import StructureStage
 from lamella.stages.surface.stage import SurfaceStage
 
-STAGES: tuple[Stage[Any], ...] = (SurfaceStage(), NetworkStage(), LamellasStage(), FabricationStage())
-
-TO_COME = ("structure",)
-"""Announced in the file interface: null in summary.json."""
+STAGES: tuple[Stage[Any], ...] = (
+    SurfaceStage(),
+    NetworkStage(),
+    LamellasStage(),
+    FabricationStage(),
+    StructureStage(),
+)
 
 WRITES = (
     ("summary.json", "all figures and warnings"),

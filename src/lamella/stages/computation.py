@@ -14,7 +14,6 @@ from lamella.base.wording import one_line
 from lamella.files.own import SCHEMA
 from lamella.project.tables import Project
 from lamella.stages import all_stages
-from lamella.stages.all_stages import TO_COME
 from lamella.stages.clock import Clock
 from lamella.stages.fabrication.defaults import fill_in
 from lamella.stages.figure import evaluate
@@ -194,8 +193,7 @@ class Computation:
     def results(self) -> Results:
         """What has been computed."""
         content: dict[str, Any] = {"schema": SCHEMA, "version": __version__, "name": self._given.name}
-        names = [stage.name for stage in all_stages.STAGES]
-        content |= {name: self.figures.get(name) for name in (*names, *TO_COME)}
+        content |= {stage.name: self.figures.get(stage.name) for stage in all_stages.STAGES}
         content |= {"warnings": self.warnings, "seconds": self._clock.seconds}
         origin = drawing_origin(self.upstream().surface)
         return Results(self._filled, self.outputs, _on_one_line(with_drawn_points(content, origin)), self.upstream())

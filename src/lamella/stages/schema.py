@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from lamella.stages import all_stages
-from lamella.stages.all_stages import TO_COME
 from lamella.stages.figure import NUMBER, TEXT, figures_schema, list_of, nullable
 
 
@@ -15,14 +14,12 @@ def summary_schema() -> dict[str, Any]:
         stage.name: nullable(figures_schema(stage.figures)) | {"description": "null where it was not run"}
         for stage in all_stages.STAGES
     }
-    to_come = {name: {"type": "null", "description": "null in this version"} for name in TO_COME}
     hashes = {"type": "object", "additionalProperties": TEXT}
     properties = {
         "schema": {"const": "lamella/summary/1"},
         "version": TEXT | {"description": "of the program"},
         "name": TEXT | {"description": "of the project"},
         **stages,
-        **to_come,
         "warnings": list_of(TEXT) | {"description": "sentences"},
         "seconds": {
             "type": "object",

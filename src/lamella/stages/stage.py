@@ -54,12 +54,15 @@ class Missing:
         Why there is none.
     remedy, where : str
         Of the error where the stage was requested.
+    unasked : bool
+        Whether nothing in the project asks for it, so that a run without it is a whole one.
     """
 
     needs: str
     reason: str
     remedy: str
     where: str
+    unasked: bool = False
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,10 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 from typing import Any
 
-from lamella import __version__
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.project.tables import Project
 from lamella.stages import all_stages
-from lamella.stages.all_stages import TO_COME
 from lamella.stages.stage import Missing, Stage
 
 
@@ -61,10 +59,7 @@ def check_name(until: str | None) -> None:
     if until is None or until in names:
         return
     choice = f"choose one of {', '.join(names)}"
-    if until in TO_COME:
-        text = f"stage {until!r} is not part of version {__version__} yet"
-        raise InputError(text, f"leave --until out, or {choice}", "--until")
-    near = get_close_matches(until, [*names, *TO_COME], 1, 0.5)
+    near = get_close_matches(until, names, 1, 0.5)
     meant = f", did you mean {near[0]!r}?" if near else ""
     raise InputError(f"unknown stage {until[:40]!r}{meant}", choice, "--until")
 
@@ -76,7 +71,8 @@ def _possible(project: Project, stages: Sequence[Stage[Any]]) -> tuple[tuple[Sta
     for stage in stages:
         why = stage.missing(project)
         if why:
-            missing.append(why)
+            if not why.unasked:
+                missing.append(why)
         elif set(stage.needs) <= {one.name for one in chosen}:
             chosen.append(stage)
     last = chosen[-1].name

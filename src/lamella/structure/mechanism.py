@@ -19,6 +19,22 @@ MECHANISM_ROUNDS = 4
 _WAYS = ("moves along x", "moves along y", "moves along z", "turns about x", "turns about y", "turns about z")
 
 
+class MechanismError(InputError):
+    """A part of a structure moves freely.
+
+    Attributes
+    ----------
+    node : int or None
+        The one that moves most; None: it is the angle of a joint.
+    way : str
+        How, in words.
+    """
+
+    def __init__(self, message: str, remedy: str, where: str, node: int | None, way: str) -> None:
+        super().__init__(message, remedy, where)
+        self.node, self.way = node, way
+
+
 def freest_motion(structure: Structure, blocks: list[Floats]) -> tuple[Floats, float]:
     """The motion that meets the least resistance, (6 n + k,) of largest number 1, and its resistance.
 
@@ -57,7 +73,7 @@ def refuse_mechanism(structure: Structure, blocks: list[Floats]) -> None:
 
     Raises
     ------
-    InputError
+    MechanismError
         Names the node that moves most, and how.
     """
     try:
@@ -71,9 +87,14 @@ def refuse_mechanism(structure: Structure, blocks: list[Floats]) -> None:
     size = np.abs(motion)
     size[:nodes].reshape(-1, NODE_UNKNOWNS)[:, 3:] *= structure.size
     most = int(size.argmax())
-    if most < nodes:
-        node, way = divmod(most, NODE_UNKNOWNS)
-        what = f"node {node} {_WAYS[way]}"
-    else:
-        what = f"joint {most - nodes} turns"
-    raise InputError(f"{what} and nothing resists", "support it, or connect it to what is supported", "structure")
+    node, way = divmod(most, NODE_UNKNOWNS)
+    what, turns = f"node {node}", _WAYS[way]
+    if most >= nodes:
+        what, turns = f"joint {most - nodes}", "turns"
+    raise MechanismError(
+        f"{what} {turns} and nothing resists",
+        "support it, or connect it to what is supported",
+        "structure",
+        node if most < nodes else None,
+        turns,
+    )

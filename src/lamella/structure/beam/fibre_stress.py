@@ -39,7 +39,15 @@ def curvatures_at_ends(state: BeamState) -> Floats:
     return np.stack(ends, 1)
 
 
-def strip_stresses(state: BeamState, material: Material, height: float, thickness: float) -> Stresses:
+def strip_stresses(
+    state: BeamState,
+    material: Material,
+    height: float,
+    thickness: float,
+    *,
+    layers: int = 1,
+    beside: Floats | float = 0.0,
+) -> Stresses:
     """Stresses at the ends of elements that are strips of one section.
 
     Parameters
@@ -48,23 +56,30 @@ def strip_stresses(state: BeamState, material: Material, height: float, thicknes
     material : Material
     height, thickness : float
         m.
+    layers : int
+        Strips beside each other that an element stands for; they share its forces.
+    beside : (2 m,) or float
+        Strong-axis curvature that layers beside the centre line have besides, 1/m.
 
     Returns
     -------
     Stresses
         Each (2 m,): both ends of the first element, then of the second one. `layer` is all of the strong-axis bending,
-        `restraint` 0: the axial force is in the von Mises stress.
+        that of the moment, whatever the element's stiffness is reduced by; `restraint` 0: the axial force is in the
+        von Mises stress.
     """
     law = state.beams.law
     at_ends = curvatures_at_ends(state)
     tg, kn, kg = at_ends.reshape(-1, 3).T
-    axial = state.stress[0] / law.length / (height * thickness)
+    axial = state.stress[0] / law.length / (height * thickness * layers)
+    whole = np.array([section.bending_u for section in state.beams.sections])[state.beams.section]
+    share = np.repeat(law.stiffness[4] / law.length / whole, 2)
     return stresses(
         material,
         height,
         thickness,
         curvature_error=np.zeros_like(tg),
-        layer_curvature=kn - np.repeat(law.natural[:, 1], 2),
+        layer_curvature=np.abs(share * (kn - np.repeat(law.natural[:, 1], 2))) + beside,
         kg=kg,
         tg=tg,
         held=False,

@@ -1,0 +1,93 @@
+"""The stage "structure": what the net does as a structure, let go and under loads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from lamella import __version__
+from lamella.base.errors import InputError
+from lamella.base.message import Message
+from lamella.base.progress import Progress
+from lamella.base.wording import counted
+from lamella.project.structure_tables import StructureTable
+from lamella.project.tables import Project
+from lamella.stages.keys import keys
+from lamella.stages.stage import File, Missing, Stage, Upstream
+from lamella.stages.structure.figures import FIGURES, REPORT
+from lamella.stages.structure.output import StructureOutput
+from lamella.surface.surface import Surface
+
+
+class StructureStage(Stage[StructureOutput]):
+    """See `lamella.stages.stage.Stage`."""
+
+    name = "structure"
+    needs = ("surface", "network", "lamellas", "fabrication")
+    writes = (
+        (
+            "structure/results.json",
+            "where `[structure]`, `[[support]]` or `[[load]]` is given: what each case does to every node",
+        ),
+    )
+    figures = FIGURES
+    report = ("Structure", REPORT)
+
+    def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
+        return ("structure", "support", "load", "combination", "joint", "cables", "surface")
+
+    def missing(self, project: Project) -> Missing | None:
+        if project.structure is not None:
+            return None
+        reason = "the project has no table [structure], [[support]] or [[load]]"
+        return Missing("a table of the project", reason, "add [structure]", "structure", unasked=True)
+
+    def check(self, project: Project, surface: Surface[Any] | None) -> None:
+        if project.load and not project.support:
+            raise InputError(
+                f"{counted(len(project.load), 'load')} and no support: nothing holds the structure",
+                'add a table [[support]] with boundary = "rim", ground = 0.0 or near = [x, y, z]',
+                "support",
+            )
+
+    def heading(self, up: Upstream) -> str:
+        table = up.project.structure or StructureTable()
+        return f"{table.elements} elements a cell edge, {counted(len(up.project.load or ()), 'load')}"
+
+    def run(self, up: Upstream, progress: Progress) -> StructureOutput:
+        from lamella.stages.actions_of_tables import actions_of
+        from lamella.stages.structure.model_of_tables import model_of
+        from lamella.structure.analysis.analyse import analyse
+
+        project, network = up.project, up.outputs["network"].network
+        actions = actions_of(project, network, up.surface)
+        modelled = model_of(project, up.outputs["lamellas"].lamellas, actions, up.outputs["fabrication"])
+        modes = (project.structure or StructureTable()).modes
+        with keys("structure", supports="support", loads="load", prestress="cables.prestress"):
+            analysis = analyse(
+                modelled.model,
+                modelled.cases,
+                node_masses=modelled.node_masses,
+                cables_later=modelled.cables_later,
+                buckling=modes,
+                frequencies=modes,
+                progress=progress,
+            )
+        return StructureOutput(analysis)
+
+    def result(self, figures: Mapping[str, Any], out: StructureOutput) -> str:
+        return (
+            f"{counted(len(figures['cases']), 'case')}, utilisation up to {figures['utilisation_max']:.2f}, "
+            f"springs back by {1e3 * figures['spring_back']:.3g} mm"
+        )
+
+    def warnings(self, out: StructureOutput, up: Upstream, progress: Progress) -> Iterator[Message]:
+        from lamella.stages.structure.warnings import structure_warnings
+
+        yield from structure_warnings(out.analysis)
+
+    def files(self, out: StructureOutput, up: Upstream) -> Iterator[File]:
+        from lamella.stages.structure.results_file import write_results
+
+        signed: Any = {"name": up.project.name, "version": __version__}
+        yield File("structure/results.json", lambda path: write_results(path, out.analysis, **signed))

@@ -1,0 +1,158 @@
+"""Analyses of a net: what it does when it is let go, under load cases, and how it swings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lamella.base.arrays import Floats
+from lamella.base.errors import InputError
+from lamella.base.progress import Progress, Report, silent
+from lamella.base.result import Result
+from lamella.hardware.rules import CableRules
+from lamella.structure.actions.load_case import LoadCase
+from lamella.structure.actions.node_supports import NodeSupports
+from lamella.structure.analysis.case_result import CaseResult
+from lamella.structure.analysis.named_mechanism import named_mechanism
+from lamella.structure.buckling import linear_buckling
+from lamella.structure.equilibrium import Equilibrium
+from lamella.structure.loads import Loads, no_loads
+from lamella.structure.loose_parts import refuse_loose_parts
+from lamella.structure.model.bracing import brace
+from lamella.structure.model.case_loads import case_loads
+from lamella.structure.model.model import Model
+from lamella.structure.static import at_rest, load_path, loaded
+from lamella.structure.vibration import vibration
+
+RESIDUAL = "residual"
+"""Name of the state without loads."""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Analysis(Result):
+    """A net as a structure.
+
+    Attributes
+    ----------
+    model : Model
+    cases : tuple of CaseResult
+        The first is the residual state.
+    frequencies : (f,)
+        Of the residual state, Hz.
+    free_body : bool
+        Whether nothing supports it, so that a node was held that it cannot drift.
+    """
+
+    model: Model
+    cases: tuple[CaseResult, ...]
+    frequencies: Floats
+    free_body: bool
+
+    def _line(self) -> str:
+        return ", ".join(f"{case.name} {case.utilisation_max:.2f}" for case in self.cases)
+
+    @property
+    def spring_back(self) -> float:
+        """How far a node moves when the net is let go, m."""
+        return self.cases[0].displacement_max
+
+
+def free_body_supports(points: Floats) -> NodeSupports:
+    """The node nearest to the middle held in all ways, which holds a body and resists nothing."""
+    fixed = np.zeros((len(points), 6), bool)
+    away = np.linalg.norm(points - points.mean(0), axis=1)
+    # of nodes alike the first, whatever the last bits
+    fixed[int(np.round(away / max(float(away.max()), np.finfo(float).tiny), 9).argmin())] = True
+    return NodeSupports(fixed, np.zeros(fixed.shape))
+
+
+def analyse(
+    model: Model,
+    cases: Sequence[LoadCase] = (),
+    *,
+    node_masses: Floats | None = None,
+    cables_later: CableRules | None = None,
+    buckling: int = 3,
+    frequencies: int = 3,
+    steps: int = 1,
+    progress: Progress = silent,
+) -> Analysis:
+    """The residual state, each load case on it, linear buckling about each, frequencies of the residual state.
+
+    Parameters
+    ----------
+    model : Model
+    cases : sequence of LoadCase
+    node_masses : (n,), optional
+        See `lamella.structure.model.case_loads.case_loads`.
+    cables_later : CableRules, optional
+        Cables that are put on once the net has been let go, with their prestress there; the model has none then.
+    buckling, frequencies : int
+        How many.
+    steps : int
+        Load steps to begin with.
+    progress : callable
+
+    Raises
+    ------
+    InputError
+        Nothing supports what is loaded; a part moves freely; the residual state has no equilibrium.
+    """
+    supported = bool(model.supports.supported.any())
+    if cases and not supported:
+        raise InputError("there are loads and no supports", "hold nodes of the net", "supports")
+    if not supported:
+        model = _held_in_the_middle(model)
+    with named_mechanism(model):
+        refuse_loose_parts(model.structure)
+        progress(Report.step("residual state"))
+        rest = at_rest(model.structure, no_loads(model.structure))
+        if cables_later is not None:
+            rest, model = _braced(rest, model, cables_later)
+        found = [CaseResult(RESIDUAL, model, rest, rest, "", np.zeros(0))]
+        swings = np.zeros(0)
+        if frequencies and rest.negative == 0:
+            swings = vibration(rest, frequencies).frequencies
+        for k, case in enumerate(cases):
+            progress(Report.step(f"load case {case.name}", k / len(cases)))
+            loads = case_loads(model, case, node_masses)
+            found.append(_case(model, case.name, rest, loads, buckling, steps))
+    return Analysis(model, tuple(found), swings, not supported)
+
+
+def _held_in_the_middle(model: Model) -> Model:
+    supports = free_body_supports(model.lamellas.network.node_points)
+    held = model.structure.held.copy()
+    held[: model.nodes] |= supports.fixed
+    return replace(model, structure=replace(model.structure, held=held), supports=supports)
+
+
+def _braced(rest: Equilibrium, model: Model, rules: CableRules) -> tuple[Equilibrium, Model]:
+    """The residual state with cables that were put on in it."""
+    lamellas = model.lamellas
+    cables = brace(lamellas.network, rest.poses, rules, lamellas.section.height)
+    structure = replace(rest.structure, cables=cables)
+    own = Equilibrium(structure, no_loads(structure), 0.0, rest.poses, rest.negative, 0)
+    # all the way from one load factor without loads to another, in shorter steps where they are needed
+    last = loaded(replace(own, factor=-1.0), 0.0)
+    return last, replace(model, structure=structure)
+
+
+def _case(model: Model, name: str, rest: Equilibrium, loads: Loads, buckling: int, steps: int) -> CaseResult:
+    start = stable = last = replace(rest, loads=loads)
+    reason = ""
+    try:
+        for last in load_path(start, steps=steps):
+            if last.negative == 0:
+                stable = last
+    except InputError as error:
+        reason = error.message
+    factors = np.zeros(0)
+    if buckling and stable.negative == 0:
+        # nothing may be there that these loads would make buckle
+        with suppress(InputError):
+            factors = linear_buckling(stable, buckling).factors
+    return CaseResult(name, model, last, rest, reason, factors)
