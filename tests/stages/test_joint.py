@@ -102,7 +102,16 @@ def test_holes_of_the_strips_are_cut(written: tuple[lamella.Results, Path]) -> N
 def test_the_same_bytes_twice(written: tuple[lamella.Results, Path], tmp_path: Path) -> None:
     _, folder = written
     write(compute(parse_project(PROJECT)), tmp_path / "again")
-    for name in ("parts.xlsx", "hardware.csv", "places.csv", "plates.dxf", "A.dxf"):
+    for name in (
+        "parts.xlsx",
+        "hardware.csv",
+        "places.csv",
+        "plates.dxf",
+        "A.dxf",
+        "drawings.pdf",
+        "plates.svg",
+        "B.svg",
+    ):
         assert (tmp_path / "again" / "fabrication" / name).read_bytes() == (folder / "fabrication" / name).read_bytes()
     for name in ("model.3dm", "model.glb"):
         assert (tmp_path / "again" / name).read_bytes() == (folder / name).read_bytes()
@@ -143,6 +152,8 @@ def test_without_the_table_nothing_is_added() -> None:
         ({"slot_width": 0.003}, {"fabrication": {"slot_width": 0.004}}, "joint.slot_width"),
         ({"material": "balsa"}, {}, "joint.material"),
         ({"wosher": True}, {}, "joint.wosher"),
+        ({}, {"drawings": {"language": "tlh"}}, "drawings.language"),
+        ({}, {"drawings": {"paper": "A4"}}, "drawings.paper"),
         ({"washer": False}, {}, "cables"),
         ({}, {"cables": {"prestress": 1e6}}, "cables.prestress"),
     ],

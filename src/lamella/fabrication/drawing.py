@@ -50,15 +50,30 @@ def write_drawings(folder: Path, parts: Parts, nesting: Nesting, *, name: str, v
         Where a file cannot be written whole.
     """
     file = DxfFile(name=name, version=version)
-    blocks = [_part_block(part, file.owner) for part in parts.parts]
     paths = []
-    for family in "AB":
-        rows = [(part, block) for part, block in zip(parts.parts, blocks, strict=True) if part.family == family]
-        paths.append(folder / f"{family}.dxf")
-        file.write(paths[-1], _rows(rows, nesting.gap))
-    paths.append(folder / "sheets.dxf")
-    file.write(paths[-1], _sheets(nesting, blocks, file.owner))
+    for sheet, placed in drawn_sheets(parts, nesting, file.owner).items():
+        paths.append(folder / f"{sheet}.dxf")
+        file.write(paths[-1], placed)
     return tuple(paths)
+
+
+def drawn_sheets(parts: Parts, nesting: Nesting, owner: str = "") -> dict[str, Iterator[Placed]]:
+    """What the drawings hold, by their names: "A", "B" (each part once, in rows), "sheets" (every piece in its place).
+
+    Parameters
+    ----------
+    parts : Parts
+    nesting : Nesting
+        Of those parts.
+    owner : str
+        Of DXF entities.
+    """
+    blocks = [_part_block(part, owner) for part in parts.parts]
+    rows = {
+        family: _rows([(p, b) for p, b in zip(parts.parts, blocks, strict=True) if p.family == family], nesting.gap)
+        for family in "AB"
+    }
+    return rows | {"sheets": _sheets(nesting, blocks, owner)}
 
 
 def _part_block(part: Part, owner: str) -> Block:

@@ -31,11 +31,11 @@ def circle(diameter: float, centre: tuple[float, float] = (0.0, 0.0)) -> Floats:
     return np.array([[x - diameter / 2, y, 1.0], [x + diameter / 2, y, 1.0]])
 
 
-def outline_points(vertices: Floats) -> Floats:
-    """Points (n, 2) of an outline, m, closed by its first one: its arcs in `ARC_PARTS` straight parts each."""
+def outline_points(vertices: Floats, parts: int = ARC_PARTS) -> Floats:
+    """Points (n, 2) of an outline, m, closed by its first one: its arcs in so many straight parts each."""
     corners = vertices[:, 0] + 1j * vertices[:, 1]
     half = 2 * np.arctan(vertices[:, 2])[:, None]
-    share = np.arange(ARC_PARTS) / ARC_PARTS
+    share = np.arange(parts) / parts
     # the chord to a share of the arc, over the whole chord
     part = share * np.sinc(half * share / np.pi) / np.sinc(half / np.pi) * np.exp(1j * half * (share - 1))
     points = corners[:, None] + (np.roll(corners, -1) - corners)[:, None] * part

@@ -28,13 +28,15 @@ def write_plates(path: Path, hardware: Hardware, *, name: str, version: str) -> 
         Where the file cannot be written whole.
     """
     file = DxfFile(name=name, version=version)
-    file.write(path, _rows([item for item in hardware if item.plate], file.owner))
+    file.write(path, drawn_plates(hardware, file.owner))
 
 
-def _rows(items: list[Item], owner: str) -> Iterator[Placed]:
-    """Plates below each other, their texts to the right."""
+def drawn_plates(hardware: Hardware, owner: str = "") -> Iterator[Placed]:
+    """What the drawing holds: plates below each other, their texts to the right; `owner` of DXF entities."""
     top = 0.0
-    for item in items:
+    for item in hardware:
+        if not item.plate:
+            continue
         prism = item.cut
         points = outline_points(prism.outline)
         low, high = points.min(axis=0), points.max(axis=0)

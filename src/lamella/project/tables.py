@@ -20,6 +20,7 @@ from lamella.project.boundary_tables import (
     PlaceTable,
     SlideTable,
 )
+from lamella.project.drawings_table import DrawingsTable
 from lamella.project.edge_beam_table import EdgeBeamTable
 from lamella.project.fabrication_table import FabricationTable
 from lamella.project.joint_table import CablesTable, JointTable
@@ -47,6 +48,7 @@ __all__ = [
     "BoundaryTable",
     "CablesTable",
     "CircleTable",
+    "DrawingsTable",
     "EdgeBeamTable",
     "FabricationTable",
     "FilesTable",
@@ -257,6 +259,7 @@ FURTHER_TABLES: dict[str, type[Table]] = {
     "joint": JointTable,
     "cables": CablesTable,
     "edge_beam": EdgeBeamTable,
+    "drawings": DrawingsTable,
     "structure": StructureTable,
     "files": FilesTable,
 }
@@ -286,6 +289,7 @@ class Project(Table):
     support: Annotated[tuple[SupportTable, ...], Field(strict=False)] | None = list_key(SupportTable)
     load: Annotated[tuple[LoadTable, ...], Field(strict=False)] | None = list_key(LoadTable)
     combination: Annotated[tuple[CombinationTable, ...], Field(strict=False)] | None = list_key(CombinationTable)
+    drawings: DrawingsTable | None = Field(default=None, description=(DrawingsTable.__doc__ or "").strip())
     files: FilesTable = FilesTable()
     materials: dict[Name, MaterialTable] = Field(default={}, description="Materials by name.")
 

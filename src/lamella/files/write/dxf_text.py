@@ -29,6 +29,30 @@ DECIMALS = 8
 COPY = "\0"
 
 
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A polyline of a block.
+
+    Attributes
+    ----------
+    layer : str
+    first, end : int
+        Its points among those of the block.
+    bulges : (end - first,) array or None
+        Of the segments to the next points; None where all are straight.
+    closed : bool
+    tag : str
+        What it belongs to.
+    """
+
+    layer: str
+    first: int
+    end: int
+    bulges: Floats | None
+    closed: bool
+    tag: str
+
+
 @dataclass(frozen=True)
 class Block:
     """Entities that are placed together, as a text to be filled in.
@@ -42,11 +66,14 @@ class Block:
         Coordinates in the template's order, mm.
     entities : int
         Number of handles.
+    drawn : tuple of Drawn
+        The same entities for other formats.
     """
 
     template: str
     points: Floats
     entities: int
+    drawn: tuple[Drawn, ...] = ()
 
     @cached_property
     def ends(self) -> tuple[Floats, Floats]:
@@ -68,6 +95,8 @@ class BlockWriter:
         self._text: list[str] = []
         self._points: list[Floats] = []
         self._entities = 0
+        self._drawn: list[Drawn] = []
+        self._count = 0
 
     def polyline(self, layer: str, points: Floats, *, closed: bool, tag: str) -> None:
         """Add a polyline of (n, 2) points or of (n, 3) points with bulges, mm."""
@@ -80,6 +109,8 @@ class BlockWriter:
         self._text.append(_tagged(tag))
         self._points.append(points[:, :2])
         self._entities += 1
+        bulges = points[:, 2] if points.shape[1] == 3 and points[:, 2].any() else None
+        self._note(layer, len(points), bulges, closed, tag)
 
     def lines(self, layer: str, points: Floats, *, tag: str) -> None:
         """Add straight lines, (n, 2, 2), mm."""
@@ -88,11 +119,17 @@ class BlockWriter:
         self._text.append(line * len(points))
         self._points.append(points.reshape(-1, 2))
         self._entities += len(points)
+        for _ in points:
+            self._note(layer, 2, None, False, tag)
 
     def block(self) -> Block:
         """What has been added so far."""
         points = np.concatenate(self._points) if self._points else np.empty((0, 2))
-        return Block("".join(self._text), points, self._entities)
+        return Block("".join(self._text), points, self._entities, tuple(self._drawn))
+
+    def _note(self, layer: str, count: int, bulges: Floats | None, closed: bool, tag: str) -> None:
+        self._drawn.append(Drawn(layer, self._count, self._count + count, bulges, closed, tag))
+        self._count += count
 
     def _begun(self, kind: str, layer: str, subclass: str) -> str:
         return f"  0\n{kind}\n  5\n%X\n330\n{self._owner}\n100\nAcDbEntity\n  8\n{layer}\n100\n{subclass}\n"

@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from lamella.base.drawing_origin import drawing_origin
+from lamella.base.errors import InputError
 from lamella.base.material import find_material
+from lamella.base.wording import shown
 from lamella.fabrication.defaults import default_end_distance, default_hub_radius, default_slot_width
 from lamella.fabrication.rules import Rules, clear_hub
 from lamella.fabrication.stock import DEFAULT_SPLICE_WORTH, SAME, Stock, Supply
@@ -129,6 +131,25 @@ def check_joint(project: Project) -> None:
     if project.joint is not None:
         section = Section(**project.lamella.model_dump(exclude={"material"}))
         joint_rules(project, project.joint).check(section)
+
+
+def check_drawings(project: Project) -> None:
+    """Refuse a language that there are no words in.
+
+    Raises
+    ------
+    InputError
+    """
+    if project.drawings is None:
+        return
+    from lamella.drawings.terms import languages
+
+    if project.drawings.language not in languages():
+        raise InputError(
+            f"there are no drawings in the language {shown(project.drawings.language)}",
+            f"choose one of {', '.join(languages())}",
+            "drawings.language",
+        )
 
 
 @keys("fabrication", height="lamella.height", stock="stock")

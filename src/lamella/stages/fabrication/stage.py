@@ -9,11 +9,10 @@ from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
 from lamella.base.progress import Progress
-from lamella.files.whole import write_whole
 from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
-from lamella.stages.fabrication.defaults import check_fabrication, check_joint
+from lamella.stages.fabrication.defaults import check_drawings, check_fabrication, check_joint
 from lamella.stages.fabrication.figures import FIGURES, REPORT
 from lamella.stages.fabrication.making import laid, made_parts
 from lamella.stages.fabrication.output import FabricationOutput
@@ -36,6 +35,14 @@ class FabricationStage(Stage[FabricationOutput]):
             "fabrication/hardware.csv, fabrication/places.csv, fabrication/plates.dxf",
             "where `[joint]` is given: the hardware, the place of every piece, and what of it is cut from plates",
         ),
+        (
+            "fabrication/drawings.pdf",
+            "where `[joint]` or `[drawings]` is given: sheets with views, details, dimensions, assembly, parts list",
+        ),
+        (
+            "fabrication/A.svg, fabrication/B.svg, fabrication/sheets.svg, fabrication/plates.svg",
+            "with it: the cutting drawings as SVG",
+        ),
         ("model.glb", "where `[joint]` is given or `files.solids` is true: the same for viewers and renderers"),
         ("fabrication/plate_sheets.dxf", "where `[[stock]]` is given too: all these plates on their sheets"),
     )
@@ -43,13 +50,14 @@ class FabricationStage(Stage[FabricationOutput]):
     report = ("Fabrication", REPORT)
 
     def warned_by(self, project: Project) -> tuple[str, ...]:
-        return ("files",)
+        return ("files", "drawings")
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
         return ("fabrication", "joint", "cables", "edge_beam", "stock")
 
     def check(self, project: Project, surface: Surface[Any] | None) -> None:
         check_joint(project)
+        check_drawings(project)
         if surface is not None:
             check_fabrication(project, surface)
 
@@ -78,6 +86,7 @@ class FabricationStage(Stage[FabricationOutput]):
         from lamella.hardware.lists import write_hardware, write_places
         from lamella.hardware.plates_drawing import write_plates
         from lamella.hardware.workbook import write_workbook
+        from lamella.stages.fabrication.further_files import further_files
 
         signed: Any = {"name": up.project.name, "version": __version__}
         network = in_drawing(up.outputs["network"].network, drawing_origin(up.surface))
@@ -104,14 +113,7 @@ class FabricationStage(Stage[FabricationOutput]):
             from lamella.hardware.plate_sheets_drawing import write_plate_sheets
 
             yield File("fabrication/plate_sheets.dxf", lambda path: write_plate_sheets(path, out.plates, **signed))
-        if up.project.joint is not None or up.project.files.solids:
-            yield File("model.glb", lambda path: write_whole(path, self._glb(out, up)))
-
-    def _glb(self, out: FabricationOutput, up: Upstream) -> bytes:
-        from lamella.files.write.gltf import glb_bytes
-
-        signed: Any = {"name": up.project.name, "version": __version__}
-        return glb_bytes(self.scene(out, up), origin=drawing_origin(up.surface), **signed)
+        yield from further_files(out, up, lambda: self.scene(out, up))
 
     def scene(self, out: FabricationOutput, up: Upstream) -> Iterator[DrawnLayer]:
         from lamella.stages.fabrication.scene import hardware_layers, shows_solids, strip_layers
