@@ -18,7 +18,7 @@ from lamella.strip.lamellas import Section, make_lamellas
 from lamella.surface.closed_forms.catenoid import Catenoid
 from lamella.surface.closed_forms.cylinder import Cylinder
 from lamella.surface.mesh import SurfaceMesh
-from lamella.view import report
+from lamella.view import encoding, report
 from lamella.view.quantity import surface_quantities
 from lamella.view.report import CORNER_LIMIT, ReportData, report_html, write_report
 from surface.element.exact_elements import sphere_cap
@@ -37,7 +37,7 @@ def decode(spec):
     values = np.frombuffer(base64.b64decode(spec["data"]), DTYPES[spec["type"]])
     if "step" not in spec:
         return values
-    return np.where(values == report.MISSING, np.nan, spec["low"] + values * spec["step"])
+    return np.where(values == encoding.MISSING, np.nan, spec["low"] + values * spec["step"])
 
 
 def payload(text):

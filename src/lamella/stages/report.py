@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from lamella import __version__
+from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.stages import all_stages
 from lamella.stages.figure import Row, report_rows
 from lamella.stages.results import Results
@@ -36,7 +37,17 @@ def report_data(results: Results) -> ReportData:
         network=results.network,
         lamellas=results.lamellas,
         material=results.project.lamella.material,
+        built=tuple(_built(results)),
     )
+
+
+def _built(results: Results) -> Iterator[DrawnLayer]:
+    """What the 3D view shows of what is built."""
+    project, out, lamellas = results.project, results.outputs.get("fabrication"), results.lamellas
+    if out is not None and lamellas is not None and (project.joint is not None or project.files.solids):
+        from lamella.stages.fabrication.scene import report_layers
+
+        yield from report_layers(out, lamellas, project.lamella.material)
 
 
 def _report_mesh(results: Results) -> SurfaceMesh:

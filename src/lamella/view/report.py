@@ -13,13 +13,15 @@ from typing import Any
 
 import numpy as np
 import orjson
-from numpy.typing import NDArray
 
 from lamella.base.arrays import Floats, Integers
 from lamella.base.wording import one_line
+from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.network.network import NODE_KINDS, REGULAR, Network
 from lamella.strip.lamellas import Lamellas
 from lamella.surface.mesh import SurfaceMesh
+from lamella.view.built_payload import built_payload
+from lamella.view.encoding import direction16, float32, integers, quantised
 from lamella.view.quantity import Quantity, surface_quantities
 
 Spec = dict[str, Any]
@@ -39,7 +41,6 @@ CORNER_LIMIT = 24
 CORNER_COLUMNS = ("Place, m", "Angle, °", "Node angle off, °", "Utilisation")
 
 PASCAL_TO_MEGAPASCAL = 1e-6
-MISSING = 65535
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,8 @@ class ReportData:
         None after the stages "surface" and "network".
     material : str
         Name of the lamellas' material, shown with their section.
+    built : tuple of DrawnLayer
+        What is built, with solids; none before the stage "fabrication".
     """
 
     name: str
@@ -82,6 +85,7 @@ class ReportData:
     network: Network | None
     lamellas: Lamellas | None
     material: str
+    built: tuple[DrawnLayer, ...] = ()
 
 
 def write_report(path: Path, data: ReportData) -> None:
@@ -222,6 +226,7 @@ def _payload(data: ReportData) -> tuple[Spec, list[str]]:
         "surface": _surface_payload(data, centre, notes),
         "network": None,
         "lamellas": None,
+        "built": None,
     }
     if data.network is not None:
         stops = _kept_stops(data.network, STOP_LIMIT)
@@ -234,6 +239,8 @@ def _payload(data: ReportData) -> tuple[Spec, list[str]]:
         payload["network"] = _network_payload(data.network, centre, kept, stops)
         if data.lamellas is not None:
             payload["lamellas"] = _lamellas_payload(data.network, data.lamellas, kept)
+            payload["built"], left_out = built_payload(data.built, data.network, kept, centre)
+            notes += left_out
     return payload, notes
 
 
@@ -257,9 +264,9 @@ def _surface_payload(data: ReportData, centre: Floats, notes: list[str]) -> Spec
         )
         triangles = labels[triangles]
     return {
-        "points": _float32(surface.points[kept] - centre),
-        "normals": _direction16(surface.normals[kept]),
-        "triangles": _integers(_distinct_triangles(triangles, len(kept))),
+        "points": float32(surface.points[kept] - centre),
+        "normals": direction16(surface.normals[kept]),
+        "triangles": integers(_distinct_triangles(triangles, len(kept))),
         "colourings": [_colouring(quantity, kept) for quantity in quantities.values()],
         # without strips to look at, the surface is what there is to see
         "first": "plain" if data.network is not None or quantities["K"].is_constant else "K",
@@ -283,7 +290,7 @@ def _colouring(quantity: Quantity, kept: Integers) -> Spec:
         "least": quantity.least,
         "most": quantity.most,
         "stops": list(quantity.stops),
-        "values": _quantised(values),
+        "values": quantised(values),
     }
 
 
@@ -359,21 +366,21 @@ def _network_payload(network: Network, centre: Floats, kept: Integers, stops: In
     return {
         "ids": list(network.ids),
         "families": "".join(network.families.tolist()),
-        "lengths": _float32(network.lengths if len(network.ids) else np.zeros(0)),
-        "offsets": _integers(offsets),
-        "points": _float32(network.sample_points[kept] - centre),
-        "normals": _direction16(network.sample_normals[kept]),
-        "arclengths": _float32(network.sample_arclengths[kept]),
-        "normalCurvature": _quantised(network.sample_darboux.kn[kept]),
-        "geodesicCurvature": _quantised(network.sample_darboux.kg[kept]),
-        "geodesicTorsion": _quantised(network.sample_darboux.tg[kept]),
-        "nodeCounts": _integers(np.diff(network.stop_offsets)),
-        "stopOffsets": _integers(stop_offsets),
-        "stopNodes": _integers(network.stop_nodes[stops]),
-        "stopSamples": _integers(samples - np.repeat(offsets[:-1], np.diff(stop_offsets))),
-        "nodePoints": _float32(network.node_points[drawn] - centre),
-        "nodeKinds": _integers(network.node_kinds[drawn]),
-        "kindCounts": _integers(np.bincount(network.node_kinds, minlength=len(NODE_KINDS))),
+        "lengths": float32(network.lengths if len(network.ids) else np.zeros(0)),
+        "offsets": integers(offsets),
+        "points": float32(network.sample_points[kept] - centre),
+        "normals": direction16(network.sample_normals[kept]),
+        "arclengths": float32(network.sample_arclengths[kept]),
+        "normalCurvature": quantised(network.sample_darboux.kn[kept]),
+        "geodesicCurvature": quantised(network.sample_darboux.kg[kept]),
+        "geodesicTorsion": quantised(network.sample_darboux.tg[kept]),
+        "nodeCounts": integers(np.diff(network.stop_offsets)),
+        "stopOffsets": integers(stop_offsets),
+        "stopNodes": integers(network.stop_nodes[stops]),
+        "stopSamples": integers(samples - np.repeat(offsets[:-1], np.diff(stop_offsets))),
+        "nodePoints": float32(network.node_points[drawn] - centre),
+        "nodeKinds": integers(network.node_kinds[drawn]),
+        "kindCounts": integers(np.bincount(network.node_kinds, minlength=len(NODE_KINDS))),
     }
 
 
@@ -389,10 +396,10 @@ def _lamellas_payload(network: Network, strips: Lamellas, kept: Integers) -> Spe
     }
     return {
         "height": strips.section.height,
-        "developedLengths": _float32(strips.developed_lengths),
-        "utilisation": _quantised(strips.utilisation[kept]),
-        "planarity": _quantised(_planarity(network, strips, kept)),
-        **{key: _quantised(stress[kept] * PASCAL_TO_MEGAPASCAL) for key, stress in stresses.items()},
+        "developedLengths": float32(strips.developed_lengths),
+        "utilisation": quantised(strips.utilisation[kept]),
+        "planarity": quantised(_planarity(network, strips, kept)),
+        **{key: quantised(stress[kept] * PASCAL_TO_MEGAPASCAL) for key, stress in stresses.items()},
     }
 
 
@@ -404,36 +411,3 @@ def _planarity(network: Network, strips: Lamellas, kept: Integers) -> Floats:
     ends = np.searchsorted(kept, network.sample_offsets[1:] - 1)
     worst[ends] = worst[ends - 1]
     return np.asarray(worst, dtype=np.float64)
-
-
-def _encoded(kind: str, values: NDArray[Any]) -> Spec:
-    return {"type": kind, "data": base64.b64encode(np.ascontiguousarray(values).tobytes()).decode()}
-
-
-def _float32(values: Floats) -> Spec:
-    return _encoded("f4", values.astype("<f4"))
-
-
-def _integers(values: Integers) -> Spec:
-    """Encode non-negative integers in as few bytes as the largest needs."""
-    largest = int(values.max(initial=0))
-    kind = "u1" if largest < 2**8 else "u2" if largest < 2**16 else "u4"
-    return _encoded(kind, values.astype(f"<{kind}"))
-
-
-def _direction16(vectors: Floats) -> Spec:
-    """Encode unit vectors to 2e-5."""
-    return _encoded("i2", np.rint(vectors * 32767).astype("<i2"))
-
-
-def _quantised(values: Floats) -> Spec:
-    """Encode numbers to colour and plot with to 1/65534 of their range; anything not finite is missing."""
-    finite = np.isfinite(values)
-    if not finite.any():
-        return {"type": "constant", "value": None, "count": len(values)}
-    low, high = float(values[finite].min()), float(values[finite].max())
-    if low == high and finite.all():
-        return {"type": "constant", "value": low, "count": len(values)}
-    step = (high - low) / (MISSING - 1) or 1.0
-    levels = np.where(finite, np.rint((np.where(finite, values, low) - low) / step), MISSING)
-    return {**_encoded("u2", levels.astype("<u2")), "low": low, "step": step}

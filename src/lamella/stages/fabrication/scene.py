@@ -36,6 +36,10 @@ COLOURS = {
 }
 """Of the hardware's layers."""
 OTHER = (110, 110, 110)
+REPORT_TRIANGLES = 200_000
+"""Of all strips in a report: some 3 MB."""
+COARSER = 1.5
+"""By how much steps are lengthened until the strips have no more."""
 SOLIDS = {"A": (210, 130, 105), "B": (105, 150, 205)}
 """Of the strips' layers."""
 
@@ -59,10 +63,23 @@ def solids_left_out(project: Project, out: FabricationOutput, lamellas: Lamellas
     )
 
 
-def strip_layers(out: FabricationOutput, lamellas: Lamellas, material: str) -> Iterator[DrawnLayer]:
-    """The strips of either family."""
+def report_layers(out: FabricationOutput, lamellas: Lamellas, material: str) -> Iterator[DrawnLayer]:
+    """What the report shows: strips in longer steps where they would have too many triangles, hardware."""
+    step = body_step(lamellas)
+    least = triangle_count(out.parts, np.inf)
+    while least < REPORT_TRIANGLES < triangle_count(out.parts, step):
+        step *= COARSER
+    if triangle_count(out.parts, step) <= REPORT_TRIANGLES:
+        yield from strip_layers(out, lamellas, material, step)
+    yield from hardware_layers(out.hardware.items)
+
+
+def strip_layers(
+    out: FabricationOutput, lamellas: Lamellas, material: str, step: float | None = None
+) -> Iterator[DrawnLayer]:
+    """The strips of either family, in pieces of a length, m; `body_step` when not given."""
     bodies: dict[str, list[Body]] = {family: [] for family in SOLIDS}
-    for one in strip_bodies(out.parts, lamellas, body_step(lamellas)):
+    for one in strip_bodies(out.parts, lamellas, body_step(lamellas) if step is None else step):
         bodies[one.part.family].append(_body(one, material, finish(lamellas.material.density)))
     for family, colour in SOLIDS.items():
         yield DrawnLayer(f"solids {family}", colour=colour, bodies=tuple(bodies[family]))

@@ -33,6 +33,10 @@
       surface: { ...decodeAll(raw.surface), colourings: raw.surface.colourings.map(decodeAll) },
       network: decodeAll(raw.network),
       lamellas: decodeAll(raw.lamellas),
+      built: raw.built && {
+        strips: raw.built.strips.map(decodeAll),
+        hardware: raw.built.hardware.map(decodeAll),
+      },
     };
   }
 
@@ -285,6 +289,8 @@
       rim: network ? new THREE.Group() : rimLines(surface),
       families: network ? { A: familyPart(data, "A", size), B: familyPart(data, "B", size) } : {},
       nodes: network ? nodePoints(network) : new THREE.Group(),
+      solids: builtStrips(data.built),
+      hardware: hardwarePieces(data.built),
       highlight: new THREE.Group(),
       marker: pointCloud(new Float32Array(3), { size: 11, nearer: 0.015 }),
     };
@@ -294,6 +300,8 @@
       parts.rim,
       ...Object.values(parts.families).map((part) => part.group),
       parts.nodes,
+      ...Object.values(parts.solids),
+      parts.hardware,
       parts.highlight,
       parts.marker,
     );
@@ -361,8 +369,11 @@
     }
 
     function colourLamellas(colouring) {
-      for (const [family, part] of Object.entries(parts.families))
-        part.paint(sampleColours(colouring, family, network));
+      for (const [family, part] of Object.entries(parts.families)) {
+        const colours = sampleColours(colouring, family, network);
+        part.paint(colours);
+        if (parts.solids[family]) paintSolid(parts.solids[family], colours);
+      }
       redraw();
     }
 
@@ -376,6 +387,15 @@
         geometry.setAttribute("color", new THREE.BufferAttribute(paint(colouring.values, colouring), 3));
       material.color.copy(colouring.values ? new THREE.Color(0xffffff) : userData.plain);
       material.needsUpdate = true;
+      redraw();
+    }
+
+    /** Strips with their thickness take the place of those without. */
+    function showSolids(visible, families) {
+      for (const [family, mesh] of Object.entries(parts.solids)) {
+        mesh.visible = visible && families[family];
+        if (parts.families[family].mesh) parts.families[family].mesh.visible = !visible;
+      }
       redraw();
     }
 
@@ -455,6 +475,7 @@
       pick,
       setTheme,
       show,
+      showSolids,
       turn,
       zoom,
       onDraw: (listener) => listeners.push(listener),
@@ -631,6 +652,44 @@
       lines.geometry.setColors(gathered(colours, starts, isLow ? 1 : 0.35));
     }
     return { group, starts, mesh, paint: paintPart };
+  }
+
+  /** Strips as they are built, a mesh for each family; every vertex has the colour of a sample. */
+  function builtStrips(built) {
+    const meshes = {};
+    for (const { family, points, triangles, samples } of built?.strips ?? []) {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
+      geometry.setIndex(new THREE.BufferAttribute(Uint32Array.from(triangles), 1));
+      const material = new THREE.MeshLambertMaterial({ vertexColors: true, flatShading: true });
+      meshes[family] = new THREE.Mesh(geometry, material);
+      meshes[family].userData.samples = samples;
+    }
+    return meshes;
+  }
+
+  function paintSolid(mesh, colours) {
+    const { samples } = mesh.userData;
+    const painted = new Float32Array(3 * samples.length);
+    samples.forEach((sample, i) => painted.set(colours.subarray(3 * sample, 3 * sample + 3), 3 * i));
+    mesh.geometry.setAttribute("color", new THREE.BufferAttribute(painted, 3));
+  }
+
+  /** A mesh for each kind of hardware, drawn in all its places. */
+  function hardwarePieces(built) {
+    const group = new THREE.Group();
+    for (const { points, triangles, matrices, colour } of built?.hardware ?? []) {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
+      geometry.setIndex(new THREE.BufferAttribute(Uint32Array.from(triangles), 1));
+      const count = matrices.length / 16;
+      const material = new THREE.MeshLambertMaterial({ color: colour, flatShading: true });
+      const mesh = new THREE.InstancedMesh(geometry, material, count);
+      mesh.instanceMatrix.array.set(matrices);
+      mesh.frustumCulled = false;
+      group.add(mesh);
+    }
+    return group;
   }
 
   function doubled(colours) {
@@ -1140,7 +1199,7 @@
 
   function start() {
     const data = readData();
-    const { network, surface, lamellas } = data;
+    const { network, surface, lamellas, built } = data;
     const preference = matchMedia("(prefers-color-scheme: dark)");
     const isDark = () => ({ dark: true, light: false })[readHash().theme] ?? preference.matches;
     const applyTheme = () => {
@@ -1226,7 +1285,7 @@
       applyTheme();
       byId("surface-colouring").value = chosen(surfaces, parameters.surface, surface.first).key;
       if (colourings.length) byId("colouring").value = chosen(colourings, parameters.colour).key;
-      for (const name of ["a", "b", "nodes"]) {
+      for (const name of ["a", "b", "nodes", "solids", "hardware"]) {
         if (name in parameters) byId(`show-${name}`).checked = parameters[name] !== "0";
       }
       if (parameters.surface === "none") byId("show-surface").checked = false;
@@ -1248,6 +1307,11 @@
       view.show("A", byId("show-a").checked);
       view.show("B", byId("show-b").checked);
       view.show("nodes", byId("show-nodes").checked);
+      view.showSolids(byId("show-solids").checked && Boolean(built?.strips.length), {
+        A: byId("show-a").checked,
+        B: byId("show-b").checked,
+      });
+      view.show("hardware", byId("show-hardware").checked);
     }
 
     function connectToolbar() {
@@ -1264,7 +1328,11 @@
           recolour();
           writeHash();
         });
-      for (const id of ["show-a", "show-b", "show-surface", "show-nodes"])
+      for (const [need, list] of Object.entries({ solids: built?.strips, hardware: built?.hardware }))
+        document.querySelectorAll(`[data-needs=${need}]`).forEach((part) => {
+          part.hidden = !list?.length;
+        });
+      for (const id of ["show-a", "show-b", "show-surface", "show-nodes", "show-solids", "show-hardware"])
         byId(id).addEventListener("change", () => {
           applyVisibility();
           recolour();

@@ -7,6 +7,7 @@ export {
   DirectionalLight,
   DoubleSide,
   Group,
+  InstancedMesh,
   Mesh,
   MeshLambertMaterial,
   PerspectiveCamera,
