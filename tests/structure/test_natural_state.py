@@ -9,6 +9,7 @@ from lamella.structure.beam.beams import make_beams
 from lamella.structure.beam.fibre_stress import curvatures_at_ends, strip_stresses
 from lamella.structure.beam.poses import Poses, straight_poses
 from lamella.structure.beam.rotations import exponential
+from lamella.structure.construction import continued
 from lamella.structure.loads import make_loads, no_loads
 from lamella.structure.static import at_rest, equilibrium
 from lamella.structure.structure import make_structure
@@ -202,3 +203,19 @@ def test_curvature_changes_linearly_along_an_element():
     lever = length - np.stack((s[:-1], s[1:]), 1)
     assert np.allclose(curvature[..., 2] * section.bending_n, 1e-6 * lever, rtol=1e-6, atol=1e-13)
     assert np.allclose(curvature[..., 1] * section.bending_u, -2e-6 * lever, rtol=1e-6, atol=1e-13)
+
+
+def test_a_held_strip_that_gets_warm():
+    """Between rigid ends: N = -E A alpha T; free to grow: longer by that, without force."""
+    strain = 16e-6 * 40
+    held = strip(4, 2.0, STIFF_ACROSS, {0: "all", -1: "all"})
+    warm = equilibrium(held, make_loads(held, swelling=strain))
+    assert warm.resultants[0] == pytest.approx(-STIFF_ACROSS.axial * strain, rel=1e-9)
+    assert warm.reactions[0, 0] == pytest.approx(STIFF_ACROSS.axial * strain, rel=1e-9)
+    free = strip(4, 2.0, STIFF_ACROSS, {0: "all"})
+    warm = equilibrium(free, make_loads(free, swelling=strain))
+    assert warm.displacements[-1, 0] == pytest.approx(2.0 * strain, rel=1e-9)
+    assert np.abs(warm.resultants).max() < 1e-6
+    # and stays so where the next stage begins
+    after = continued(warm, no_loads(free))
+    assert np.abs(after.whole.stress.beams).max() < 1e-6

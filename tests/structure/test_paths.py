@@ -309,7 +309,7 @@ def test_overload_says_how_far_it_went():
         (lambda s: make_structure(s.poses, s.beams, {0: "all", 4: "rw"}), "held"),
         (lambda s: make_structure(s.poses, s.beams, {0: "all"}, locked=[0]), "locked"),
         (lambda s: continued(equilibrium(s, no_loads(s)), no_loads(s), strip(5, 1.0, STRIP, {0: "all"})), "structure"),
-        (lambda s: next(arc_length_path(equilibrium(s, make_loads(s, natural=(0, 0, 1))), 0.1)), "loads.natural"),
+        (lambda s: next(arc_length_path(equilibrium(s, make_loads(s, natural=(0, 0, 1))), 0.1)), "loads"),
     ],
 )
 def test_refusals(make, parameter):

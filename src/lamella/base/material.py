@@ -23,6 +23,8 @@ class Material:
     shear_strength : float or None
         Limit of shear stress, Pa, where it is not that of von Mises (timber).
     source : str
+    expansion : float
+        Strain by one kelvin, 1/K (along the grain for timber).
 
     Examples
     --------
@@ -38,23 +40,26 @@ class Material:
     strength: float
     shear_strength: float | None = None
     source: str = "project file"
+    expansion: float = 12e-6
 
 
-_STAINLESS = "EN 1993-1-4 table 2.1 (cold-rolled strip), density EN 10088-1"
+_STAINLESS = "EN 1993-1-4 table 2.1 (cold-rolled strip), density and expansion EN 10088-1"
 _STEEL = "EN 1993-1-1 3.2.6 and table 3.1 (t <= 40 mm)"
-_TIMBER = "EN 338:2016 table 1 (characteristic strengths, mean stiffness and density)"
+_TIMBER = "EN 338:2016 table 1 (characteristic strengths, mean stiffness and density), EN 1991-1-5 table C.1"
 
 MATERIALS: dict[str, Material] = {
-    "1.4301": Material(7900, 200e9, 77e9, 230e6, source=_STAINLESS),
-    "1.4404": Material(8000, 200e9, 77e9, 240e6, source=_STAINLESS),
-    "1.4462": Material(7800, 200e9, 77e9, 500e6, source=_STAINLESS),
+    "1.4301": Material(7900, 200e9, 77e9, 230e6, source=_STAINLESS, expansion=16e-6),
+    "1.4404": Material(8000, 200e9, 77e9, 240e6, source=_STAINLESS, expansion=16e-6),
+    "1.4462": Material(7800, 200e9, 77e9, 500e6, source=_STAINLESS, expansion=13e-6),
     "S235": Material(7850, 210e9, 81e9, 235e6, source=_STEEL),
     "S355": Material(7850, 210e9, 81e9, 355e6, source=_STEEL),
     "S700MC": Material(7850, 210e9, 81e9, 700e6, source="EN 10149-2 table 2; constants EN 1993-1-1 3.2.6"),
-    "EN AW-6082 T6": Material(2700, 70e9, 27e9, 260e6, source="EN 1999-1-1 table 3.2a (sheet, t <= 6 mm)"),
-    "C24": Material(420, 11.0e9, 0.69e9, 24e6, 4.0e6, source=_TIMBER),
-    "D40": Material(660, 13.0e9, 0.81e9, 40e6, 4.2e6, source=_TIMBER),
-    "GL24h": Material(420, 11.5e9, 0.65e9, 24e6, 3.5e6, source="EN 14080:2013 table 5"),
+    "EN AW-6082 T6": Material(
+        2700, 70e9, 27e9, 260e6, source="EN 1999-1-1 table 3.2a (sheet, t <= 6 mm), 3.2.5", expansion=23e-6
+    ),
+    "C24": Material(420, 11.0e9, 0.69e9, 24e6, 4.0e6, source=_TIMBER, expansion=5e-6),
+    "D40": Material(660, 13.0e9, 0.81e9, 40e6, 4.2e6, source=_TIMBER, expansion=5e-6),
+    "GL24h": Material(420, 11.5e9, 0.65e9, 24e6, 3.5e6, source="EN 14080:2013 table 5", expansion=5e-6),
 }
 
 

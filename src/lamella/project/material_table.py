@@ -15,3 +15,4 @@ class MaterialTable(Table):
     shear_strength: float | None = number(
         "Limit of the shear stress where it is not that of von Mises (timber).", "Pa", ge=1e3, le=1e11, default=None
     )
+    expansion: float = number("Strain by one kelvin.", "1/K", ge=0, le=1e-3, default=12e-6)

@@ -55,7 +55,7 @@ def linear_buckling(equilibrium: Equilibrium, count: int = 1) -> Buckling:
     Raises
     ------
     InputError
-        The equilibrium is unstable; loads that change natural curvatures.
+        The equilibrium is unstable; loads that change natural curvatures or lengths.
     """
     return _about(Tangent.of(equilibrium), count)
 
@@ -63,8 +63,8 @@ def linear_buckling(equilibrium: Equilibrium, count: int = 1) -> Buckling:
 def _about(tangent: Tangent, count: int) -> Buckling:
     equilibrium = tangent.equilibrium
     loads, structure, state = equilibrium.loads, equilibrium.structure, equilibrium.whole
-    if loads.natural.any():
-        raise InputError("loads change the natural curvature", "give forces or motions", "loads.natural")
+    if not loads.strain_free:
+        raise InputError("loads change the natural shape of elements", "give forces or motions", "loads")
     stress = state.stress_rate(structure.gathered(tangent.motion()))
     lines = replace(state.beams.lines, loads=loads.lines)
     further = replace(state, beams=replace(state.beams, lines=lines))

@@ -11,7 +11,7 @@ of its relative shift, and none where it is slack. Under prestress it is cut sho
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -55,6 +55,10 @@ class Cables(Lean):
     def unknowns(self, nodes: int) -> Integers:
         """Unknowns of a structure of so many nodes, (14, c), as `Beams.unknowns` of elements beside their nodes."""
         return self.attachment.unknowns(np.arange(len(self)), nodes)
+
+    def swollen(self, swelling: float) -> Cables:
+        """The same, longer by a strain that needs no force."""
+        return replace(self, length=self.length * (1 + swelling)) if swelling else self
 
     def at(self, poses: Poses) -> CableState:
         """Tension and what follows from it, in a pose."""

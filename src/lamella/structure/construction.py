@@ -38,6 +38,8 @@ def continued(last: Equilibrium, loads: Loads, structure: Structure | None = Non
     if after.poses.unknowns != last.poses.unknowns or len(after.beams) != len(last.structure.beams):
         raise InputError("the next stage has other nodes or beams", "change supports and locks only", "structure")
     natural = after.beams.law.natural + last.factor * last.loads.natural
+    beams = after.beams.with_natural(natural).swollen(last.factor * last.loads.swelling)
+    cables = after.cables.swollen(last.factor * last.loads.cable_swelling)
     released = last.structure.held_unknowns & ~after.held_unknowns
     support = np.where(released, last.internal - last.loads.forces_at(last.factor), 0.0)
     onward = replace(
@@ -46,6 +48,4 @@ def continued(last: Equilibrium, loads: Loads, structure: Structure | None = Non
         constant_forces=loads.constant_forces + last.loads.forces_at(last.factor) + support,
         constant_lines=loads.constant_lines + last.loads.constant_lines + last.factor * last.loads.lines,
     )
-    return Equilibrium(
-        replace(after, beams=after.beams.with_natural(natural)), onward, 0.0, last.poses, last.negative, 0
-    )
+    return Equilibrium(replace(after, beams=beams, cables=cables), onward, 0.0, last.poses, last.negative, 0)

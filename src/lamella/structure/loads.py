@@ -30,6 +30,10 @@ class Loads:
         Prescribed motion of held unknowns: shifts, m, and rotation vectors about fixed axes, rad.
     natural : (m, 3)
         Change of the elements' natural curvature, 1/m.
+    swelling : (m,)
+        Stretch of the elements that needs no force: of a change of temperature.
+    cable_swelling : float
+        The same of all cables.
     constant_forces, constant_lines : (6 n + k,), (m, 3)
         The same at any load factor.
     """
@@ -38,8 +42,15 @@ class Loads:
     lines: Floats
     motions: Floats
     natural: Floats
+    swelling: Floats
+    cable_swelling: float
     constant_forces: Floats
     constant_lines: Floats
+
+    @property
+    def strain_free(self) -> bool:
+        """Whether elements keep their natural shape whatever the load factor."""
+        return not (self.natural.any() or self.swelling.any() or self.cable_swelling)
 
     def forces_at(self, factor: float) -> Floats:
         """Forces at the unknowns at a load factor, (6 n + k,)."""
@@ -50,13 +61,16 @@ class Loads:
         beams = structure.beams
         if self.natural.any():
             beams = beams.with_natural(beams.law.natural + factor * self.natural)
-        return structure.at(poses, beams.at(poses, self.constant_lines + factor * self.lines))
+        if self.swelling.any():
+            beams = beams.swollen(factor * self.swelling)
+        state = beams.at(poses, self.constant_lines + factor * self.lines)
+        return structure.at(poses, state, cable_swelling=factor * self.cable_swelling)
 
 
 def no_loads(structure: Structure) -> Loads:
     """Nothing acts."""
     unknowns, elements = np.zeros(structure.poses.unknowns), np.zeros((len(structure.beams), 3))
-    return Loads(unknowns, elements, unknowns, elements, unknowns, elements)
+    return Loads(unknowns, elements, unknowns, elements, np.zeros(len(elements)), 0.0, unknowns, elements)
 
 
 def make_loads(
@@ -67,6 +81,7 @@ def make_loads(
     lines: ArrayLike = 0.0,
     motions: dict[int, tuple[float, ...]] | None = None,
     natural: ArrayLike = 0.0,
+    swelling: ArrayLike = 0.0,
 ) -> Loads:
     """Loads at nodes, each six numbers, along and about x, y, z, and on elements.
 
@@ -83,6 +98,8 @@ def make_loads(
         Shift (m) and rotation vector (rad) by node; 0 where nothing is held.
     natural : (m, 3) or (3,)
         Change of natural curvature, 1/m.
+    swelling : (m,) or float
+        Stretch that needs no force.
 
     Raises
     ------
@@ -101,7 +118,11 @@ def make_loads(
             raise InputError(f"moment {moment!r} at joint {joint}", f"joints are 0 to {count - 1}", "joints")
         vectors[0][structure.poses.unknowns - count + joint] += moment
     rows = [_on_elements(structure, name, given) for name, given in (("lines", lines), ("natural", natural))]
-    return replace(no_loads(structure), forces=vectors[0], motions=vectors[1], lines=rows[0], natural=rows[1])
+    longer = np.broadcast_to(np.asarray(swelling, float), len(structure.beams)).copy()
+    if not np.isfinite(longer).all():
+        raise InputError(f"swelling = {swelling!r}", "give finite numbers", "swelling")
+    loads = replace(no_loads(structure), forces=vectors[0], motions=vectors[1])
+    return replace(loads, lines=rows[0], natural=rows[1], swelling=longer)
 
 
 def _at_nodes(structure: Structure, name: str, given: dict[int, tuple[float, ...]]) -> Floats:

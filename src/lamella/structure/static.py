@@ -13,7 +13,7 @@ from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
 from lamella.structure.beam.relative_motion import RelativeMotion
 from lamella.structure.controls import ArcLengthControl, DisplacementControl, LoadControl
 from lamella.structure.equilibrium import Equilibrium
-from lamella.structure.loads import Loads
+from lamella.structure.loads import Loads, no_loads
 from lamella.structure.mechanism import refuse_mechanism
 from lamella.structure.newton import StepError, step
 from lamella.structure.structure import Structure
@@ -167,7 +167,8 @@ def released(structure: Structure, loads: Loads) -> Equilibrium:
     points, frames = structure.beams.attachment.ends(structure.poses)
     present = (RelativeMotion.between(points, frames).local_theta / law.length).T
     held = replace(structure, beams=structure.beams.with_natural(present))
-    going = replace(loads, forces=0 * loads.forces, lines=0 * loads.lines, motions=0 * loads.motions)
+    none = no_loads(structure)
+    going = replace(none, constant_forces=loads.constant_forces, constant_lines=loads.constant_lines)
     going = replace(going, natural=law.natural - present)
     first = step(Equilibrium(held, going, 0.0, structure.poses, 0, 0), LoadControl(0.0))
     last = loaded(first, steps=RELEASE_STEPS)
@@ -192,9 +193,9 @@ def _shorter(here: Equilibrium, length: float, longest: float, error: StepError)
 
 
 def _refuse_natural(loads: Loads) -> None:
-    if loads.natural.any():
+    if not loads.strain_free:
         raise InputError(
-            "changes of natural curvature are not followed past limit points", "use load_path", "loads.natural"
+            "changes of elements' natural shape are not followed past limit points", "use load_path", "loads"
         )
 
 

@@ -120,10 +120,11 @@ class Structure(Lean):
         springs = [self.node_springs.unknowns(), self.joint_springs.unknowns(nodes)]
         return [*self.beams.unknowns(nodes), self.cables.unknowns(nodes), *springs]
 
-    def at(self, poses: Poses, beams: BeamState) -> StructureState:
-        """In a pose, with its beams in it."""
+    def at(self, poses: Poses, beams: BeamState, *, cable_swelling: float = 0.0) -> StructureState:
+        """In a pose, with its beams in it, and cables longer by a strain."""
         turns = self.joint_springs.beyond(poses)
-        return StructureState(beams, self.cables.at(poses), self.node_springs.at(poses), self.joint_springs, turns)
+        cables = self.cables.swollen(cable_swelling).at(poses)
+        return StructureState(beams, cables, self.node_springs.at(poses), self.joint_springs, turns)
 
     @cached_property
     def pattern(self) -> SymmetricPattern:

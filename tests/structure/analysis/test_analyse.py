@@ -156,3 +156,16 @@ def test_settlement_moves_what_is_held():
         np.broadcast_to([0, 0, -0.05], settled.displacements.shape), abs=1e-8
     )
     assert settled.von_mises_max == pytest.approx(rest.von_mises_max, rel=1e-6)
+
+
+def test_temperature_moves_a_net_on_one_node_as_a_whole():
+    """Held at one node it grows by alpha T in all directions about that node, and no stress changes."""
+    supports = held_at(PATCH, central_node(PATCH))
+    case = replace(no_load("warm", len(PATCH.node_points)), temperature=30.0)
+    rest, warm = analyse(model(supports), [case], frequencies=0).cases
+    points = rest.equilibrium.poses.points[: len(PATCH.node_points)]
+    grown = warm.displacements - rest.displacements
+    exact = STEEL.expansion * 30.0 * (points - points[central_node(PATCH)])
+    assert grown == pytest.approx(exact, abs=2e-2 * np.abs(exact).max())
+    assert warm.von_mises_max == pytest.approx(rest.von_mises_max, rel=1e-3)
+    assert np.abs(warm.reaction_total).max() < 1e-5

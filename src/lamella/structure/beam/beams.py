@@ -71,6 +71,10 @@ class Beams(Lean):
         """The same with other natural curvatures (m, 3), 1/m: tg0, -kn0, kg0."""
         return replace(self, law=replace(self.law, natural=natural))
 
+    def swollen(self, swelling: Floats) -> Beams:
+        """The same, longer by a strain (m,) that needs no force."""
+        return replace(self, law=replace(self.law, swelling=self.law.swelling + swelling))
+
     def at(self, poses: Poses, lines: Floats | None = None) -> BeamState:
         """Strains and what follows from them, in a pose.
 

@@ -5,7 +5,7 @@ Of the length L0, natural curvature (tg0, -kn0, kg0) and what `lamella.structure
 ====================  ==================================================================  =================
 strain                formula                                                             stiffness over L0
 ====================  ==================================================================  =================
-stretch               abs(rho) / L0 - 1 + i^2 (tg^2 - tg0^2) / 2                          E A
+stretch               abs(rho) / L0 - 1 + i^2 (tg^2 - tg0^2) / 2 - swelling               E A
 S-bend sideways       rho_u / abs(rho)                                                    see below, weak
 S-bend upright        rho_n / abs(rho)                                                    see below, strong
 twist                 tg - tg0                                                            G J
@@ -53,6 +53,8 @@ class StrainLaw:
         Times length, N m.
     gyration, poisson, plate_rate : (m,)
         See `CrossSection`.
+    swelling : (m,) or float
+        Stretch that needs no force: of a change of temperature.
     """
 
     length: Floats
@@ -61,6 +63,7 @@ class StrainLaw:
     gyration: Floats
     poisson: Floats
     plate_rate: Floats
+    swelling: Floats | float = 0.0
 
 
 @dataclass(frozen=True)
@@ -94,7 +97,7 @@ class Strains:
         twisted = tg**2 - tg0**2
         across = twisted + law.poisson * kg * (kg - kg0)
         values = np.empty((COUNT, len(length)))
-        values[0] = size / length - 1 + law.gyration * twisted / 2
+        values[0] = size / length - 1 + law.gyration * twisted / 2 - law.swelling
         values[1:3] = direction[1:]
         values[3], values[4], values[5], values[6] = tg - tg0, kn - kn0, kg - kg0, across * share.value
         first = np.zeros((COUNT, 6, len(length)))

@@ -12,6 +12,9 @@ from lamella.structure.beam.poses import NODE_UNKNOWNS
 from lamella.structure.loads import Loads, no_loads
 from lamella.structure.model.model import Model, line_weights
 
+STRAND_EXPANSION = 16e-6
+"""1/K; of stainless steel, EN 10088-1."""
+
 
 def case_loads(model: Model, case: LoadCase, node_masses: Floats | None = None) -> Loads:
     """Loads of a case.
@@ -39,4 +42,12 @@ def case_loads(model: Model, case: LoadCase, node_masses: Floats | None = None) 
     rows = motions[: NODE_UNKNOWNS * len(structure.poses.points)].reshape(-1, NODE_UNKNOWNS)
     rows[: model.nodes] = np.where(structure.held[: model.nodes], case.settlements, 0.0)
     lines = line_weights(model)[:, None] * weight
-    return replace(no_loads(structure), forces=forces, lines=lines, motions=motions)
+    warmer = np.full(len(structure.beams), model.lamellas.material.expansion * case.temperature)
+    return replace(
+        no_loads(structure),
+        forces=forces,
+        lines=lines,
+        motions=motions,
+        swelling=warmer,
+        cable_swelling=STRAND_EXPANSION * case.temperature,
+    )
