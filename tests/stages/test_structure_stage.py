@@ -101,7 +101,8 @@ def test_supports_that_leave_a_mechanism() -> None:
 
 
 def test_overload_and_overstress_are_warned_of() -> None:
-    results = compute(project(load=[SNOW | {"value": 1e5}]))
+    thin = {"material": "S355", "height": 0.04, "thickness": 0.0005}
+    results = compute(project(load=[SNOW | {"value": 1e5}], lamella=thin))
     told = results.summary["warnings"]
     (case,) = results.summary["structure"]["cases"][1:]
     assert not case["converged"]

@@ -72,12 +72,12 @@ class StructureState(Lean):
     def stress_rate(self, motions: list[Floats]) -> Stress:
         """What a motion, in the groups of the unknowns, adds to the stress, linearly; slack cables stay slack."""
         cables = self.cables.force_rate(motions[2])
-        beams = self.beams.beams.law.stiffness * self.beams.strain_rate(motions[:2])
+        beams = self.beams.beams.law.stress_rate(self.beams.strain_rate(motions[:2]))
         return Stress(beams, np.where(self.cables.tight(self.cables.force), cables, 0.0))
 
     def expected(self, motions: list[Floats]) -> Stress:
         """The stress after a motion, linearly; a slack cable may become tight."""
-        beams = self.beams.beams.law.stiffness * (self.beams.strains.values + self.beams.strain_rate(motions[:2]))
+        beams = self.beams.beams.law.stress(self.beams.strains.values + self.beams.strain_rate(motions[:2]))
         return Stress(beams, self.cables.force + self.cables.force_rate(motions[2]))
 
     def mass(self) -> list[Floats]:

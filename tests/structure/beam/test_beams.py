@@ -10,6 +10,7 @@ from lamella.structure.beam.beams import make_beams
 from lamella.structure.beam.cross_section import CrossSection, flat_strip
 from lamella.structure.beam.poses import Poses
 from lamella.structure.beam.rotations import exponential
+from lamella.structure.beam.turning import turning
 from lamella.structure.structure import Structure
 from structure.strips import STEEL, STRIP, rod
 
@@ -20,8 +21,11 @@ SECTION = CrossSection(
 )
 
 
-def tangle() -> tuple[Structure, np.ndarray]:
-    """Five elements of large strain between four nodes: direct, turned, eccentric, with joints at one end or both."""
+def tangle(turn: bool = False) -> tuple[Structure, np.ndarray]:
+    """Five elements of large strain between four nodes: direct, turned, eccentric, with joints at one end or both.
+
+    `turn`: they know how they turn along themselves in another pose.
+    """
     poses = Poses(RANDOM.normal(size=(4, 3)), exponential(0.5 * RANDOM.normal(size=(4, 3))), RANDOM.normal(size=2))
     offsets = np.zeros((5, 2, 3))
     offsets[2:] = 0.3 * RANDOM.normal(size=(3, 2, 3))
@@ -34,6 +38,8 @@ def tangle() -> tuple[Structure, np.ndarray]:
         offsets=offsets,
         joints=[[-1, -1], [-1, 1], [0, -1], [1, 0], [-1, -1]],
     )
+    if turn:
+        beams = turning(beams, poses.moved(0.1 * RANDOM.normal(size=poses.unknowns)))
     return Structure(poses, beams, np.zeros((4, 6), bool), np.zeros(2, bool)), 20 * RANDOM.normal(size=(5, 3))
 
 
@@ -59,17 +65,19 @@ def central(function, size: int, step: float) -> np.ndarray:
     )
 
 
-def test_forces_are_the_derivative_of_the_energy():
-    structure, lines = tangle()
+@pytest.mark.parametrize("turn", [False, True])
+def test_forces_are_the_derivative_of_the_energy(turn):
+    structure, lines = tangle(turn)
     poses = structure.poses
     forces = structure.vector(structure.beams.at(poses, lines).forces())
     by_differences = central(lambda q: energy(structure, poses.moved(q), lines), poses.unknowns, 1e-3)
     assert np.abs(forces - by_differences).max() < 1e-8 * np.abs(forces).max()
 
 
-def test_tangent_stiffness_is_the_second_derivative_of_the_energy():
+@pytest.mark.parametrize("turn", [False, True])
+def test_tangent_stiffness_is_the_second_derivative_of_the_energy(turn):
     """Along exp(w) R; off equilibrium the derivative of the forces also has a part that is not symmetric."""
-    structure, lines = tangle()
+    structure, lines = tangle(turn)
     poses = structure.poses
     state = structure.beams.at(poses, lines)
     blocks = state.stiffness(state.stress)
@@ -101,9 +109,10 @@ def test_the_stiffness_is_linear_in_the_stress_it_is_given():
         assert np.allclose(one, two + three, rtol=0, atol=1e-11)
 
 
-def test_rigid_motions_change_nothing():
+@pytest.mark.parametrize("turn", [False, True])
+def test_rigid_motions_change_nothing(turn):
     """Frame indifference: strains, and forces that turn with the structure."""
-    structure, _ = tangle()
+    structure, _ = tangle(turn)
     poses = structure.poses
     turn, shift = exponential(np.array([[1.1, -0.7, 2.0]]))[0], np.array([30.0, -20.0, 10.0])
     moved = Poses(poses.points @ turn.T + shift, turn @ poses.frames, poses.angles)

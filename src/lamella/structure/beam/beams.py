@@ -103,13 +103,13 @@ class BeamState(Lean):
 
     @cached_property
     def stress(self) -> Floats:
-        """Stiffness times strain, times length, (7, m): what is conjugate to `Strains.values`."""
-        return np.asarray(self.beams.law.stiffness * self.strains.values)
+        """What is conjugate to `Strains.values`, (7, m)."""
+        return self.beams.law.stress(self.strains.values)
 
     @property
     def energy(self) -> Floats:
         """Elastic energy of each element, J, (m,)."""
-        return np.asarray(0.5 * (self.stress * self.strains.values).sum(0))
+        return self.beams.law.energy(self.strains.values)
 
     @cached_property
     def _first(self) -> Floats:
@@ -140,9 +140,7 @@ class BeamState(Lean):
         With `stress` of this state it is the second derivative of the energy along exp(w) R; another stress near it is
         what Newton's method takes, see `lamella.structure.newton`.
         """
-        first = self._first
-        elastic = turned_product(first, self.beams.law.stiffness[:, None] * first)
-        return self._stiffness(elastic, stress)
+        return self._stiffness(self.beams.law.elastic(self._first), stress)
 
     def geometric_stiffness(self, stress: Floats) -> list[Floats]:
         """The part of `stiffness` that a stress (7, m) and the line loads make, linear in them."""

@@ -25,7 +25,8 @@ def curvatures_at_ends(state: BeamState) -> Floats:
     """
     law, frame = state.beams.law, state.motion.frame
     mean = state.motion.local_theta / law.length
-    mean_moment = turned_product(state.strains.first, state.stress)[3:]
+    # what belongs to the mean curvature, whatever moment turning elements have at their middle
+    mean_moment = turned_product(state.strains.first, law.stiffness * state.strains.values)[3:]
     on_ends = state.on_ends(state.stress)
     frame_b = state.motion.frame_at_b()
     moments = (-turned_product(frame, on_ends[3:6]), turned_product(frame_b, on_ends[9:]))

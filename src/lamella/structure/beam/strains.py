@@ -32,7 +32,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Floats
-from lamella.structure.beam.columns import add_unit, dot, outer, symmetric
+from lamella.structure.beam.columns import add_unit, dot, outer, product, symmetric, turned_product
 from lamella.structure.beam.plate_action import Share, root_share
 
 COUNT = 7
@@ -55,6 +55,10 @@ class StrainLaw:
         See `CrossSection`.
     swelling : (m,) or float
         Stretch that needs no force: of a change of temperature.
+    coupling : (5, 5, m) or None
+        Stiffness, times length, that S-bends, twist and bendings have besides, coupled with each other, against what
+        `measures` differ from `reference`; see `lamella.structure.beam.turning`.
+    reference : (5, m) or None
     """
 
     length: Floats
@@ -64,6 +68,43 @@ class StrainLaw:
     poisson: Floats
     plate_rate: Floats
     swelling: Floats | float = 0.0
+    coupling: Floats | None = None
+    reference: Floats | None = None
+
+    def measures(self, values: Floats) -> Floats:
+        """S-bends, and twist and curvatures whatever is natural, of strains (7, m): (5, m)."""
+        whole = values[1:6].copy()
+        whole[2:] += self.natural.T
+        return whole
+
+    def stress(self, values: Floats) -> Floats:
+        """What is conjugate to strains (7, m): derivatives of the energy, (7, m)."""
+        result = self.stiffness * values
+        if self.coupling is not None and self.reference is not None:
+            result[1:6] += product(self.coupling, self.measures(values) - self.reference)
+        return np.asarray(result)
+
+    def stress_rate(self, rate: Floats) -> Floats:
+        """Its change by a change of the strains, (7, m)."""
+        result = self.stiffness * rate
+        if self.coupling is not None:
+            result[1:6] += product(self.coupling, rate[1:6])
+        return np.asarray(result)
+
+    def energy(self, values: Floats) -> Floats:
+        """J, (m,)."""
+        result = 0.5 * (self.stiffness * values**2).sum(0)
+        if self.coupling is not None and self.reference is not None:
+            apart = self.measures(values) - self.reference
+            result += 0.5 * (apart * product(self.coupling, apart)).sum(0)
+        return np.asarray(result)
+
+    def elastic(self, first: Floats) -> Floats:
+        """Second derivative of the energy but for that of the strains, with their first ones (7, k, m): (k, k, m)."""
+        result = turned_product(first, self.stiffness[:, None] * first)
+        if self.coupling is not None:
+            result += turned_product(first[1:6], product(self.coupling, first[1:6]))
+        return result
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from lamella.structure.actions.node_supports import NodeSupports
 from lamella.structure.beam.beams import Beams, make_beams
 from lamella.structure.beam.cross_section import flat_strip
 from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
+from lamella.structure.beam.turning import turning
 from lamella.structure.joint_springs import JointSprings, make_joint_springs, no_joint_springs
 from lamella.structure.model.block_nodes import block_places
 from lamella.structure.model.bracing import brace
@@ -118,6 +119,7 @@ def make_model(
     )
     if rules.slots == "reduced":
         beams = slotted(beams, lines.crossed.sum(1).astype(float), section.height, rules.slot_width)
+    beams = turning(beams, poses)
     structure = _supported(lamellas, poses, beams, supports)
     structure = replace(
         structure, cables=brace(network, poses, cables, section.height), joint_springs=_springs(poses, rules)
