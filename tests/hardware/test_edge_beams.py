@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import lamella
-from lamella import InputError, Section
+from lamella import InputError, Section, compute, parse_project
 from lamella.fabrication.drawing import write_drawings
 from lamella.fabrication.parts import make_parts
 from lamella.fabrication.read_back import read_slots
@@ -38,6 +38,9 @@ NETS = {
     # two rims, met at 45 degrees
     "rings": lambda: lamella.net(lamella.Unduloid(1.0, 1.6, (-1.0, 1.0)), cells=8),
 }
+
+
+SOME = ["skew square", pytest.param("wavy rim", marks=pytest.mark.slow), pytest.param("rings", marks=pytest.mark.slow)]
 
 
 @cache
@@ -78,7 +81,7 @@ def test_rims_of_known_length_with_the_surface_to_their_left() -> None:
     assert corners == {(0, 0, 0), (4, 0, 1.2), (4, 4, 0), (0, 4, 1.2)}
 
 
-@pytest.mark.parametrize("name", NETS)
+@pytest.mark.parametrize("name", SOME)
 def test_beams_keep_their_distance_from_the_rim_and_their_length(name: str) -> None:
     axes, made = beams_of(name, FLAT)
     beams = made.hardware.of("edge_beam")
@@ -120,7 +123,7 @@ def test_a_square_of_straight_tubes_is_mitred() -> None:
     assert [item.quantity for item in made.hardware.of("base plate")] == [2]
 
 
-@pytest.mark.parametrize("name", NETS)
+@pytest.mark.parametrize("name", SOME)
 def test_each_end_plate_has_the_fold_of_its_lamella(name: str) -> None:
     axes, made = beams_of(name, TUBE)
     plates = made.hardware.of("end plate")
@@ -153,7 +156,7 @@ def test_each_end_plate_has_the_fold_of_its_lamella(name: str) -> None:
     assert sum(item.quantity for item in made.hardware.of("end-packer")) == 2 * checked
 
 
-@pytest.mark.parametrize("name", NETS)
+@pytest.mark.parametrize("name", ["skew square", "wavy rim"])
 def test_ends_of_both_layers_rebuilt_from_the_drawings_lie_before_the_beam(name: str, tmp_path: Path) -> None:
     lamellas = strips_of(name)
     axes, made = beams_of(name, TUBE)
@@ -184,7 +187,7 @@ def test_ends_of_both_layers_rebuilt_from_the_drawings_lie_before_the_beam(name:
     assert max(shifts) > 0.5 or name == "skew square"
 
 
-@pytest.mark.parametrize("name", NETS)
+@pytest.mark.parametrize("name", ["wavy rim", pytest.param("rings", marks=pytest.mark.slow)])
 def test_no_two_solids_overlap_at_the_ends(name: str) -> None:
     lamellas = strips_of(name)
     _, made = beams_of(name, TUBE)
@@ -216,3 +219,53 @@ def test_bad_measures_are_refused_with_their_limit(rules: EdgeBeamRules, where: 
         beams_of("skew square", rules)
     assert refused.value.where == where
     assert any(digit.isdigit() for digit in refused.value.remedy)
+
+
+PROJECT = {
+    "surface": {
+        "kind": "form-found",
+        "boundary": [
+            {"circle": {"center": [0, 0, 0], "radius": 2.0}, "edge_beam": False},
+            {"circle": {"center": [0, 0, 0.8], "radius": 1.2}},
+        ],
+    },
+    "network": {"cells": 10},
+    "lamella": {"layer_curves": "cut"},
+    "joint": {"block_spacing": 0},
+    "edge_beam": {"section": "tube 60.3x3.2"},
+}
+
+THIN = {"circle": {"center": [0, 0, 0], "radius": 2.0}, "edge_beam": {"section": "tube 9x1"}}
+
+
+def test_each_boundary_has_its_own_beam_or_none() -> None:
+    results = compute(parse_project(PROJECT))
+    figures = results.summary["fabrication"]["hardware"]["edge_beam"]
+    # one ring at the distance that the crossings next to the rim need
+    assert figures["length"] > 2 * np.pi * 1.2 * 0.97
+    assert figures["count"] == np.ceil(figures["length"] / 6)
+    circumference = np.pi * (0.0603**2 - 0.0539**2) / 4 * 7850 * figures["length"]
+    assert figures["mass"] == pytest.approx(circumference, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("tables", "where"),
+    [
+        ({"edge_beam": {"section": "tube 20x2"}}, "edge_beam.end_plate_height"),
+        ({"edge_beam": {"section": "tube 60x3", "flat": [0.1, 0.01]}}, "edge_beam.flat"),
+        ({"edge_beam": {"flat": [100, 10]}}, "edge_beam.flat"),
+        ({"edge_beam": {"material": "cheese"}}, "edge_beam.material"),
+        ({"edge_beam": {"sektion": "tube 60x3"}}, "edge_beam.sektion"),
+        ({"joint": None}, "edge_beam"),
+        (
+            {"surface": PROJECT["surface"] | {"boundary": [THIN, PROJECT["surface"]["boundary"][1]]}},
+            "surface.boundary[0].edge_beam.end_plate_height",
+        ),
+    ],
+)
+def test_what_cannot_be_an_edge_beam_is_refused_by_its_key(tables: dict, where: str) -> None:
+    project = {key: value for key, value in (PROJECT | tables).items() if value is not None}
+    with pytest.raises(InputError) as refused:
+        compute(parse_project(project))
+    assert refused.value.where == where
+    assert refused.value.remedy

@@ -135,6 +135,7 @@ class LayerStrips:
         network, layers, section = self.network, self.lamellas.layers, self.lamellas.section
         stops = slice(int(network.stop_offsets[index]), int(network.stop_offsets[index + 1]))
         samples = slice(int(network.sample_offsets[index]), int(network.sample_offsets[index + 1]))
+        curvatures = self.lamellas.cut_curvatures
         for row in range(self.kinds):
             number = row + 1 if self.kinds > 1 else 0
             knots, bow = _arcs(layers.stations[row, samples], layers.bow[row, samples])
@@ -147,7 +148,7 @@ class LayerStrips:
                 self.stations[row, stops],
                 self.shifts[row, stops],
                 self.slot_width[stops],
-                float(network.normal_curvature),
+                float(curvatures[index]),
                 knots,
                 bow,
             )

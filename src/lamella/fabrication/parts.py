@@ -21,7 +21,7 @@ from lamella.fabrication.stock import Supply
 from lamella.fabrication.trims import Trims
 from lamella.fabrication.warnings import FabricationWarnings
 from lamella.network.network import SINGULAR, Network
-from lamella.strip.lamellas import Lamellas, Section, crossings
+from lamella.strip.lamellas import Lamellas, Section, crossings, slotted
 
 
 def make_parts(
@@ -137,7 +137,8 @@ def make_parts(
         reach=splice_room,
     )
     parts, before, after = _all_parts(network, spans, cuts, rules, notes)
-    notes.collisions, notes.too_far = end_collisions(network, before, after, strips.reach)
+    if not lamellas.section.level:
+        notes.collisions, notes.too_far = end_collisions(network, before, after, strips.reach)
     if others and notes.collisions and not notes.ends_help(rules):
         notes.other_cells = others(lambda net, there: make(net, there).colliding)
     warnings = tuple(notes.sentences(rules, len(network.ids) * strips.kinds, len(parts)))
@@ -179,7 +180,7 @@ def _spans(
     network: Network, strips: LayerStrips, rules: Rules, trims: Trims | None, notes: FabricationWarnings
 ) -> list[Span]:
     """All strips of which something remains between their ends."""
-    crossing, singular = crossings(network), network.node_kinds == SINGULAR
+    crossing, singular = slotted(network, strips.lamellas.section), network.node_kinds == SINGULAR
     spans = []
     for index in range(len(network.ids)):
         nodes = network.stop_nodes[int(network.stop_offsets[index]) : int(network.stop_offsets[index + 1])]
@@ -277,7 +278,7 @@ def _part(
         quantity=1 if strip.layer else rules.layers,
         height=rules.height,
         thickness=rules.thickness,
-        curvature=rules.curvature,
+        curvature=strip.curvature,
         axis=axis,
         layer=strip.layer,
         side=strip.side,

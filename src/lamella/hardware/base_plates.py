@@ -1,6 +1,6 @@
-"""Base plates of the edge beams: where a beam is as low as the ground it stands on horizontal plates with anchors.
+"""Base plates of the edge beams: where a rim lies on the ground its beam stands on horizontal plates with anchors.
 
-A stretch of the beam whose lowest points lie within half its height of the ground has plates at both its ends and in
+A stretch of the rim within `GROUND_TOLERANCE` of the ground has plates at both its ends and in
 between; one that is shorter than a plate has one, at its lowest point. A plate's upper face is at the lowest point of
 the beam above it, to which it is welded.
 """
@@ -15,6 +15,9 @@ from lamella.hardware.end_plates import CONTACT
 from lamella.hardware.item import Item, Places
 from lamella.hardware.rules import MM
 from lamella.hardware.shape import Prism, circle, rectangle
+
+GROUND_TOLERANCE = 0.02
+"""m; a rim that is as far from the ground is on it."""
 
 GROUND_STEP = 0.01
 """m; between places at which the height of a beam is looked at."""
@@ -58,7 +61,7 @@ def _places(axis: BeamAxis) -> Floats:
     count = int(np.ceil(piece.length / GROUND_STEP)) + 1
     along = np.linspace(0.0, piece.length, count, endpoint=not piece.closed)
     low = _lowest(axis, along)
-    on_ground = np.abs(low - float(rules.ground or 0.0)) <= axis.beam.height / 2
+    on_ground = np.abs(piece.frames(along).points[:, 2] - float(rules.ground or 0.0)) <= GROUND_TOLERANCE
     found: list[Floats] = []
     for begin, end in _stretches(on_ground, piece.closed):
         index = np.arange(begin, end + 1) % count

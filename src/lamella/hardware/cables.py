@@ -17,6 +17,7 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
+from lamella.base.wording import rounded
 from lamella.hardware.diagonals import Diagonal, diagonals
 from lamella.hardware.fasteners import neck_hole
 from lamella.hardware.item import Item, Places
@@ -34,6 +35,9 @@ STRAND_DENSITY = 7900.0
 
 ARM_BEYOND = 0.002
 """m; how far beyond the washer, and beyond the clamp, a cable bends."""
+
+TURNBUCKLE_OUTSIDE, TURNBUCKLE_INSIDE = 2.0, 1.2
+"""Cable diameters of the tube that a turnbuckle is drawn as, which has about its mass."""
 
 BESIDE_BOLT = 0.001
 """m; between a bolt and the cables beside it."""
@@ -94,11 +98,13 @@ def cables(
     for line in lines:
         has[0 if line.first else 1, number[line.nodes]] = True
     level = np.where(has.all(axis=0), 1, 0)
+    stretched: list[tuple[Floats, str]] = []
     items = [
         item
         for k, line in enumerate(lines)
-        for item in _pair(f"cable-{k + 1}", line, frames, number, seats, level, rules, measures, arm)
+        for item in _pair(f"cable-{k + 1}", line, frames, number, seats, level, rules, measures, arm, stretched)
     ]
+    items += _turnbuckles(stretched, rules, measures)
     above = measures.diameter * has.sum(axis=0) + np.where(has.any(axis=0), rules.washer_thickness, 0.0)
     items += _clamps(frames, seats, has, rules, measures, arm)
     return Cables(tuple(items), above)
@@ -114,8 +120,9 @@ def _pair(
     rules: JointRules,
     measures: CableRules,
     arm: float,
+    stretched: list[tuple[Floats, str]],
 ) -> list[Item]:
-    """The two cables of a line; `arm` is half the length of a clamp, m."""
+    """The two cables of a line; `arm` is half the length of a clamp, m. Those with turnbuckles go to `stretched`."""
     at = number[line.nodes]
     normal = frames.axes[at, 2]
     height = seats[at] + measures.diameter * (0.5 + (0 if line.first else level[at]))
@@ -145,8 +152,45 @@ def _pair(
         places = Places(np.zeros((1, 3)), np.eye(3)[None], (here,))
         text = f"cable {MM * measures.diameter:g} mm, cut to {MM * length:.1f} mm"
         density = metal * length * STRAND_DENSITY / shape.volume
+        if measures.turnbuckle:
+            stretched.append((points, f"{name}-{side}"))
         found.append(Item(f"{name}-{side}", "cable", text, rules.material, density, (shape,), places, length=length))
     return found
+
+
+def _turnbuckles(stretched: list[tuple[Floats, str]], rules: JointRules, measures: CableRules) -> list[Item]:
+    """A turnbuckle for every cable with points (k, 3), drawn as a tube around the middle of its longest straight piece.
+
+    Raises
+    ------
+    InputError
+        No piece of a cable is as long.
+    """
+    if not stretched:
+        return []
+    origins, axes = [], []
+    for points, _ in stretched:
+        pieces = np.diff(points, axis=0)
+        lengths = np.linalg.norm(pieces, axis=1)
+        k = int(np.argmax(np.round(lengths, 6)))
+        if lengths[k] <= measures.turnbuckle:
+            raise InputError(
+                f"a turnbuckle {MM * measures.turnbuckle:g} mm long does not fit between clamps that leave "
+                f"{MM * lengths[k]:.4g} mm",
+                f"write turnbuckle = {rounded(0.9 * float(lengths[k]), up=False):g} or less",
+                "turnbuckle",
+            )
+        z = pieces[k] / lengths[k]
+        x = np.cross(z, np.eye(3)[np.argmin(np.abs(np.round(z, 6)))])
+        x /= np.linalg.norm(x)
+        origins.append((points[k] + points[k + 1]) / 2)
+        axes.append(np.stack([x, np.cross(z, x), z]))
+    half = measures.turnbuckle / 2
+    inner = circle(TURNBUCKLE_INSIDE * measures.diameter)
+    shape = Prism(circle(TURNBUCKLE_OUTSIDE * measures.diameter), -half, half, (inner,))
+    places = Places(np.array(origins), np.array(axes), tuple(name for _, name in stretched))
+    text = f"turnbuckle {MM * measures.turnbuckle:g} mm for a cable of {MM * measures.diameter:g} mm"
+    return [Item("turnbuckle-1", "turnbuckle", text, rules.material, rules.density, (shape,), places)]
 
 
 def _beside(rules: JointRules, measures: CableRules) -> float:

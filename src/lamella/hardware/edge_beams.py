@@ -29,6 +29,9 @@ from lamella.strip.lamellas import Lamellas
 SAG = 2e-5
 """m; how far straight pieces of a bent beam, as it is drawn, may leave its axis."""
 
+TWIST_SAG = 4e-5
+"""m; how far triangles on a twisted bar may leave its faces."""
+
 PIECES_MAX = 4000
 """Straight pieces of a beam at most."""
 
@@ -192,8 +195,10 @@ def _segment(
     kn, kg, tg = _bend(middle, curve.up)
     bend = np.hypot(kn, kg)
     pieces = int(np.clip(np.ceil(length * np.sqrt(bend.max() / (8 * SAG))), 1, PIECES_MAX))
-    if np.abs(tg).max() * length > STRAIGHT and not axis.beam.round:
-        pieces = max(pieces, 64)
+    if not axis.beam.round:
+        # two triangles on a twisted face leave it by tg h step / 4
+        twisted = np.abs(tg).max() * axis.beam.height * length / (4 * TWIST_SAG)
+        pieces = int(np.clip(np.ceil(twisted), pieces, PIECES_MAX))
     frames = axis.piece.frames(np.linspace(low, high, pieces + 1))
     points = frames.beside(axis.distance)
     cuts = _cuts(axis, frames.ahead, mitred, axes)

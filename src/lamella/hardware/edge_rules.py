@@ -76,7 +76,7 @@ class EdgeBeamRules:
     end_plate_leg : float
         Of the leg on the beam, from the fold's corner.
     ground : float or None
-        z of the ground; base plates are where the beam is as low. None: there are none.
+        z of the ground; base plates are where the rim is as low. None: there are none.
     base_plate : float
         Side of a base plate.
     base_plate_thickness : float
@@ -128,11 +128,20 @@ class EdgeBeamRules:
         InputError
         """
         beam, height = self.beam, self.plate_height(section, joints)
-        if height > beam.height:
+        if section.level and beam.round:
             raise InputError(
-                f"end plates {MM * height:.4g} mm high do not lie on an edge beam ({beam.name}) that is "
+                f"stacked lamellas end {MM * section.level:.4g} mm above and below the middle of the edge beam, where "
+                f"a {beam.name} has no face",
+                f"write flat = [{2 * section.level + height:.3g}, 0.01] instead of section",
+                "section",
+            )
+        if 2 * section.level + height > beam.height + 1e-9:
+            where = f", {MM * section.level:.4g} mm above and below its middle," if section.level else ""
+            raise InputError(
+                f"end plates {MM * height:.4g} mm high{where} do not lie on an edge beam ({beam.name}) that is "
                 f"{MM * beam.height:.4g} mm high",
-                f"write end_plate_height = {beam.height:g} or less, or choose a higher beam",
+                f"choose a beam {2 * section.level + height:.3g} m high or more"
+                + (f", or end_plate_height = {beam.height:g} or less" if not section.level else ""),
                 "end_plate_height",
             )
         least = 2 * END_EDGE * joints.block_size.hole

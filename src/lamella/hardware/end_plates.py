@@ -28,6 +28,7 @@ from lamella.hardware.rules import MM, SEAT_PLAY, JointRules
 from lamella.hardware.screws import screws
 from lamella.hardware.shear_blocks import filling
 from lamella.strip.lamellas import Lamellas
+from lamella.strip.levels import level_heights
 
 FOLD_STEP = 0.5
 """deg; folds that differ by less are made alike."""
@@ -159,6 +160,7 @@ class _OnAxis:
         first, rest = end_lengths(folds, axis.rules, section, joints)
         pitch, height = END_PITCH * joints.block_size.hole, axis.rules.plate_height(section, joints)
         towards = towards_of(axis, ends, lamellas)
+        levels = level_heights(lamellas.network, section.level)[ends.lamellas]
         screw = ends.arclengths - senses * first
         for _ in range(SCREW_ROUNDS):
             near, normal = _middles(lamellas, ends.lamellas, screw)
@@ -170,7 +172,7 @@ class _OnAxis:
             over = np.einsum("ij,ij->i", beam, z) < 0
             y[over], z[over] = -y[over], -z[over]
             away = np.sin(folds)[:, None] * x - np.cos(folds)[:, None] * z
-            face = _touching(axis, ends, towards, away, height)
+            face = _touching(axis, ends, towards, away, height, levels)
             ahead_of = (face - axis.rules.end_plate / 2 - np.einsum("ij,ij->i", near, away)) / np.sin(folds)
             screw = screw + senses * (ahead_of - first)
         corners = near + first[:, None] * x
@@ -282,8 +284,8 @@ def _middles(lamellas: Lamellas, owner: Integers, arclengths: Floats) -> tuple[F
     return (faces.middles[half - 1] + faces.middles[half]) / 2, faces.normals
 
 
-def _touching(axis: BeamAxis, ends: BeamEnds, towards: Floats, away: Floats, height: float) -> Floats:
-    """How far along `away` (e, 3) a plane touches the beam over the length of a leg, m, (e,)."""
+def _touching(axis: BeamAxis, ends: BeamEnds, towards: Floats, away: Floats, height: float, levels: Floats) -> Floats:
+    """How far along `away` (e, 3) a plane touches the beam under a leg that is at heights `levels` (e,), m, (e,)."""
     least = np.full(len(ends), np.inf)
     for share in np.linspace(-0.5, 1.0, 7).tolist():
         frames = axis.piece.frames(ends.along + share * towards * axis.rules.end_plate_leg)
@@ -292,7 +294,7 @@ def _touching(axis: BeamAxis, ends: BeamEnds, towards: Floats, away: Floats, hei
             least = np.minimum(least, np.einsum("ij,ij->i", middle, away) - axis.beam.reach)
             continue
         for z in (-height / 2, height / 2):
-            face = middle - axis.beam.reach * frames.out + z * frames.up
+            face = middle - axis.beam.reach * frames.out + (levels + z)[:, None] * frames.up
             least = np.minimum(least, np.einsum("ij,ij->i", face, away))
     return least - CONTACT
 

@@ -73,7 +73,7 @@ def grid_joints(
     """
     section, size = lamellas.section, rules.size
     length, width = rules.star_length(section, frames.least_angle), rules.star_width(section)
-    _check_room(frames, lamellas, length)
+    check_room(frames, lamellas, length)
     if length <= width / np.tan(frames.least_angle / 2):
         raise InputError(
             f"washer_length = {MM * length:.4g} mm leaves nothing of the arms beside strips that take "
@@ -112,7 +112,7 @@ def grid_joints(
     return GridJoints(tuple(items), angle_play)
 
 
-def _check_room(frames: NodeFrames, lamellas: Lamellas, length: float) -> None:
+def check_room(frames: NodeFrames, lamellas: Lamellas, length: float) -> None:
     """Require that washers of neighbouring nodes do not meet."""
     network = lamellas.network
     joined = np.zeros(len(network.node_points), bool)

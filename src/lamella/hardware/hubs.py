@@ -27,6 +27,7 @@ from lamella.hardware.shape import Prism, circle, polygon
 from lamella.hardware.shear_blocks import filling
 from lamella.network.network import SINGULAR
 from lamella.strip.lamellas import Lamellas
+from lamella.strip.levels import level_heights
 
 HOLE_ROUNDING = 1e-4
 """m; places of holes in fins are rounded to it, far less than the play of a hole, so that equal fins are one part."""
@@ -78,6 +79,8 @@ class Rays:
         1 where arc length grows away from the node, else -1.
     directions : (r, 3)
         Unit tangents away from the node.
+    height : float
+        Of the rays' level over the node, m.
     """
 
     node: int
@@ -85,6 +88,7 @@ class Rays:
     starts: Floats
     senses: Floats
     directions: Floats
+    height: float = 0.0
 
     def at(self, distance: float) -> Floats:
         """Arc lengths of the places at a distance from the node, m, (r,)."""
@@ -109,12 +113,14 @@ class _Measures:
 
 
 def singular_rays(lamellas: Lamellas) -> list[Rays]:
-    """The rays of every singular node that has at least three."""
+    """The rays of every singular node that has at least three; of stacked lamellas those of either level."""
     network = lamellas.network
     owner = network.stop_owner
     found = []
-    for node in np.flatnonzero(network.node_kinds == SINGULAR).tolist():
-        stops = np.flatnonzero(network.stop_nodes == node)
+    level = level_heights(network, lamellas.section.level)
+    singular = np.flatnonzero(network.node_kinds == SINGULAR).tolist()
+    for node, height in ((node, height) for node in singular for height in np.unique(level).tolist()):
+        stops = np.flatnonzero((network.stop_nodes == node) & (level[owner] == height))
         if len(stops) < 3:
             continue
         sense = np.where(stops == network.stop_offsets[owner[stops]], 1.0, -1.0)
@@ -124,7 +130,7 @@ def singular_rays(lamellas: Lamellas) -> list[Rays]:
         angle = _angles(away, away[0], normal)
         order = np.argsort(angle, kind="stable")
         stops = stops[order]
-        found.append(Rays(node, owner[stops], network.stop_arclengths[stops], sense[order], away[order]))
+        found.append(Rays(node, owner[stops], network.stop_arclengths[stops], sense[order], away[order], height))
     return found
 
 
@@ -160,13 +166,13 @@ def hubs(lamellas: Lamellas, rules: JointRules, strips_end: float, room: dict[in
                 "hub",
             )
         hub = _Hub.of(lamellas, rules, rays, measures, f"hub-{number + 1}")
-        items += [hub.plates(), *hub.fins()]
+        items += [hub.plates(), *hub.fins(), *hub.post()]
         gaps.append(hub.packers())
         for distance, which in zip(measures.screws, ("inner", "outer"), strict=True):
             owners.append(rays.lamellas)
             arcs.append(rays.at(distance))
             labels += tuple(f"{label} {which}" for label in hub.labels)
-        reach[rays.node] = measures.fin_end
+        reach[rays.node] = max(measures.fin_end, reach.get(rays.node, 0.0))
         angles[rays.node] = np.degrees(np.diff(np.append(hub.angles, hub.angles[0] + 2 * np.pi)))
     if not reach:
         return Hubs((), Bores.of([]), reach, angles)
@@ -256,7 +262,8 @@ class _Hub:
     @classmethod
     def of(cls, lamellas: Lamellas, rules: JointRules, rays: Rays, measures: _Measures, name: str) -> _Hub:
         network = lamellas.network
-        origin, normal = network.node_points[rays.node], network.node_normals[rays.node]
+        normal = network.node_normals[rays.node]
+        origin = network.node_points[rays.node] + rays.height * normal
         zero = np.zeros(1)
         faces = LayerFaces.of(lamellas, rays.lamellas, rays.at(measures.middle), zero, zero)
         half = lamellas.section.layers // 2
@@ -299,6 +306,22 @@ class _Hub:
         text = f"star plate {2 * MM * self.measures.plate:.4g} x {MM * thickness:g} mm, {len(self.angles)} slots"
         labels = (f"node {self.rays.node} above", f"node {self.rays.node} below")
         return self._item("plate", "hub plate", text, shape, Places(origins, axes, labels))
+
+    def post(self) -> list[Item]:
+        """What joins the star plates of the lower hub with those of the upper one, on two levels."""
+        level, rules = self.lamellas.section.level, self.rules
+        gap = 2 * (level - self._height / 2 - rules.hub_thickness)
+        if self.rays.height >= 0 or gap <= 0:
+            return []
+        # on top of the star plates, whose slots it covers
+        shape = Prism(circle(2 * self.measures.plate), SEAT_PLAY, gap - SEAT_PLAY)
+        at = self.origin + (self._height / 2 + rules.hub_thickness) * self.normal
+        x = self.axes[:1, 0]
+        axes = np.stack([x, np.cross(self.normal[None], x), self.normal[None]], axis=1)
+        text = f"post {2 * MM * self.measures.plate:.4g} x {MM * gap:.4g} mm, welded between the hubs of both levels"
+        places = Places(at[None], axes, (f"node {self.rays.node}",))
+        name = f"{self.name}-post"
+        return [Item(name, "hub post", text, rules.material, rules.density, (shape,), places)]
 
     def _screw_places(self) -> Floats:
         """Where the screws go through the fins, in their axes, (r, screws, 3), m."""

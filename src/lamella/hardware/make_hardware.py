@@ -23,6 +23,7 @@ from lamella.hardware.node_frames import NodeFrames
 from lamella.hardware.rules import MM, CableRules, JointRules
 from lamella.hardware.shear_blocks import shear_blocks
 from lamella.hardware.splices import cuts, splice_length, splices
+from lamella.hardware.stacked_joint import joint_length, stacked_joints, stacked_upper
 from lamella.network.network import SINGULAR
 from lamella.strip.lamellas import Lamellas
 
@@ -77,17 +78,17 @@ def make_hardware(
     bores = []
     notes: list[Message] = []
     frames = NodeFrames.of(network)
-    length = rules.star_length(section, frames.least_angle)
     half_joint = half_joint_of(lamellas, rules)
     keep_clear = np.full(len(network.stop_nodes), half_joint)
     if rules.washer:
         above = np.zeros(len(frames))
         if cable_rules is not None:
-            top = section.height / 2 + seats(frames, lamellas, length / 2)[0] + rules.washer_thickness
+            top = _upper(frames, lamellas, rules) + rules.washer_thickness
             made_cables = cables(network, frames, section, top, rules, cable_rules)
             items += made_cables.items
             above = made_cables.above
-        joints = grid_joints(frames, lamellas, rules, clamp=above)
+        make = stacked_joints if section.level else grid_joints
+        joints = make(frames, lamellas, rules, clamp=above)
         items += joints.items
         notes += _loose(joints.angle_play)
     hub_radius = _hub_radius(parts)
@@ -123,9 +124,19 @@ def make_hardware(
 def half_joint_of(lamellas: Lamellas, rules: JointRules) -> float:
     """From a node to where its joint ends along its lamellas, m."""
     section = lamellas.section
+    if section.level and rules.washer:
+        return joint_length(rules, lamellas) / 2
     if rules.washer:
         return rules.star_length(section, NodeFrames.of(lamellas.network).least_angle) / 2
     return section.offset * section.layers / 2
+
+
+def _upper(frames: NodeFrames, lamellas: Lamellas, rules: JointRules) -> Floats:
+    """Height over the surface of what washers or plates lie on, m, (q,)."""
+    if lamellas.section.level:
+        return stacked_upper(frames, lamellas, rules)
+    reach = rules.star_length(lamellas.section, frames.least_angle) / 2
+    return lamellas.section.height / 2 + seats(frames, lamellas, reach)[0]
 
 
 def _hub_radius(parts: Parts) -> float:

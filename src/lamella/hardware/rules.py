@@ -99,6 +99,10 @@ class JointRules:
         Of plates, blocks and bolts.
     density : float
         Its own, kg/m3.
+    block_material : str or None
+        Of shear blocks, packers and spacers; None: the same.
+    block_density : float
+        Its own, kg/m3.
     """
 
     washer: bool = True
@@ -115,6 +119,15 @@ class JointRules:
     splice_thickness: float | None = None
     material: str = "1.4301"
     density: float = 7900.0
+    block_material: str | None = None
+    block_density: float = 7900.0
+
+    @property
+    def block(self) -> tuple[str, float]:
+        """Material and density (kg/m3) of blocks, packers and spacers."""
+        if self.block_material is None:
+            return self.material, self.density
+        return self.block_material, self.block_density
 
     @property
     def size(self) -> BoltSize:
@@ -148,7 +161,7 @@ class JointRules:
                 f"choose a bolt below {clear:.3g} m or an offset above {self.size.hole + section.thickness:.3g} m",
                 "bolt",
             )
-        if section.height <= 2 * self.washer_thickness:
+        if not section.level and section.height <= 2 * self.washer_thickness:
             raise InputError(
                 f"two keys {MM * self.washer_thickness:g} mm thick do not fit between the edges of a strip "
                 f"{MM * section.height:g} mm high",

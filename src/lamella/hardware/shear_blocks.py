@@ -152,5 +152,5 @@ def filling(
         shape = Prism(rectangle(length, height), -width / 2, width / 2, bored)
         text = f"{description} {MM * length:.4g} x {MM * height:.4g} x {MM * width:.4g} mm, hole {MM * size.hole:g} mm"
         at = places.chosen(kind == number)
-        items.append(Item(f"{name}-{number + 1}", name, text, rules.material, rules.density, (shape,), at))
+        items.append(Item(f"{name}-{number + 1}", name, text, *rules.block, (shape,), at))
     return items

@@ -60,7 +60,7 @@ class EdgeBeamTable(Table):
     )
     end_plate_leg: float = number("Of the leg on the beam.", "m", gt=0, le=1, default=0.04)
     ground: float | None = number(
-        "Height z of the ground: base plates stand where the beam is as low. None when not given.",
+        "Height z of the ground: base plates stand where the rim lies on it. None when not given.",
         "m",
         ge=-1e6,
         le=1e6,

@@ -4,17 +4,27 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from lamella.base.number_lists import Refusal
 from lamella.project.values import Name, Table, number
 
 
 class JointTable(Table):
     """What is bolted: washers, hubs, shear blocks. Without this table strips have slots and nothing else."""
 
-    kind: Literal["interlocked"] = Field(
+    kind: Literal["interlocked", "stacked"] = Field(
         default="interlocked",
-        description='"interlocked": both families are slotted into each other at one level.',
+        description='"interlocked": both families are slotted into each other at one level. "stacked": A stands below '
+        "the surface and B above it, without slots, bolted through both at the nodes.",
+    )
+    level_gap: float | None = number(
+        "Between the two levels of stacked lamellas, along the normal; 1 mm more than washer_thickness when not given.",
+        "m",
+        gt=0,
+        le=1,
+        default=None,
+        examples=[0.005],
     )
     slot_width: float | None = number(
         "Width of the slots, here or in [fabrication]; 2 x thickness when not given.",
@@ -71,6 +81,34 @@ class JointTable(Table):
         max_length=100,
         description="Of plates, blocks and bolts: a material as for the lamellas.",
     )
+    block_material: Name | None = Field(
+        default=None,
+        max_length=100,
+        description="Of shear blocks and packers, where it is another one.",
+        examples=["C24"],
+    )
+
+    @model_validator(mode="after")
+    def _possible(self) -> JointTable:
+        if self.kind == "stacked" and self.slot_width is not None:
+            raise Refusal(
+                f"slot_width = {self.slot_width:g} m: stacked lamellas have no slots",
+                'leave slot_width out, or write kind = "interlocked"',
+                "slot_width",
+            )
+        if self.kind != "stacked" and self.level_gap is not None:
+            raise Refusal(
+                f"level_gap = {self.level_gap:g} m: interlocked lamellas are on one level",
+                'leave level_gap out, or write kind = "stacked"',
+                "level_gap",
+            )
+        if self.level_gap is not None and self.level_gap <= self.washer_thickness:
+            raise Refusal(
+                f"level_gap = {self.level_gap:g} m leaves no room for a plate {self.washer_thickness:g} m thick",
+                f"write level_gap = {self.washer_thickness + 0.001:g} or more",
+                "level_gap",
+            )
+        return self
 
 
 class CablesTable(Table):

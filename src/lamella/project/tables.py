@@ -324,7 +324,8 @@ class Project(Table):
                 "add a table [joint] with washer = true, its default",
                 "cables",
             )
-        if self.joint is None and self.edge_beam is not None:
+        own = any(table.edge_beam for table in getattr(self.surface, "boundary", ()))
+        if self.joint is None and (self.edge_beam is not None or own):
             raise Refusal(
                 "lamellas are bolted to edge beams with the screws of the joints, and there are none",
                 "add a table [joint]",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
@@ -17,6 +17,7 @@ from lamella.base.wording import counted, rounded
 from lamella.network.network import SINGULAR, Network
 from lamella.strip.layer_curves import lamella_layers
 from lamella.strip.layers import LayerCurves, Layers, at_stops, parallel_layers, running
+from lamella.strip.levels import cut_curvatures, on_levels
 from lamella.strip.planarity import planarity_score
 from lamella.strip.stress import Stresses, shortening, stresses
 from lamella.surface.surface import Surface
@@ -48,6 +49,8 @@ class Section:
         d to the side of the centre line, where an element is sqrt((1 - d kg)^2 + (d tg)^2) ds long.
     layer_curves : str
         "offset", "cut" or "lamella", see `lamella.strip.layers`; with the last two layers have their own lengths.
+    level : float
+        From the surface to the middle of a strip, m: the A lamellas stand as much below it as the B lamellas above.
 
     Examples
     --------
@@ -64,6 +67,7 @@ class Section:
     marks: Marks = "arc-length"
     layer_lengths: LayerLengths = "alike"
     layer_curves: LayerCurves = "offset"
+    level: float = 0.0
 
     @property
     def layer_offsets(self) -> Floats:
@@ -78,6 +82,8 @@ class Section:
     def __post_init__(self) -> None:
         """Raise an `InputError` for a section that is none."""
         require_positive(height=self.height, thickness=self.thickness, layers=self.layers, offset=self.offset)
+        if not 0 <= self.level < np.inf:
+            raise InputError(f"level = {self.level:g} m", "give 0 or more", "level")
         if self.thickness >= self.height:
             raise InputError(
                 f"thickness = {self.thickness:g} m is not below height = {self.height:g} m",
@@ -103,6 +109,7 @@ class Lamellas(Shown):
     Attributes
     ----------
     network : Network
+        With stacked lamellas that of their levels (`lamella.strip.levels`).
     section : Section
     material : Material
     bending, torsion : (k,)
@@ -210,6 +217,11 @@ class Lamellas(Shown):
         return parts
 
     @property
+    def cut_curvatures(self) -> Floats:
+        """Curvatures of the flat strips, 1/m, (m,), but for layers that are cut to their own."""
+        return cut_curvatures(self.network, self.section.level)
+
+    @property
     def layer_stations(self) -> Floats:
         """Place of the nodes on each flat layer, m from its start, (layers, q)."""
         return self.layers.stop_stations
@@ -264,6 +276,8 @@ def make_lamellas(
             f"write height = {rounded(0.99 * limit / 2, up=False):g} or less, or check that the surface is in metres",
             "section.height",
         )
+    _check_level(section)
+    network = on_levels(network, section.level)
     held, tg = section.marks == "arc-length", network.sample_darboux.tg
     s = _stresses(network, section, material)
 
@@ -281,7 +295,7 @@ def make_lamellas(
         s.restraint,
         s.von_mises,
         s.utilisation,
-        np.where(crossings(network)[network.stop_nodes], at_stops(network, s.net_utilisation), 0.0),
+        np.where(slotted(network, section)[network.stop_nodes], at_stops(network, s.net_utilisation), 0.0),
         _planarity(network, section.height),
         stations,
         _layers(network, section, lengthening, surface),
@@ -303,18 +317,21 @@ def _planarity(network: Network, height: float) -> Floats:
 
 def largest_utilisation(network: Network, section: Section, material: Material) -> float:
     """The largest utilisation of strips that `make_lamellas` would make, from their stresses alone."""
-    return float(_stresses(network, section, material).utilisation.max())
+    return float(_stresses(on_levels(network, section.level), section, material).utilisation.max())
 
 
 def _stresses(network: Network, section: Section, material: Material) -> Stresses:
     """Stresses at the samples of a network."""
     kn, kg, tg = network.sample_darboux
+    cut = np.repeat(cut_curvatures(network, section.level), np.diff(network.sample_offsets))
     beside = np.abs(section.layer_offsets).max() * np.abs(network.sample_slopes)
+    # what layers cut to their own curvature are cut to
+    off = kn - cut if section.layer_curves != "cut" or not section.level else np.zeros_like(kn)
     return stresses(
         material,
         section.height,
         section.thickness,
-        curvature_error=kn - network.normal_curvature,
+        curvature_error=off,
         layer_curvature=beside if section.layer_curves == "offset" else np.zeros_like(kn),
         kg=kg,
         tg=tg,
@@ -341,7 +358,31 @@ def _layers(network: Network, section: Section, lengthening: Floats, surface: Su
             )
         return lamella_layers(surface, network, offsets, lengthening)
     cut = section.layer_curves == "cut"
-    return parallel_layers(network, offsets, lengthening, own_lengths=section.own_parts, cut=cut)
+    made = parallel_layers(network, offsets, lengthening, own_lengths=section.own_parts, cut=cut)
+    if not (cut and section.level):
+        return made
+    straight = np.repeat(cut_curvatures(network, section.level), np.diff(network.sample_offsets))
+    return replace(made, bow=made.bow + (network.sample_darboux.kn - straight))
+
+
+def _check_level(section: Section) -> None:
+    """Refuse layers on lamella curves where there are levels: these are curves of the surface alone.
+
+    Raises
+    ------
+    InputError
+    """
+    if section.level and section.layers > 1 and section.layer_curves == "lamella":
+        raise InputError(
+            'layer_curves = "lamella" follows the surface, and stacked lamellas run beside it',
+            'write layer_curves = "cut", or "offset"',
+            "section.layer_curves",
+        )
+
+
+def slotted(network: Network, section: Section) -> Booleans:
+    """Nodes where strips have slots for each other, (n,): crossings, but not of lamellas on two levels."""
+    return crossings(network) & (section.level == 0)
 
 
 def crossings(network: Network) -> Booleans:

@@ -107,20 +107,20 @@ def develop(points: Floats, normals: Floats, offsets: Integers) -> tuple[Complex
     return plane - plane[offsets[curve]], length - length[offsets[curve]]
 
 
-def developed_line(arclengths: Floats, curvature: float) -> Complexes:
+def developed_line(arclengths: Floats, curvature: float | Floats) -> Complexes:
     """The straight line or circle that starts at 0 along the real axis and bends towards +i, m, (k,)."""
     half = arclengths * curvature / 2
     return np.asarray(arclengths * np.sinc(half / np.pi) * np.exp(1j * half))
 
 
-def development_deviation(points: Floats, normals: Floats, offsets: Integers, curvature: float) -> Floats:
+def development_deviation(points: Floats, normals: Floats, offsets: Integers, curvature: float | Floats) -> Floats:
     """Largest distance of each numerically unrolled centre line from its straight line or circle.
 
     Parameters
     ----------
     points, normals, offsets
         As for `develop`.
-    curvature : float
+    curvature : float or (m,)
         1/r of the intended development, 1/m, positive towards the normal.
 
     Returns
@@ -129,8 +129,8 @@ def development_deviation(points: Floats, normals: Floats, offsets: Integers, cu
         m, after the best rigid placement of the one on the other.
     """
     plane, arclengths = develop(points, normals, offsets)
-    ideal = developed_line(arclengths, curvature)
     starts, count = offsets[:-1], np.diff(offsets)
+    ideal = developed_line(arclengths, np.repeat(curvature, count) if np.ndim(curvature) else curvature)
 
     def centred(curve: Complexes) -> Complexes:
         return np.asarray(curve - np.repeat(np.add.reduceat(curve, starts) / count, count))

@@ -102,7 +102,7 @@ class _Model:
         self._add_centre_lines(network)
         if lamellas is not None:
             require_finite(network.sample_darboux.kn, network.sample_darboux.tg)
-            self._add_strips(network, lamellas.section)
+            self._add_strips(lamellas.network, lamellas.section)
             if lamellas.section.layers > 1:
                 self._add_layers(network, lamellas)
         self._add_nodes(network)

@@ -19,7 +19,7 @@ from lamella.hardware.splices import splice_length
 from lamella.project.surface_tables import MOST_LOOPS
 from lamella.project.tables import EdgeBeamTable, FabricationTable, JointTable, Project
 from lamella.stages.keys import keys
-from lamella.strip.lamellas import Section
+from lamella.stages.lamellas.section import section_of
 from lamella.surface.surface import Surface
 
 
@@ -52,8 +52,12 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
 def joint_rules(project: Project, joint: JointTable) -> JointRules:
     """The measures of the hardware."""
     material = find_material(joint.material, project.known_materials())
-    measures = joint.model_dump(exclude={"kind", "slot_width"})
-    return JointRules(density=material.density, **measures)
+    measures = joint.model_dump(exclude={"kind", "slot_width", "level_gap"})
+    try:
+        blocks = find_material(joint.block_material or joint.material, project.known_materials())
+    except InputError as error:
+        raise InputError(error.message, error.remedy, "block_material") from None
+    return JointRules(density=material.density, block_density=blocks.density, **measures)
 
 
 def cable_rules(project: Project) -> CableRules | None:
@@ -98,9 +102,16 @@ def splice_room(project: Project) -> float:
 
 
 def edge_beam_rules(project: Project, surface: Surface[Any]) -> dict[int, EdgeBeamRules]:
-    """The measures of the edge beams, by boundary loop; nothing where there are none."""
+    """The measures of the edge beams, by boundary loop; nothing where there are none.
+
+    Raises
+    ------
+    InputError
+        Measures that contradict each other or the strips.
+    """
     if project.joint is None:
         return {}
+    section, joints = section_of(project), joint_rules(project, project.joint)
     origin = drawing_origin(surface)
     tables = [table.edge_beam for table in getattr(project.surface, "boundary", ())]
     loops = max(len(tables), MOST_LOOPS)
@@ -109,7 +120,10 @@ def edge_beam_rules(project: Project, surface: Surface[Any]) -> dict[int, EdgeBe
         own = tables[loop] if loop < len(tables) else None
         table = project.edge_beam if own is None else own
         if table:
-            found[loop] = _edge_beam_rules(project, table, origin[2])
+            key = "edge_beam" if own is None else f"surface.boundary[{loop}].edge_beam"
+            with keys(key):
+                found[loop] = _edge_beam_rules(project, table, origin[2])
+                found[loop].check(section, joints)
     return found
 
 
@@ -129,8 +143,7 @@ def check_joint(project: Project) -> None:
     InputError
     """
     if project.joint is not None:
-        section = Section(**project.lamella.model_dump(exclude={"material"}))
-        joint_rules(project, project.joint).check(section)
+        joint_rules(project, project.joint).check(section_of(project))
 
 
 def check_drawings(project: Project) -> None:

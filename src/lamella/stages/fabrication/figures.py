@@ -18,7 +18,7 @@ def _bow_rows(value: float, summary: dict[str, Any]) -> Rows:
         yield "Cut outlines bowed by, at most", format(value * 1e3, ".2g"), "mm"
 
 
-HUB = ("hub plate", "hub fin", "packer")
+HUB = ("hub plate", "hub fin", "packer", "hub post")
 """Kinds of part that a hub is made of; it has two plates."""
 
 

@@ -53,7 +53,9 @@ def made_parts(up: Upstream, borders: Sequence[Integers] | None = None) -> tuple
     from lamella.hardware.make_hardware import make_hardware
 
     measures = joint_rules(project, project.joint), cable_rules(project)
-    with keys("joint", prestress="cables.prestress", end_plate_leg="edge_beam.end_plate_leg"):
+    with keys(
+        "joint", prestress="cables.prestress", turnbuckle="cables.turnbuckle", end_plate_leg="edge_beam.end_plate_leg"
+    ):
         joined = make_hardware(lamellas, parts, *measures, beams)
     return joined.parts, joined.hardware
 
@@ -68,7 +70,7 @@ def _edge_beams(up: Upstream, lamellas: Lamellas) -> EdgeBeamAxes | None:
     from lamella.hardware.make_hardware import half_joint_of
 
     joints = joint_rules(project, project.joint)
-    with keys("edge_beam", block_bolt="joint.block_bolt", offset="lamella.offset"):
+    with keys("edge_beam"):
         return edge_beam_axes(lamellas, rules, joints, half_joint_of(lamellas, joints))
 
 

@@ -18,8 +18,9 @@ from lamella.base.wording import rounded
 from lamella.network.elements.element_network import ElementNetwork
 from lamella.network.streamlines.streamline_network import TracedNetwork
 from lamella.project.tables import FormFoundTable, Project
+from lamella.stages.lamellas.section import section_of
 from lamella.stages.network.net_of_table import net_of_plan, net_plan
-from lamella.strip.lamellas import Section, make_lamellas
+from lamella.strip.lamellas import make_lamellas
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
 
@@ -107,6 +108,5 @@ def _utilisation(project: Project, surface_of: SurfaceOf) -> float:
     surface = surface_of(project)
     assert isinstance(surface, ElementSurface)
     network = net_of_plan(net_plan(surface, project, None, silent), project).network
-    section = Section(**project.lamella.model_dump(exclude={"material"}))
-    lamellas = make_lamellas(network, section, project.material(), surface=surface)
+    lamellas = make_lamellas(network, section_of(project), project.material(), surface=surface)
     return float(np.max(lamellas.utilisation))

@@ -15,6 +15,13 @@ from lamella.strip.unroll import development_deviation
 Rows = Iterator[tuple[str, str, str]]
 
 
+def _section(out: LamellasOutput) -> dict[str, Any]:
+    told = asdict(out.lamellas.section)
+    if not told["level"]:
+        del told["level"]
+    return told
+
+
 def _planarity(out: LamellasOutput) -> dict[str, Any]:
     score, quads = out.lamellas.planarity, np.ones(len(out.lamellas.planarity), bool)
     # the last sample of a lamella begins no quad
@@ -25,7 +32,8 @@ def _planarity(out: LamellasOutput) -> dict[str, Any]:
 
 def _development(out: LamellasOutput) -> float:
     net = out.network
-    off = development_deviation(net.sample_points, net.sample_normals, net.sample_offsets, net.normal_curvature)
+    curvature = out.lamellas.cut_curvatures if out.lamellas.section.level else net.normal_curvature
+    off = development_deviation(net.sample_points, net.sample_normals, net.sample_offsets, curvature)
     return float(off.max())
 
 
@@ -70,8 +78,8 @@ FIGURES: tuple[Figure[LamellasOutput], ...] = (
     Figure(
         "section",
         "m",
-        "height, thickness, layers, offset, marks, layer_lengths, layer_curves",
-        lambda out: asdict(out.lamellas.section),
+        "height, thickness, layers, offset, marks, layer_lengths, layer_curves, and of stacked lamellas level",
+        _section,
         {"type": "object"},
     ),
     Figure(

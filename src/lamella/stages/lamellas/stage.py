@@ -15,11 +15,12 @@ from lamella.stages.drawn import in_drawing
 from lamella.stages.keys import keys
 from lamella.stages.lamellas.figures import FIGURES, REPORT
 from lamella.stages.lamellas.output import LamellasOutput
+from lamella.stages.lamellas.section import section_of
 from lamella.stages.lamellas.warnings import lamella_warnings, layer_warnings
 from lamella.stages.pattern_of_table import pattern_of
 from lamella.stages.stage import File, Missing, Stage, Upstream
 from lamella.stages.surface.surface_of_table import make_surface
-from lamella.strip.lamellas import Lamellas, Section, largest_utilisation, make_lamellas
+from lamella.strip.lamellas import Lamellas, largest_utilisation, make_lamellas
 from lamella.strip.layer_curves import check_layer_curves
 from lamella.surface.surface import Surface
 
@@ -34,7 +35,7 @@ class LamellasStage(Stage[LamellasOutput]):
     report = ("Lamellas", REPORT)
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
-        return ("lamella", "materials")
+        return ("lamella", "materials", "joint")
 
     def warned_by(self, project: Project) -> tuple[str, ...]:
         return ("fabrication",)
@@ -59,7 +60,7 @@ class LamellasStage(Stage[LamellasOutput]):
         net = up.outputs["network"]
         with keys("lamella", section="lamella", network="network"):
             lamellas = strips_of(up.project, up.surface)(net.network)
-        return LamellasOutput(net.network, lamellas, up.project.lamella.material, up.project.material(), net.made)
+        return LamellasOutput(lamellas.network, lamellas, up.project.lamella.material, up.project.material(), net.made)
 
     def result(self, figures: Mapping[str, Any], out: LamellasOutput) -> str:
         return f"{figures['total_length']:.4g} m of lamella, utilisation up to {figures['utilisation_max']:.2f}"
@@ -94,5 +95,4 @@ class LamellasStage(Stage[LamellasOutput]):
 
 def strips_of(project: Project, surface: Surface[Any]) -> partial[Lamellas]:
     """How a project makes strips of a net on a surface; section and material can be replaced."""
-    section = Section(**project.lamella.model_dump(exclude={"material"}))
-    return partial(make_lamellas, section=section, material=project.material(), surface=surface)
+    return partial(make_lamellas, section=section_of(project), material=project.material(), surface=surface)

@@ -61,7 +61,7 @@ def lamella_warnings(
             f"curvature ({1 / curvature:.3g} m): the strips' edges are far from their centre lines",
         )
     section = lamellas.section
-    if section.layers > 1 and not section.own_parts:
+    if section.layers > 1 and not section.own_parts and not section.level:
         drift = layer_drift(network) * section.offset * (section.layers - 1)
         # a lamella's layers sit in the crossing ones' slots and these in its own
         play = 2 * (slot_width - section.thickness)
