@@ -1,6 +1,6 @@
 """Base plates of the edge beams: where a rim lies on the ground its beam stands on horizontal plates with anchors.
 
-A stretch of the rim within `GROUND_TOLERANCE` of the ground has plates at both its ends and in
+A stretch of the rim within `ON_GROUND` of the ground has plates at both its ends and in
 between; one that is shorter than a plate has one, at its lowest point. A plate's upper face is at the lowest point of
 the beam above it, to which it is welded.
 """
@@ -16,7 +16,7 @@ from lamella.hardware.item import Item, Places
 from lamella.hardware.rules import MM
 from lamella.hardware.shape import Prism, circle, rectangle
 
-GROUND_TOLERANCE = 0.02
+ON_GROUND = 0.02
 """m; a rim that is as far from the ground is on it."""
 
 GROUND_STEP = 0.01
@@ -61,7 +61,7 @@ def _places(axis: BeamAxis) -> Floats:
     count = int(np.ceil(piece.length / GROUND_STEP)) + 1
     along = np.linspace(0.0, piece.length, count, endpoint=not piece.closed)
     low = _lowest(axis, along)
-    on_ground = np.abs(piece.frames(along).points[:, 2] - float(rules.ground or 0.0)) <= GROUND_TOLERANCE
+    on_ground = np.abs(piece.frames(along).points[:, 2] - float(rules.ground or 0.0)) <= ON_GROUND
     found: list[Floats] = []
     for begin, end in _stretches(on_ground, piece.closed):
         index = np.arange(begin, end + 1) % count

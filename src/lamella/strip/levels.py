@@ -23,7 +23,7 @@ from lamella.base.wording import rounded
 from lamella.network.network import Network
 from lamella.surface.darboux import Darboux
 
-LEAST_SCALE = 0.1
+LEAST_LEVEL_SCALE = 0.1
 """Length of a curve on its level over that on the surface, at least: farther out it folds."""
 
 
@@ -56,11 +56,11 @@ def on_levels(network: Network, level: float) -> Network:
     mean = network.sample_mean_curvature
     gauss = kn * (2 * mean - kn) - tg**2
     most = float((np.abs(mean) + np.sqrt(np.maximum(mean**2 - gauss, 0.0))).max())
-    if level * most > 1 - LEAST_SCALE:
+    if level * most > 1 - LEAST_LEVEL_SCALE:
         raise InputError(
             f"levels {level:g} m from the surface, whose smallest radius of curvature is {1 / most:.4g} m: the strips "
             "there would fold",
-            f"write height = {rounded((1 - LEAST_SCALE) / most, up=False):g} or less",
+            f"write height = {rounded((1 - LEAST_LEVEL_SCALE) / most, up=False):g} or less",
             "section.height",
         )
     a, b = 1 - z * kn, -z * tg
