@@ -78,6 +78,8 @@ class Part(Shown):
     corners : (2, 2)
         Of the start and of the end the stations of the corners at the -n and at the +n edge, m: equal but at edge
         beams, where strips are cut obliquely.
+    first_node : int
+        Number of the first of its nodes among those of its lamella.
 
     Examples
     --------
@@ -108,6 +110,7 @@ class Part(Shown):
     slot_play: float = 0.0
     holes: Floats = field(default_factory=lambda: np.empty((0, 3)))
     corners: Floats = field(default_factory=lambda: np.empty((0, 2)))
+    first_node: int = 0
 
     def _line(self) -> str:
         return f"{self.label}: {self.length:.4g} m, {counted(len(self.slots), 'slot')}, {self.mass:.4g} kg"

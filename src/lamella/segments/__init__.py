@@ -1,0 +1,1 @@
+"""Segments: what of a structure is assembled, carried and lifted in one."""
