@@ -39,6 +39,7 @@ from lamella.project.tables import (
     Table,
     project_schema,
 )
+from lamella.segments.lists import COLUMNS as SEGMENT_LIST
 from lamella.stages.all_stages import STAGES, WRITES
 from lamella.stages.results import Results
 from lamella.stages.schema import summary_schema
@@ -257,6 +258,7 @@ def files_page() -> str:
         "along lamellas": _columns_table(),
         "part list": _list_table(PART_LIST),
         "hardware list": _list_table(HARDWARE_LIST),
+        "segment list": _list_table(SEGMENT_LIST),
     }
     for name, table in tables.items():
         before, rest = page.split(f"<!-- {name}: made by docs/build.py -->\n")

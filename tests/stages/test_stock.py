@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections import Counter
 from pathlib import Path
 
@@ -19,6 +20,8 @@ PROJECT = {
     "network": {"cells": 8},
     "lamella": {"layer_curves": "offset"},
     "joint": {"block_bolt": 0.005},
+    "segments": {"mass": 120.0},
+    "files": {"csv": {"separator": ";", "decimal": ","}},
     "stock": [{"kind": "bar", "length": 3.0}, {"kind": "sheet", "size": [0.5, 1.0]}],
 }
 
@@ -94,6 +97,55 @@ def test_figures_of_stock_fit_together(written: tuple[lamella.Results, Path]) ->
     length = sum(float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) for *_, points in drawn)
     told = {one["thickness"]: one["length"] for one in figures["cut_length"]}
     assert told[0.0015] == pytest.approx(length / 1e3, rel=1e-3)
+
+
+def styled(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        assert file.readline().startswith("# lamella")
+        return list(csv.DictReader(file, delimiter=";"))
+
+
+def number(text: str) -> float:
+    assert "." not in text
+    return float(text.replace(",", "."))
+
+
+def test_segments_are_listed_with_all_that_belongs_to_them(written: tuple[lamella.Results, Path]) -> None:
+    results, folder = written
+    figures = results.summary["fabrication"]
+    rows = styled(folder / "fabrication" / "segments.csv")
+    assert [row["id"] for row in rows] == [one["id"] for one in figures["segments"]]
+    assert len(rows) > 1
+    assert sum(one["nodes"] for one in figures["segments"]) == results.summary["network"]["nodes"]
+    assert sum(one["mass"] for one in figures["segments"]) == pytest.approx(figures["mass"])
+    parts = styled(folder / "fabrication" / "segment_parts.csv")
+    for one, row in zip(figures["segments"], rows, strict=True):
+        assert one["mass"] <= 120.0
+        own = [number(part["mass_kg"]) for part in parts if part["segment"] == one["id"]]
+        assert sum(own) == pytest.approx(one["mass"], rel=1e-4)
+        assert number(row["mass_kg"]) == pytest.approx(one["mass"], rel=1e-5)
+        assert sum(number(x) for x in row["lifting_kg"].split(";")) == pytest.approx(one["mass"], rel=1e-3)
+    # every piece of hardware and strip once
+    hardware = {row["id"]: int(row["quantity"]) for row in styled(folder / "fabrication" / "hardware.csv")}
+    listed: Counter[str] = Counter()
+    for part in parts:
+        listed[part["id"]] += int(part["quantity"])
+    strips = {row["id"]: int(row["quantity"]) for row in styled(folder / "fabrication" / "schedule.csv")}
+    assert listed == Counter(hardware | strips)
+
+
+@pytest.mark.parametrize(
+    ("tables", "where"),
+    [
+        ({"segments": {}}, "segments.mass"),
+        ({"segments": {"mass": 0}}, "segments.mass"),
+        ({"files": {"csv": {"decimal": ","}}}, "files.csv.decimal"),
+    ],
+)
+def test_tables_that_cannot_be_are_refused_with_their_key(tables: dict[str, dict[str, object]], where: str) -> None:
+    with pytest.raises(InputError) as refused:
+        parse_project(PROJECT | tables)
+    assert refused.value.where == where
 
 
 @pytest.mark.parametrize(

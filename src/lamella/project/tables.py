@@ -20,6 +20,7 @@ from lamella.project.boundary_tables import (
     PlaceTable,
     SlideTable,
 )
+from lamella.project.csv_table import CsvTable
 from lamella.project.drawings_table import DrawingsTable
 from lamella.project.edge_beam_table import EdgeBeamTable
 from lamella.project.fabrication_table import FabricationTable
@@ -27,6 +28,7 @@ from lamella.project.joint_table import CablesTable, JointTable
 from lamella.project.list_tables import LIST_TABLES
 from lamella.project.load_tables import ACTION_TABLES, CombinationTable, LoadTable, check_actions
 from lamella.project.material_table import MaterialTable
+from lamella.project.segments_table import SegmentsTable
 from lamella.project.stock_table import StockTable, check_stock
 from lamella.project.structure_tables import StructureTable, SupportTable, check_list, list_key
 from lamella.project.surface_tables import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
@@ -238,6 +240,12 @@ class FilesTable(Table):
         default=1e-3,
     )
 
+    csv: CsvTable | None = Field(
+        default=None,
+        description='Separator and decimal sign of .csv files: {separator = ";", decimal = ","}; a comma and a full '
+        "stop when not given.",
+    )
+
     surface_3dm: bool | None = Field(
         default=None,
         description="Whether surface.3dm is written, the NURBS of surfaces of curved triangles. When not given, where "
@@ -260,6 +268,7 @@ FURTHER_TABLES: dict[str, type[Table]] = {
     "cables": CablesTable,
     "edge_beam": EdgeBeamTable,
     "drawings": DrawingsTable,
+    "segments": SegmentsTable,
     "structure": StructureTable,
     "files": FilesTable,
 }
@@ -283,6 +292,7 @@ class Project(Table):
     fabrication: FabricationTable = FabricationTable()
     joint: JointTable | None = Field(default=None, description=(JointTable.__doc__ or "").strip())
     cables: CablesTable | None = Field(default=None, description=(CablesTable.__doc__ or "").strip())
+    segments: SegmentsTable | None = Field(default=None, description=(SegmentsTable.__doc__ or "").partition("\n")[0])
     stock: Annotated[tuple[StockTable, ...], Field(strict=False)] | None = list_key(StockTable)
     edge_beam: EdgeBeamTable | None = Field(default=None, description=(EdgeBeamTable.__doc__ or "").strip())
     structure: StructureTable | None = Field(default=None, description=(StructureTable.__doc__ or "").strip())

@@ -9,7 +9,7 @@ import numpy as np
 from lamella.base.arrays import Floats, Integers
 
 # nodes among which three are chosen
-MOST_TRIED = 36
+NODES_TRIED = 36
 # of the weight, that each of the three has to carry where that can be
 LEAST_SHARE = 0.2
 
@@ -36,8 +36,8 @@ def lifting_nodes(nodes: Integers, points: Floats, centre: Floats) -> tuple[Inte
         Empty where no three nodes surround the centre.
     """
     flat = points[:, :2] - centre[:2]
-    if len(nodes) > MOST_TRIED:
-        angle = 2 * np.pi * np.arange(MOST_TRIED) / MOST_TRIED
+    if len(nodes) > NODES_TRIED:
+        angle = 2 * np.pi * np.arange(NODES_TRIED) / NODES_TRIED
         along = np.round(flat @ np.stack([np.cos(angle), np.sin(angle)]), 6)
         kept = np.unique(along.argmax(axis=0))
         nodes, flat = nodes[kept], flat[kept]

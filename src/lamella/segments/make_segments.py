@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -20,17 +20,24 @@ from lamella.segments.weights import Weights, part_stops
 from lamella.strip.lamellas import Lamellas, crossings
 
 # splices and cut ends change what segments weigh: how often the net is divided anew for less
-ROUNDS = 8
+DIVIDED_ANEW = 8
 # of what a segment has to lose, that it is divided for
-MARGIN = 0.005
+MASS_MARGIN = 0.005
 
 Make = Callable[[Sequence[Integers] | None], tuple[Parts, Hardware]]
 """Parts and hardware with lamellas cut in some cells."""
 
 
-def make_segments(
-    lamellas: Lamellas, limits: Limits, make: Make, splice_room: float = 0.0
-) -> tuple[Parts, Hardware, Segments]:
+@dataclass(frozen=True, eq=False)
+class Divided:
+    """Segments, and the parts and hardware they are made of."""
+
+    parts: Parts
+    hardware: Hardware
+    segments: Segments
+
+
+def make_segments(lamellas: Lamellas, limits: Limits, make: Make, splice_room: float = 0.0) -> Divided:
     """Divide a structure into segments that keep within limits as they are built.
 
     The net is divided by what goes with each node; then parts and hardware are made anew, cut and spliced at the
@@ -53,7 +60,7 @@ def make_segments(
     weights = Weights.of(*make(None), lamellas)
     wanted, section = limits, lamellas.section
     least_cell = 2 * splice_room + (section.layers - 1) * section.offset if splice_room else 0.0
-    for _ in range(ROUNDS):
+    for _ in range(DIVIDED_ANEW):
         graph = Graph.of(network, weights.nodes, least_cell)
         of_node = partition(graph, wanted)
         borders = _borders(graph, of_node, len(network.ids))
@@ -62,12 +69,12 @@ def make_segments(
         segments = _segments(parts, weights, graph, of_node, borders, lamellas)
         heaviest = max(segments.segments, key=lambda one: one.mass)
         if heaviest.mass <= limits.mass * (1 + 1e-9):
-            return parts, hardware, segments
+            return Divided(parts, hardware, segments)
         share = limits.mass / heaviest.mass
-        wanted = replace(wanted, mass=wanted.mass * (share - MARGIN))
+        wanted = replace(wanted, mass=wanted.mass * (share - MASS_MARGIN))
     raise InputError(
-        f"segments cannot be made as light as mass = {limits.mass:g} kg: {heaviest.id} of {len(segments.segments)} weighs "
-        f"{heaviest.mass:.4g} kg, of which its splices are a large part",
+        f"segments cannot be made as light as mass = {limits.mass:g} kg: {heaviest.id} of {len(segments.segments)} "
+        f"weighs {heaviest.mass:.4g} kg, of which its splices are a large part",
         f"write mass = {1.1 * heaviest.mass:.3g} or more",
         "mass",
     )
@@ -101,9 +108,7 @@ def _segments(
         able = nodes[liftable[nodes]] if liftable[nodes].sum() >= 3 else nodes
         lifting, shares = lifting_nodes(able, network.node_points[able], centre)
         size = extent(graph, inside)
-        found.append(
-            Segment(f"S{k + 1}", nodes, np.unique(owners[own]), own, mass, centre, size, lifting, shares)
-        )
+        found.append(Segment(f"S{k + 1}", nodes, np.unique(owners[own]), own, mass, centre, size, lifting, shares))
     return Segments(tuple(found), _joints(parts, of_part, lamellas), of_node, of_part, of_place, borders)
 
 

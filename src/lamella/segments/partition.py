@@ -2,8 +2,8 @@
 
 A patch too heavy or too large is cut beside a lamella: its nodes stay on one side, and what crosses it is cut in the
 middle of the next cells. Of all lamellas the one is taken that leaves the fewest patches to come, and then the most
-even ones. Around a hole one lamella does not divide, two together do. What no lamella divides is cut through the edge of
-a spanning tree that divides it most evenly.
+even ones. Around a hole one lamella does not divide, two together do. What no lamella divides is cut through the edge
+of a spanning tree that divides it most evenly.
 """
 
 from __future__ import annotations
@@ -17,12 +17,13 @@ import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
+from lamella.base.wording import rounded
 from lamella.network.network import Network
 
 # lamellas tried for one cut, and for pairs
 MOST_RUNS, MOST_PAIRED = 64, 20
 # a cut whose lesser part comes to less of its limit than the greater one by this share is looked for elsewhere too
-UNEVEN = 0.5
+MOST_UNEVEN = 0.5
 # patches that a cut edge counts, and one that is too short for a splice
 EDGE_SHARE, FIRM_COST = 0.01, 0.25
 
@@ -153,19 +154,21 @@ def _load(graph: Graph, patch: Booleans, limits: Limits) -> float:
 
 
 def _too_much(graph: Graph, node: int, limits: Limits) -> InputError:
-    mass, one = float(graph.masses[node]), np.arange(len(graph.masses)) == node
+    """What a node is refused for; the remedy is enough for every node."""
+    mass, most = float(graph.masses[node]), float(graph.masses.max())
     if mass > limits.mass:
         return InputError(
             f"node {node} with its strips, cut in the middle of its cells, and its hardware weighs {mass:.4g} kg, more "
             f"than a segment of mass = {limits.mass:g} kg may",
-            f"write mass = {1.01 * mass:.3g} or more, or choose more cells",
+            f"write mass = {rounded(1.05 * most, up=True):g} or more, or choose more cells",
             "mass",
         )
-    size = extent(graph, one)
+    every = np.arange(len(graph.masses))
+    size, largest = extent(graph, every == node), max(extent(graph, every == k) for k in every.tolist())
     return InputError(
         f"the strips of node {node}, cut in the middle of its cells, take {size:.4g} m, more than a segment of size = "
         f"{limits.size:g} m may",
-        f"write size = {1.01 * size:.3g} or more, or choose more cells",
+        f"write size = {rounded(1.01 * largest, up=True):g} or more, or choose more cells",
         "size",
     )
 
@@ -195,12 +198,12 @@ def _halves(graph: Graph, patch: Booleans, limits: Limits) -> list[Booleans]:
     runs = _runs(graph, patch)
     some = runs if len(runs) <= MOST_RUNS else [runs[k] for k in np.linspace(0, len(runs) - 1, MOST_RUNS).astype(int)]
     best = min((_rated(graph, patch, other, limits) for other in _beside(graph, patch, some)), default=None)
-    if best is None or best[1] > UNEVEN:
+    if best is None or best[1] > MOST_UNEVEN:
         paired = [runs[k] for k in np.unique(np.linspace(0, len(runs) - 1, MOST_PAIRED).astype(int))] if runs else []
         pairs = [one | two for k, one in enumerate(paired) for two in paired[:k] if not np.any(one & two)]
         found = [_rated(graph, patch, other, limits) for other in _beside(graph, patch, pairs, joined=True)]
         best = min([*found, *([] if best is None else [best])], default=None)
-    if best is None or best[1] > UNEVEN:
+    if best is None or best[1] > MOST_UNEVEN:
         tree = _rated(graph, patch, _subtree(graph, patch), limits)
         best = tree if best is None else min(best, tree)
     other = np.zeros(len(patch), bool)

@@ -96,7 +96,8 @@ class Segments(Result):
 
     def _line(self) -> str:
         heaviest = max((one.mass for one in self.segments), default=0.0)
-        return f"{counted(len(self.segments), 'segment')}, up to {heaviest:.4g} kg, {counted(len(self.joints), 'joint')}"
+        joints = counted(len(self.joints), "joint")
+        return f"{counted(len(self.segments), 'segment')}, up to {heaviest:.4g} kg, {joints}"
 
     @property
     def mass(self) -> float:

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
+from lamella.fabrication.flat import outline_points
 from lamella.fabrication.part import Part, Parts
-from lamella.hardware.item import Hardware
+from lamella.hardware.item import Hardware, Item
+from lamella.hardware.shape import Prism, Sweep
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
 
@@ -58,7 +60,7 @@ class Weights:
             own, shares = _shares(part, network)
             first[k] = own[0]
             np.add.at(nodes, own, masses[k] * shares)
-        places = tuple(item.places.origins for item in hardware)
+        places = tuple(item.places.world(_middle(item)[None])[:, 0] for item in hardware)
         near = tuple(_nearest(network.node_points, points) for points in places)
         items = tuple(item.mass for item in hardware)
         for own, mass in zip(near, items, strict=True):
@@ -94,14 +96,42 @@ def _centre(part: Part, lamellas: Lamellas) -> Floats:
     at = np.concatenate([[part.start], stations[inner], [part.end]])
     along = np.column_stack([np.interp(at, stations, points[:, k]) for k in range(3)])
     # beyond the rim it goes on straight
-    for end, known, step in ((0, 0, 1), (-1, -1, -2)):
-        beyond = at[end] - stations[known]
-        if (beyond < 0) == (end == 0) and beyond:
-            one, other = (0, 1) if end == 0 else (-1, -2)
-            tangent = (points[one] - points[other]) / (stations[one] - stations[other])
-            along[end] = points[known] + beyond * tangent
+    for end, inwards, sign in ((0, 1, -1), (-1, -2, 1)):
+        beyond = at[end] - stations[end]
+        if sign * beyond > 0:
+            tangent = (points[end] - points[inwards]) / (stations[end] - stations[inwards])
+            along[end] = points[end] + beyond * tangent
     steps = np.diff(at)
     return np.asarray(0.5 * (steps[:, None] * (along[1:] + along[:-1])).sum(axis=0) / steps.sum())
+
+
+def _middle(item: Item) -> Floats:
+    """Centre of gravity of a piece in its own axes, m."""
+    volumes = np.array([shape.volume for shape in item.shape])
+    centres = [_sweep_middle(one) if isinstance(one, Sweep) else _prism_middle(one) for one in item.shape]
+    return np.asarray(volumes @ np.array(centres) / volumes.sum())
+
+
+def _sweep_middle(sweep: Sweep) -> Floats:
+    steps = np.linalg.norm(np.diff(sweep.points, axis=0), axis=1)
+    middles = 0.5 * (sweep.points[1:] + sweep.points[:-1])
+    return np.asarray(steps @ middles / steps.sum())
+
+
+def _prism_middle(prism: Prism) -> Floats:
+    """Of the cross section, its holes taken off, at half the height."""
+    outer, first = _moments(prism.outline)
+    for hole in prism.holes:
+        area, moment = _moments(hole)
+        outer, first = outer - area, first - moment
+    return np.append(first / outer, 0.5 * (prism.low + prism.high))
+
+
+def _moments(outline: Floats) -> tuple[float, Floats]:
+    """Area and first moments of an outline, arcs in straight parts."""
+    points = outline_points(outline)
+    cross = points[:-1, 0] * points[1:, 1] - points[1:, 0] * points[:-1, 1]
+    return float(cross.sum() / 2), cross @ (points[:-1] + points[1:]) / 6
 
 
 def _nearest(nodes: Floats, points: Floats) -> Integers:

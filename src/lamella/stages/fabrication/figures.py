@@ -8,7 +8,7 @@ from typing import Any
 from lamella.fabrication.schedule import congruent_parts
 from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.fabrication.stock_figures import STOCK_FIGURES, sheet_use
-from lamella.stages.figure import INTEGER, NUMBER, Figure, line, nullable, record
+from lamella.stages.figure import ABSENT, INTEGER, NUMBER, TEXT, Figure, line, list_of, nullable, record
 
 Rows = Iterator[tuple[str, str, str]]
 
@@ -43,6 +43,20 @@ def _hardware_rows(value: dict[str, Any], summary: dict[str, Any]) -> Rows:
     for kind, of_kind in value.items():
         several = f", {of_kind['different']} kinds" if of_kind["different"] > 1 else ""
         yield f"{kind.capitalize()}{several}", f"{of_kind['count']:,}", f"pieces, {of_kind['mass']:.3g} kg"
+
+
+def _segments(out: FabricationOutput) -> Any:
+    if not out.segments.segments:
+        return ABSENT
+    return [
+        {"id": one.id, "mass": one.mass, "lamellas": len(one.lamellas), "nodes": len(one.nodes)}
+        for one in out.segments.segments
+    ]
+
+
+def _segment_rows(value: list[dict[str, Any]], summary: dict[str, Any]) -> Rows:
+    masses = [one["mass"] for one in value]
+    yield "Segments", f"{len(masses)}", f"of {min(masses):.4g} to {max(masses):.4g} kg"
 
 
 FIGURES: tuple[Figure[FabricationOutput], ...] = (
@@ -104,7 +118,28 @@ FIGURES: tuple[Figure[FabricationOutput], ...] = (
         nullable(NUMBER),
     ),
     *STOCK_FIGURES,
+    Figure(
+        "segments",
+        "",
+        "where `[segments]` is given: `id`, `mass` (kg, with hardware), and the numbers of `lamellas` it has pieces of "
+        "and of `nodes`",
+        _segments,
+        list_of(record(id=TEXT, mass=NUMBER, lamellas=INTEGER, nodes=INTEGER)),
+        always=False,
+        rows=_segment_rows,
+    ),
 )
 
-REPORT = ("parts", "parts_different", "sheets", "bow_max", "mass", "surface_weight", "hardware", "stock", "cut_length")
+REPORT = (
+    "parts",
+    "parts_different",
+    "sheets",
+    "bow_max",
+    "mass",
+    "surface_weight",
+    "hardware",
+    "stock",
+    "cut_length",
+    "segments",
+)
 """Order of the report's lines."""

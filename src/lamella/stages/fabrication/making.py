@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from lamella.base.arrays import Integers
 from lamella.fabrication.part import Parts
@@ -72,6 +75,21 @@ def _edge_beams(up: Upstream, lamellas: Lamellas) -> EdgeBeamAxes | None:
     joints = joint_rules(project, project.joint)
     with keys("edge_beam"):
         return edge_beam_axes(lamellas, rules, joints, half_joint_of(lamellas, joints))
+
+
+def made(up: Upstream) -> FabricationOutput:
+    """All parts of a project, in segments where it asks for them."""
+    table = up.project.segments
+    if table is None:
+        return laid(up, *made_parts(up))
+    from lamella.segments.make_segments import make_segments
+    from lamella.segments.partition import Limits
+
+    limits = Limits(table.mass or np.inf, table.size or np.inf)
+    lamellas = up.outputs["lamellas"].lamellas
+    with keys("segments"):
+        divided = make_segments(lamellas, limits, lambda borders: made_parts(up, borders), splice_room(up.project))
+    return replace(laid(up, divided.parts, divided.hardware), segments=divided.segments)
 
 
 def laid(up: Upstream, parts: Parts, hardware: Hardware) -> FabricationOutput:

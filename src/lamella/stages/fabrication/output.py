@@ -10,6 +10,7 @@ from lamella.fabrication.sheet import Nesting
 from lamella.fabrication.stock import Supply
 from lamella.hardware.item import Hardware
 from lamella.hardware.plate_sheets import PlateSheets
+from lamella.segments.segments import Segments
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,8 @@ class FabricationOutput:
         Plates of the hardware on such stock.
     notes : tuple of Message
         What the user should know about them.
+    segments : Segments
+        None where the project has no table [segments].
     """
 
     parts: Parts
@@ -39,3 +42,4 @@ class FabricationOutput:
     supply: Supply | None = None
     plates: tuple[PlateSheets, ...] = ()
     notes: tuple[Message, ...] = ()
+    segments: Segments = field(default_factory=Segments)

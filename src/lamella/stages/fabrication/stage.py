@@ -14,7 +14,7 @@ from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
 from lamella.stages.fabrication.defaults import check_drawings, check_fabrication, check_joint
 from lamella.stages.fabrication.figures import FIGURES, REPORT
-from lamella.stages.fabrication.making import laid, made_parts
+from lamella.stages.fabrication.making import made
 from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.keys import with_keys
 from lamella.stages.stage import File, Stage, Upstream
@@ -45,6 +45,10 @@ class FabricationStage(Stage[FabricationOutput]):
         ),
         ("model.glb", "where `[joint]` is given or `files.solids` is true: the same for viewers and renderers"),
         ("fabrication/plate_sheets.dxf", "where `[[stock]]` is given too: all these plates on their sheets"),
+        (
+            "fabrication/segments.csv, fabrication/segment_joints.csv, fabrication/segment_parts.csv",
+            "where `[segments]` is given: the segments, the joints between them, and the parts of each",
+        ),
     )
     figures = FIGURES
     report = ("Fabrication", REPORT)
@@ -53,7 +57,7 @@ class FabricationStage(Stage[FabricationOutput]):
         return ("files", "drawings")
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
-        return ("fabrication", "joint", "cables", "edge_beam", "stock")
+        return ("fabrication", "joint", "cables", "edge_beam", "stock", "segments")
 
     def check(self, project: Project, surface: Surface[Any] | None) -> None:
         check_joint(project)
@@ -65,7 +69,7 @@ class FabricationStage(Stage[FabricationOutput]):
         return "parts and sheets"
 
     def run(self, up: Upstream, progress: Progress) -> FabricationOutput:
-        return laid(up, *made_parts(up))
+        return made(up)
 
     def result(self, figures: Mapping[str, Any], out: FabricationOutput) -> str:
         return f"{figures['parts']:,} parts, {figures['mass']:.4g} kg, {figures['sheets']} sheets"
@@ -109,6 +113,22 @@ class FabricationStage(Stage[FabricationOutput]):
             yield File("fabrication/hardware.csv", lambda path: write_hardware(path, out.hardware, **signed))
             yield File("fabrication/places.csv", lambda path: write_places(path, out.hardware, **drawn))
             yield File("fabrication/plates.dxf", lambda path: write_plates(path, out.hardware, **signed))
+        if out.segments.segments:
+            from lamella.segments.lists import write_segments
+
+            yield File(
+                "fabrication/segments.csv",
+                lambda path: write_segments(
+                    path.parent,
+                    out.segments,
+                    out.parts,
+                    out.hardware,
+                    network,
+                    **signed,
+                    origin=drawing_origin(up.surface),
+                ),
+                also=("fabrication/segment_joints.csv", "fabrication/segment_parts.csv"),
+            )
         if out.plates:
             from lamella.hardware.plate_sheets_drawing import write_plate_sheets
 
