@@ -73,6 +73,8 @@ VIEWS: dict[str, tuple[tuple[float, float], tuple[int, int]]] = {
     "16_hall": ((-52, 24), (1200, 900)),
     "17_gridshell": ((160, 36), (1200, 1000)),
     "18_saddle_roof": ((-62, 26), (1200, 900)),
+    "19_timber_stacked": ((-62, 30), (1200, 900)),
+    "20_steel_interlocked": ((-62, 30), (1200, 900)),
 }
 
 # azimuth and elevation of surfaces without a network
@@ -119,6 +121,11 @@ ABOUT: dict[str, str] = {
     "18_saddle_roof": "A roof of 12 x 8 m, a mesh whose mean curvature varies, kept as it is: its lamellas follow the "
     "asymptotic lines, where a straight strip stands upright; they do not cross at 90 degrees. On this hyperbolic "
     "paraboloid they are the straight rulings: the strips twist and do not bend.",
+    "19_timber_stacked": "A prototype of 4 x 4 m in timber: pairs of spruce lamellas on two levels, without slots, "
+    "bolted at the nodes. The edges of the skew square are straight, and lamellas meet them at right angles; along "
+    "them the film's normal turns, and so does the flat bar that the lamellas end at.",
+    "20_steel_interlocked": "The same square in steel: pairs of straight lamellas slotted into each other, star "
+    "washers, keys, a bolt at each node, shear blocks, cables on every second diagonal, tubes along the edges.",
 }
 
 # tables inside the tables of a boundary, by their keys
