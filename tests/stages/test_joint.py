@@ -120,7 +120,7 @@ def test_the_same_bytes_twice(written: tuple[lamella.Results, Path], tmp_path: P
 def test_the_workbook_has_what_the_lists_have(written: tuple[lamella.Results, Path]) -> None:
     results, folder = written
     book = openpyxl.load_workbook(folder / "fabrication" / "parts.xlsx")
-    assert book.sheetnames == ["strips", "hardware", "cut plan", "totals"]
+    assert book.sheetnames == ["strips", "hardware", "cut plan", "totals", "cables", "plates", "summary"]
     for page, file in (("strips", "schedule.csv"), ("hardware", "hardware.csv")):
         table = [[cell.value for cell in row] for row in book[page].iter_rows()]
         listed = rows(folder / "fabrication" / file)

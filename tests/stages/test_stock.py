@@ -8,6 +8,7 @@ from pathlib import Path
 
 import ezdxf
 import numpy as np
+import openpyxl
 import pytest
 from ezdxf.path import make_path
 
@@ -132,6 +133,27 @@ def test_segments_are_listed_with_all_that_belongs_to_them(written: tuple[lamell
         listed[part["id"]] += int(part["quantity"])
     strips = {row["id"]: int(row["quantity"]) for row in styled(folder / "fabrication" / "schedule.csv")}
     assert listed == Counter(hardware | strips)
+
+
+def test_the_workbook_has_the_plans_and_the_segments(written: tuple[lamella.Results, Path]) -> None:
+    results, folder = written
+    figures = results.summary["fabrication"]
+    book = openpyxl.load_workbook(folder / "fabrication" / "parts.xlsx")
+    pages = {name: list(book[name].iter_rows(min_row=2, values_only=True)) for name in book.sheetnames}
+    assert list(pages) == [
+        *("strips", "hardware", "cut plan", "totals", "plates", "plate plan", "stock"),
+        *("segments", "segment joints", "segment parts", "summary"),
+    ]
+    plates = {row[0]: row for row in pages["plates"]}
+    assert Counter(row[5] for row in pages["plate plan"]) == {key: row[4] for key, row in plates.items()}
+    cut = sum(row[4] * row[8] for row in plates.values()) / 1e3
+    assert cut == pytest.approx(sum(one["length"] for one in figures["cut_length"] if one["thickness"] != 0.0015))
+    assert [row[0] for row in pages["segments"]] == [one["id"] for one in figures["segments"]]
+    assert sum(row[1] for row in pages["segments"]) == pytest.approx(figures["mass"], rel=1e-5)
+    summary = {row[0]: row[2] for row in pages["summary"]}
+    assert summary["surface weight"] == pytest.approx(figures["surface_weight"], rel=1e-5)
+    assert summary["different lamella layers"] == figures["parts_different"]
+    assert summary["bar_use"] == pytest.approx(figures["bar_use"], rel=1e-5)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from io import BytesIO
 from pathlib import Path
@@ -31,6 +32,23 @@ CUT_PLAN = ("sheet", "length_mm", "width_mm", "part", "copy", "x_mm", "y_mm", "t
 TOTALS = ("what", "pieces", "different", "mass_kg")
 
 
+@dataclass(frozen=True)
+class Page:
+    """A page of a workbook.
+
+    Attributes
+    ----------
+    title : str
+    header : sequence of str
+    rows : sequence of sequence
+        Numbers, and text that stands for numbers or not.
+    """
+
+    title: str
+    header: Sequence[str]
+    rows: Sequence[Sequence[object]]
+
+
 def write_workbook(
     path: Path,
     parts: Parts,
@@ -38,11 +56,12 @@ def write_workbook(
     network: Network,
     lamellas: Lamellas,
     hardware: Hardware,
+    further: Iterable[Page] = (),
     *,
     name: str,
     version: str,
 ) -> None:
-    """Write the workbook: pages "strips", "hardware", "cut plan" and "totals".
+    """Write the workbook: pages "strips", "hardware", "cut plan" and "totals", and further ones.
 
     Parameters
     ----------
@@ -54,6 +73,7 @@ def write_workbook(
     lamellas : Lamellas
         Of that network.
     hardware : Hardware
+    further : iterable of Page
     name, version : str
         Of the project and of the program.
 
@@ -71,6 +91,8 @@ def write_workbook(
     _page(book, "hardware", [column.name for column in HARDWARE_COLUMNS], items)
     _page(book, "cut plan", CUT_PLAN, _cut_plan(parts, nesting))
     _page(book, "totals", TOTALS, _totals(parts, rows, hardware))
+    for page in further:
+        _page(book, page.title, page.header, page.rows)
     book.close()
     write_whole(path, content.getvalue())
 

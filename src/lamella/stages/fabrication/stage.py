@@ -30,7 +30,10 @@ class FabricationStage(Stage[FabricationOutput]):
         ("fabrication/A.dxf, fabrication/B.dxf", "the parts of either family"),
         ("fabrication/sheets.dxf", "all pieces on their sheets"),
         ("fabrication/schedule.csv", "the part list"),
-        ("fabrication/parts.xlsx", "strips, hardware, cut plan and totals as a workbook"),
+        (
+            "fabrication/parts.xlsx",
+            "strips, hardware, cables, plates, edge beams, cut plan, stock, segments and totals as a workbook",
+        ),
         (
             "fabrication/hardware.csv, fabrication/places.csv, fabrication/plates.dxf",
             "where `[joint]` is given: the hardware, the place of every piece, and what of it is cut from plates",
@@ -91,6 +94,8 @@ class FabricationStage(Stage[FabricationOutput]):
         from lamella.hardware.plates_drawing import write_plates
         from lamella.hardware.workbook import write_workbook
         from lamella.stages.fabrication.further_files import further_files
+        from lamella.stages.fabrication.pages import pages
+        from lamella.stages.figure import evaluate
 
         signed: Any = {"name": up.project.name, "version": __version__}
         network = in_drawing(up.outputs["network"].network, drawing_origin(up.surface))
@@ -106,7 +111,16 @@ class FabricationStage(Stage[FabricationOutput]):
         )
         yield File(
             "fabrication/parts.xlsx",
-            lambda path: write_workbook(path, out.parts, out.nesting, network, lamellas, out.hardware, **signed),
+            lambda path: write_workbook(
+                path,
+                out.parts,
+                out.nesting,
+                network,
+                lamellas,
+                out.hardware,
+                pages(out, evaluate(FIGURES, out), network, drawing_origin(up.surface)),
+                **signed,
+            ),
         )
         if out.hardware.items:
             drawn: Any = signed | {"origin": drawing_origin(up.surface)}

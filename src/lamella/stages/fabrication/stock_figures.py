@@ -52,8 +52,13 @@ def _plate_use(out: FabricationOutput) -> Any:
 
 
 def _stock(out: FabricationOutput) -> Any:
+    return ABSENT if out.supply is None else stock_records(out)
+
+
+def stock_records(out: FabricationOutput) -> list[dict[str, Any]]:
+    """What is used of each kind of stock, and left over; nothing where a project has none."""
     if out.supply is None:
-        return ABSENT
+        return []
     found = []
     nesting, supply = out.nesting, out.supply
     areas = np.array([part.area for part in out.parts.parts])[nesting.parts]
