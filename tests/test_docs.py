@@ -191,7 +191,7 @@ def resolve(name: str) -> object:
 
 NAME = re.compile(r"`(lamella(?:\.[A-Za-z_]\w*)+)`")
 # keys of the project file
-KEYS = {"lamella.material", "lamella.offset", "lamella.height"}
+KEYS = {"lamella.material", "lamella.offset", "lamella.height", "lamella.strips"}
 
 
 def test_names_in_the_theory_exist() -> None:

@@ -204,6 +204,12 @@ class LamellaTable(Table):
         "their mean distance, which goes with the cell edge. The last two make every layer a part of its own length. "
         "With one layer nothing changes.",
     )
+    strips: Literal["twisted", "developable"] | None = Field(
+        default=None,
+        description='"twisted" when not given: strips along the surface normals. "developable": beside them strips '
+        "that are bent and not twisted, along the rulings kg n + tg t, with buildable height, stress, planarity, and "
+        "which of both is recommended.",
+    )
 
     @model_validator(mode="after")
     def _possible(self) -> LamellaTable:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from lamella.stages.figure import ABSENT, NUMBER, Figure, line, list_of, nullable, record
+from lamella.stages.lamellas.developable import MEANING, SCHEMA, developable_figure
 from lamella.stages.lamellas.output import LamellasOutput
 from lamella.strip.unroll import development_deviation
 
@@ -27,7 +28,7 @@ def _planarity(out: LamellasOutput) -> dict[str, Any]:
     # the last sample of a lamella begins no quad
     quads[out.network.sample_offsets[1:] - 1] = False
     twisted = {"median": float(np.median(score[quads])), "max": float(score[quads].max())}
-    return {"twisted": twisted, "developable": None}
+    return {"twisted": twisted, "developable": out.developable.score if out.developable else None}
 
 
 def _development(out: LamellasOutput) -> float:
@@ -52,6 +53,14 @@ def _layer_rows(value: list[float], summary: dict[str, Any]) -> Rows:
     if value:
         low, high = (f"{1e3 * x:.3g}" for x in value)
         yield "Layers apart", low if low == high else f"{low} … {high}", "mm"
+
+
+def _developable_rows(value: dict[str, Any], summary: dict[str, Any]) -> Rows:
+    yield "Developable strips, of the lamellas", f"{value['share']:.0%}", ""
+    score = summary["lamellas"]["planarity_score"]["developable"]
+    if score:
+        yield "Planarity score of these, largest", format(score["max"], ".2g"), ""
+    yield "Recommended strips", value["recommended"], ""
 
 
 def _stress(key: str, label: str, meaning: str, values: str) -> Figure[LamellasOutput]:
@@ -108,9 +117,10 @@ FIGURES: tuple[Figure[LamellasOutput], ...] = (
     Figure(
         "planarity_score",
         "",
-        "`twisted`: `median` and `max` over the quads between samples; `developable`: null",
+        "`twisted`: `median` and `max` over the quads between samples; `developable`: the same where such a strip of "
+        "the height exists, null where none does or `lamella.strips` does not ask for it",
         _planarity,
-        record(twisted=record(median=NUMBER, max=NUMBER), developable={"type": "null"}),
+        record(twisted=record(median=NUMBER, max=NUMBER), developable=nullable(record(median=NUMBER, max=NUMBER))),
         rows=_planarity_rows,
     ),
     Figure(
@@ -168,6 +178,15 @@ FIGURES: tuple[Figure[LamellasOutput], ...] = (
         rows=_layer_rows,
     ),
     Figure(
+        "developable",
+        "",
+        MEANING,
+        developable_figure,
+        SCHEMA,
+        always=False,
+        rows=_developable_rows,
+    ),
+    Figure(
         "utilisation_at_corners",
         "",
         "surfaces of curved triangles: the largest utilisation next to each of `network.corners` (null: no lamella is "
@@ -201,5 +220,6 @@ REPORT = (
     "utilisation_max",
     "utilisation_net_section_max",
     "layer_distances",
+    "developable",
 )
 """Order of the report's lines."""

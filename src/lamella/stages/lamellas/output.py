@@ -8,6 +8,7 @@ from typing import Any
 
 from lamella.base.material import Material
 from lamella.network.network import Network
+from lamella.strip.developable_strips import DevelopableStrips
 from lamella.strip.lamellas import Lamellas
 
 
@@ -23,6 +24,8 @@ class LamellasOutput:
     material : Material
     made : object or None
         What made the net, as `lamella.stages.network.stage.NetworkOutput.made`.
+    developable : DevelopableStrips or None
+        Along the same lamellas, where the project asks for them.
     """
 
     network: Network
@@ -30,6 +33,7 @@ class LamellasOutput:
     material_name: str
     material: Material
     made: Any
+    developable: DevelopableStrips | None = None
 
     @cached_property
     def corner_stresses(self) -> dict[str, Any]:

@@ -11,7 +11,7 @@ LEVEL_PLAY = 0.001
 
 def section_of(project: Project) -> Section:
     """The section of the table [lamella], on two levels where [joint] stacks the families."""
-    joint, measures = project.joint, project.lamella.model_dump(exclude={"material"})
+    joint, measures = project.joint, project.lamella.model_dump(exclude={"material", "strips"})
     if joint is None or joint.kind != "stacked":
         return Section(**measures)
     gap = joint.washer_thickness + LEVEL_PLAY if joint.level_gap is None else joint.level_gap

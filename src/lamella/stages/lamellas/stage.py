@@ -13,6 +13,7 @@ from lamella.base.progress import Progress
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
 from lamella.stages.keys import keys
+from lamella.stages.lamellas.developable import developable_warnings
 from lamella.stages.lamellas.figures import FIGURES, REPORT
 from lamella.stages.lamellas.output import LamellasOutput
 from lamella.stages.lamellas.section import section_of
@@ -20,6 +21,7 @@ from lamella.stages.lamellas.warnings import lamella_warnings, layer_warnings
 from lamella.stages.pattern_of_table import pattern_of
 from lamella.stages.stage import File, Missing, Stage, Upstream
 from lamella.stages.surface.surface_of_table import make_surface
+from lamella.strip.developable_strips import developable_strips
 from lamella.strip.lamellas import Lamellas, largest_utilisation, make_lamellas
 from lamella.strip.layer_curves import check_layer_curves
 from lamella.surface.surface import Surface
@@ -30,7 +32,10 @@ class LamellasStage(Stage[LamellasOutput]):
 
     name = "lamellas"
     needs = ("surface", "network")
-    writes = (("lamellas.json", "curvatures and stresses along every lamella, node marks of the flat strips"),)
+    writes = (
+        ("lamellas.json", "curvatures and stresses along every lamella, node marks of the flat strips"),
+        ("developable.csv", 'where `lamella.strips = "developable"`: the rulings of developable strips'),
+    )
     figures = FIGURES
     report = ("Lamellas", REPORT)
 
@@ -60,7 +65,9 @@ class LamellasStage(Stage[LamellasOutput]):
         net = up.outputs["network"]
         with keys("lamella", section="lamella", network="network"):
             lamellas = strips_of(up.project, up.surface)(net.network)
-        return LamellasOutput(lamellas.network, lamellas, up.project.lamella.material, up.project.material(), net.made)
+        developable = developable_strips(lamellas) if up.project.lamella.strips == "developable" else None
+        material = up.project.lamella.material, up.project.material()
+        return LamellasOutput(lamellas.network, lamellas, *material, net.made, developable)
 
     def result(self, figures: Mapping[str, Any], out: LamellasOutput) -> str:
         return f"{figures['total_length']:.4g} m of lamella, utilisation up to {figures['utilisation_max']:.2f}"
@@ -84,6 +91,7 @@ class LamellasStage(Stage[LamellasOutput]):
             advice,
         )
         yield from layer_warnings(network, out.lamellas, out.material)
+        yield from developable_warnings(out)
 
     def files(self, out: LamellasOutput, up: Upstream) -> Iterator[File]:
         from lamella.files.write.lamellas_json import write_lamellas
@@ -91,6 +99,11 @@ class LamellasStage(Stage[LamellasOutput]):
         network = in_drawing(out.network, drawing_origin(up.surface))
         signed: Any = {"name": up.project.name, "version": __version__}
         yield File("lamellas.json", lambda path: write_lamellas(path, network, out.lamellas, **signed))
+        if out.developable is not None:
+            from lamella.files.write.developable_csv import write_developable
+
+            made = out.developable
+            yield File("developable.csv", lambda path: write_developable(path, network, out.lamellas, made, **signed))
 
 
 def strips_of(project: Project, surface: Surface[Any]) -> partial[Lamellas]:

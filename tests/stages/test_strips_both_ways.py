@@ -1,0 +1,68 @@
+"""`lamella.strips = "developable"`: figures, warnings and the file of developable strips."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lamella import compute, parse_project, write
+
+CATENOID: dict[str, Any] = {
+    "surface": {"kind": "catenoid", "neck_radius": 1.2, "height": [-1.0, 1.5]},
+    "network": {"cells": 8},
+}
+ASKED = {"lamella": {"strips": "developable", "layers": 1}}
+
+
+def test_places_without_a_strip_are_named(tmp_path: Path) -> None:
+    results = compute(parse_project(CATENOID | ASKED))
+    figures = results.summary["lamellas"]
+    score = figures["planarity_score"]
+    assert score["developable"]["max"] < 5e-4 < score["twisted"]["max"]
+    told = figures["developable"]
+    assert told["height_min"] == 0.0
+    assert told["recommended"] == "twisted"
+    assert [place["lamella"] for place in told["places"]] == list(results.network.ids)
+    assert all(abs(place["point"][2]) < 0.1 for place in told["places"])
+    keys = [message.key for message in results.summary["warnings"]]
+    assert keys.count("not_developable") == keys.count("strips_recommended") == 1
+    write(results, tmp_path / "run")
+    with (tmp_path / "run" / "developable.csv").open(encoding="utf-8", newline="") as file:
+        file.readline()
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(results.network.sample_points)
+    for row in rows:
+        if row["slope"]:
+            low, high = (np.array([float(row[f"{end}_{axis}_m"]) for axis in "xyz"]) for end in ("low", "high"))
+            ruling = np.linalg.norm(high - low)
+            assert ruling == pytest.approx(0.1 * np.hypot(1, float(row["slope"])), rel=1e-6)
+            flat = np.hypot(
+                float(row["flat_high_x_mm"]) - float(row["flat_low_x_mm"]),
+                float(row["flat_high_y_mm"]) - float(row["flat_low_y_mm"]),
+            )
+            assert flat == pytest.approx(1e3 * ruling, rel=1e-6)
+        else:
+            assert float(row["buildable_height_m"]) <= 0.1
+
+
+def test_developable_strips_are_recommended_where_they_are_stressed_less() -> None:
+    # helices of a helicoid have kg and tg that do not change; as twisted strips high ones have a large helix stress
+    surface = {"kind": "helicoid", "pitch": 4.0, "inner_radius": 1.0, "outer_radius": 3.0, "turns": 1.0}
+    results = compute(parse_project({"surface": surface, "network": {"cells": 6}} | ASKED))
+    told = results.summary["lamellas"]["developable"]
+    # rulings are lamellas too: kg = 0 there, so that half of the net has none
+    assert 0.3 < told["share"] < 0.7
+    assert told["recommended"] == "twisted"
+    assert told["lamellas"] >= 0
+    assert told["stress_bending_max"] > 0
+
+
+def test_nothing_unless_asked_for(tmp_path: Path) -> None:
+    results = compute(parse_project(CATENOID))
+    assert results.summary["lamellas"]["planarity_score"]["developable"] is None
+    assert "developable" not in results.summary["lamellas"]
+    assert "strips" not in results.project.to_toml()
