@@ -78,7 +78,16 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "structure": ("base", "structure.beam"),
     "structure.beam": ("base", "strip"),
     "structure.actions": ("base", "surface", "network", "hardware"),
-    "structure.model": ("base", "network", "strip", "hardware", "structure", "structure.beam", "structure.actions"),
+    "structure.model": (
+        "base",
+        "network",
+        "strip",
+        "fabrication",
+        "hardware",
+        "structure",
+        "structure.beam",
+        "structure.actions",
+    ),
     "structure.analysis": (
         "base",
         "hardware",

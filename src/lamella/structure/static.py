@@ -170,7 +170,11 @@ def released(structure: Structure, loads: Loads) -> Equilibrium:
     none = no_loads(structure)
     going = replace(none, constant_forces=loads.constant_forces, constant_lines=loads.constant_lines)
     going = replace(going, natural=law.natural - present)
-    first = step(Equilibrium(held, going, 0.0, structure.poses, 0, 0), LoadControl(0.0))
+    start = Equilibrium(held, going, 0.0, structure.poses, 0, 0)
+    try:
+        first = step(start, LoadControl(0.0))
+    except StepError as error:
+        raise _no_equilibrium(start, error) from None
     last = loaded(first, steps=RELEASE_STEPS)
     return replace(last, structure=structure, loads=loads, factor=0.0)
 
@@ -184,12 +188,16 @@ def _shorter(here: Equilibrium, length: float, longest: float, error: StepError)
         The step is as short as it may be.
     """
     if abs(length) <= SHORTEST_STEP * abs(longest):
-        raise InputError(
-            f"no equilibrium is found beyond the load factor {here.factor:.6g}: {error}",
-            "the structure gives way there, or nothing holds a part of it",
-            "loads",
-        ) from None
+        raise _no_equilibrium(here, error) from None
     return length / 2
+
+
+def _no_equilibrium(here: Equilibrium, error: StepError) -> InputError:
+    return InputError(
+        f"no equilibrium is found beyond the load factor {here.factor:.6g}: {error}",
+        "the structure gives way there, or nothing holds a part of it",
+        "loads",
+    )
 
 
 def _refuse_natural(loads: Loads) -> None:

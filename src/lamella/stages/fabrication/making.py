@@ -38,7 +38,7 @@ def made_parts(up: Upstream, borders: Sequence[Integers] | None = None) -> tuple
     net, strips = up.outputs["network"], strips_of(project, up.surface)
     lamellas = up.outputs["lamellas"].lamellas
     others = other_cells(net, up)
-    beams = _edge_beams(up, lamellas)
+    beams = edge_beams_of(up, lamellas)
     with keys("fabrication", height="lamella.height", stock="stock"):
         parts = make_parts(
             net.network,
@@ -63,7 +63,7 @@ def made_parts(up: Upstream, borders: Sequence[Integers] | None = None) -> tuple
     return joined.parts, joined.hardware
 
 
-def _edge_beams(up: Upstream, lamellas: Lamellas) -> EdgeBeamAxes | None:
+def edge_beams_of(up: Upstream, lamellas: Lamellas) -> EdgeBeamAxes | None:
     """Axes of the edge beams, where there are some."""
     project = up.project
     rules = edge_beam_rules(project, up.surface)

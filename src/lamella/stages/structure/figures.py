@@ -22,6 +22,7 @@ CASE = record(
     deflection_max=NUMBER,
     von_mises_max=NUMBER,
     utilisation_max=NUMBER,
+    edge_beam_utilisation=NUMBER,
     residual_share=NUMBER,
     buckling_factor=nullable(NUMBER),
     cables_slack=INTEGER,
@@ -41,6 +42,7 @@ def case_figures(case: CaseResult) -> dict[str, Any]:
         "deflection_max": case.deflection_max,
         "von_mises_max": case.von_mises_max,
         "utilisation_max": case.utilisation_max,
+        "edge_beam_utilisation": case.edge_utilisation_max,
         "residual_share": case.residual_share,
         "buckling_factor": float(case.buckling[0]) if len(case.buckling) else None,
         "cables_slack": case.slack,
@@ -93,10 +95,10 @@ FIGURES: tuple[Figure[StructureOutput], ...] = (
         "",
         "of the residual state, each load and each combination: `name`; `converged`, whether the whole load was "
         "reached, else `load_factor` is the share that was; `stable`; `displacement_max` of a node from the designed "
-        "shape and `deflection_max` from the residual state (m); `von_mises_max` (Pa, with residual stress), "
-        "`utilisation_max`, `residual_share` of that stress; `buckling_factor`, the first load factor of linear "
-        "buckling about the loaded state or the last stable one before it, or null; `cables_slack`, "
-        "`cable_force_max` (N, of both cables of a line together)",
+        "shape and `deflection_max` from the residual state (m); `von_mises_max` (Pa, of strips with residual "
+        "stress), `utilisation_max` of all members and `edge_beam_utilisation`; `residual_share` of that stress; "
+        "`buckling_factor`, the first load factor of linear buckling about the loaded state or the last stable one "
+        "before it, or null; `cables_slack`, `cable_force_max` (N, of both cables of a line together)",
         lambda out: [case_figures(case) for case in out.analysis.cases],
         list_of(CASE),
         rows=_case_rows,

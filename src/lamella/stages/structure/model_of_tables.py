@@ -13,12 +13,15 @@ from lamella.project.structure_tables import JointStiffnessTable, StructureTable
 from lamella.project.tables import Project
 from lamella.stages.actions_of_tables import Actions
 from lamella.stages.fabrication.defaults import cable_rules
-from lamella.stages.fabrication.output import FabricationOutput
-from lamella.strip.lamellas import Lamellas
+from lamella.stages.fabrication.making import edge_beams_of
+from lamella.stages.stage import Upstream
 from lamella.structure.actions.hardware_masses import hardware_masses
 from lamella.structure.actions.load_case import LoadCase, combined
 from lamella.structure.model.model import Model, make_model
 from lamella.structure.model.rules import ModelRules
+
+MODELLED = ("cable", "edge_beam")
+"""Kinds of hardware that are parts of the model with a weight of their own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,14 +45,22 @@ class Modelled:
     cables_later: CableRules | None
 
 
-def model_of(project: Project, lamellas: Lamellas, actions: Actions, fabrication: FabricationOutput) -> Modelled:
+def model_of(up: Upstream, actions: Actions) -> Modelled:
     """The model of a project, with all defaults filled in."""
+    project, lamellas = up.project, up.outputs["lamellas"].lamellas
     table = project.structure or StructureTable()
     cables = cable_rules(project)
     later = table.cables == "let go"
-    model = make_model(lamellas, actions.supports, model_rules(project, table), cables=None if later else cables)
+    model = make_model(
+        lamellas,
+        actions.supports,
+        model_rules(project, table),
+        cables=None if later else cables,
+        edge_beams=edge_beams_of(up, lamellas),
+        materials=project.known_materials(),
+    )
     combinations = tuple(combined(one.name, actions.loads, one.factors) for one in actions.combinations)
-    masses = hardware_masses(lamellas.network, fabrication.hardware)
+    masses = hardware_masses(lamellas.network, up.outputs["fabrication"].hardware, MODELLED)
     return Modelled(model, actions.loads + combinations, np.asarray(masses), cables if later else None)
 
 

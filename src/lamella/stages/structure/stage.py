@@ -34,7 +34,7 @@ class StructureStage(Stage[StructureOutput]):
     report = ("Structure", REPORT)
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
-        return ("structure", "support", "load", "combination", "joint", "cables", "surface")
+        return ("structure", "support", "load", "combination", "joint", "cables", "edge_beam", "surface")
 
     def missing(self, project: Project) -> Missing | None:
         if project.structure is not None:
@@ -61,7 +61,7 @@ class StructureStage(Stage[StructureOutput]):
 
         project, network = up.project, up.outputs["network"].network
         actions = actions_of(project, network, up.surface)
-        modelled = model_of(project, up.outputs["lamellas"].lamellas, actions, up.outputs["fabrication"])
+        modelled = model_of(up, actions)
         modes = (project.structure or StructureTable()).modes
         with keys("structure", supports="support", loads="load", prestress="cables.prestress"):
             analysis = analyse(

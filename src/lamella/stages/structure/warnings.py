@@ -51,6 +51,8 @@ def _slack(analysis: Analysis) -> Iterator[Message]:
 
 def _overstressed(case: CaseResult) -> str:
     use, model = case.use.utilisation, case.model
+    if case.edge_utilisation_max > use.max():
+        return f"under load case {case.name!r} utilisation of the edge beam reaches {case.edge_utilisation_max:.2f}"
     element, end = np.unravel_index(np.round(use, 9).argmax(), use.shape)
     lines = model.lines
     points, _ = case.equilibrium.structure.beams.attachment.ends(model.structure.poses)

@@ -9,6 +9,7 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.result import Result
+from lamella.structure.analysis.edge_use import edge_use
 from lamella.structure.analysis.strip_use import StripUse, strip_use
 from lamella.structure.equilibrium import Equilibrium
 from lamella.structure.model.model import Model
@@ -94,13 +95,18 @@ class CaseResult(Result):
 
     @property
     def von_mises_max(self) -> float:
-        """Pa, with residual stress."""
+        """Of the strips, Pa, with residual stress."""
         return float(self.use.von_mises.max(initial=0.0))
 
     @property
+    def edge_utilisation_max(self) -> float:
+        """Of edge beams; 0 without."""
+        return float(edge_use(self.model, self.equilibrium).max(initial=0.0))
+
+    @property
     def utilisation_max(self) -> float:
-        """Share of the material's strength."""
-        return float(self.use.utilisation.max(initial=0.0))
+        """Share of the material's strength, of strips and edge beams."""
+        return max(float(self.use.utilisation.max(initial=0.0)), self.edge_utilisation_max)
 
     @cached_property
     def residual_share(self) -> float:

@@ -42,4 +42,4 @@ def place_name(model: Model, node: int) -> str:
     if node < model.nodes:
         return f"node {node}"
     on = np.flatnonzero((model.lines.nodes == node).any(1))
-    return f"lamella {model.lamellas.network.ids[model.lines.lamella[on[0]]]}" if len(on) else f"node {node}"
+    return f"lamella {model.lamellas.network.ids[model.lines.lamella[on[0]]]}" if len(on) else "the edge beam"

@@ -41,12 +41,14 @@ def strip_use(model: Model, equilibrium: Equilibrium) -> StripUse:
     lamellas, lines = model.lamellas, model.lines
     section, network = lamellas.section, lamellas.network
     each = bool((lines.layer >= 0).any())
-    beside: Floats | float = 0.0
+    # of edge beams nothing is asked here
+    m = len(lines.length)
+    beside = np.zeros(2 * len(model.structure.beams))
     if section.layer_curves == "offset" and section.layers > 1 and not each:
         lamella = np.broadcast_to(lines.lamella[:, None], lines.arclengths.shape)
         curve = CurveSamples.of_centre_lines(network)
         slopes = curve.integrated(lamella, lines.arclengths, np.abs(network.sample_slopes))
-        beside = (np.abs(section.layer_offsets).max() * slopes).ravel()
+        beside[: 2 * m] = (np.abs(section.layer_offsets).max() * slopes).ravel()
     state = equilibrium.state
     found = strip_stresses(
         state,
@@ -56,10 +58,10 @@ def strip_use(model: Model, equilibrium: Equilibrium) -> StripUse:
         layers=1 if each else section.layers,
         beside=beside,
     )
-    slot = np.where(lines.crossed.ravel(), found.net_utilisation, 0.0)
+    slot = np.where(lines.crossed, found.net_utilisation[: 2 * m].reshape(-1, 2), 0.0)
     area = section.height * section.thickness * (1 if each else section.layers)
     return StripUse(
-        found.von_mises.reshape(-1, 2),
-        np.maximum(found.utilisation, slot).reshape(-1, 2),
-        state.stress[0] / state.beams.law.length / area,
+        found.von_mises[: 2 * m].reshape(-1, 2),
+        np.maximum(found.utilisation[: 2 * m].reshape(-1, 2), slot),
+        (state.stress[0] / state.beams.law.length)[:m] / area,
     )

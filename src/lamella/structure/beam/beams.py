@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lamella.base.arrays import Floats, Integers
+from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.result import Lean
 from lamella.structure.beam.attachment import END_UNKNOWNS, Attachment, Levers
@@ -70,6 +70,14 @@ class Beams(Lean):
     def with_natural(self, natural: Floats) -> Beams:
         """The same with other natural curvatures (m, 3), 1/m: tg0, -kn0, kg0."""
         return replace(self, law=replace(self.law, natural=natural))
+
+    def unstrained(self, poses: Poses, some: Booleans) -> Beams:
+        """The same, of which some elements (m,) have their natural shape in a pose, but for their length."""
+        motion = RelativeMotion.between(*self.attachment.ends(poses))
+        law, size = self.law, np.sqrt((motion.local_rho**2).sum(0))
+        natural = np.where(some[:, None], (motion.local_theta / law.length).T, law.natural)
+        bends = np.where(some, motion.local_rho[1:] / size, law.bends)
+        return replace(self, law=replace(law, natural=natural, bends=bends))
 
     def swollen(self, swelling: Floats) -> Beams:
         """The same, longer by a strain (m,) that needs no force."""

@@ -6,8 +6,8 @@ Of the length L0, natural curvature (tg0, -kn0, kg0) and what `lamella.structure
 strain                formula                                                             stiffness over L0
 ====================  ==================================================================  =================
 stretch               abs(rho) / L0 - 1 + i^2 (tg^2 - tg0^2) / 2 - swelling               E A
-S-bend sideways       rho_u / abs(rho)                                                    see below, weak
-S-bend upright        rho_n / abs(rho)                                                    see below, strong
+S-bend sideways       rho_u / abs(rho) - natural one                                      see below, weak
+S-bend upright        rho_n / abs(rho) - natural one                                      see below, strong
 twist                 tg - tg0                                                            G J
 strong-axis bending   -kn + kn0                                                           E I_u
 weak-axis bending     kg - kg0                                                            E I_n
@@ -55,6 +55,8 @@ class StrainLaw:
         See `CrossSection`.
     swelling : (m,) or float
         Stretch that needs no force: of a change of temperature.
+    bends : (2, m) or float
+        S-bends sideways and upright of the natural shape.
     coupling : (5, 5, m) or None
         Stiffness, times length, that S-bends, twist and bendings have besides, coupled with each other, against what
         `measures` differ from `reference`; see `lamella.structure.beam.turning`.
@@ -68,6 +70,7 @@ class StrainLaw:
     poisson: Floats
     plate_rate: Floats
     swelling: Floats | float = 0.0
+    bends: Floats | float = 0.0
     coupling: Floats | None = None
     reference: Floats | None = None
 
@@ -139,7 +142,7 @@ class Strains:
         across = twisted + law.poisson * kg * (kg - kg0)
         values = np.empty((COUNT, len(length)))
         values[0] = size / length - 1 + law.gyration * twisted / 2 - law.swelling
-        values[1:3] = direction[1:]
+        values[1:3] = direction[1:] - law.bends
         values[3], values[4], values[5], values[6] = tg - tg0, kn - kn0, kg - kg0, across * share.value
         first = np.zeros((COUNT, 6, len(length)))
         first[0, :3] = direction / length

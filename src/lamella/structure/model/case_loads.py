@@ -42,7 +42,9 @@ def case_loads(model: Model, case: LoadCase, node_masses: Floats | None = None) 
     rows = motions[: NODE_UNKNOWNS * len(structure.poses.points)].reshape(-1, NODE_UNKNOWNS)
     rows[: model.nodes] = np.where(structure.held[: model.nodes], case.settlements, 0.0)
     lines = line_weights(model)[:, None] * weight
-    warmer = np.full(len(structure.beams), model.lamellas.material.expansion * case.temperature)
+    rims = np.array([kind.material.expansion for kind in model.rims.sections], float)[model.rims.section]
+    strips = np.full(len(model.lines.length), model.lamellas.material.expansion)
+    warmer = case.temperature * np.concatenate((strips, rims))
     return replace(
         no_loads(structure),
         forces=forces,

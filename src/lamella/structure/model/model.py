@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
+from lamella.base.material import MATERIALS, Material
 from lamella.base.result import Result
 from lamella.base.wording import counted
+from lamella.hardware.beam_axes import EdgeBeamAxes
 from lamella.hardware.rules import CableRules
 from lamella.strip.lamellas import Lamellas
 from lamella.structure.actions.node_supports import NodeSupports
+from lamella.structure.beam.attachment import Attachment
 from lamella.structure.beam.beams import Beams, make_beams
-from lamella.structure.beam.cross_section import flat_strip
+from lamella.structure.beam.cross_section import CrossSection, flat_strip
 from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
+from lamella.structure.beam.relative_motion import RelativeMotion
 from lamella.structure.beam.turning import turning
 from lamella.structure.joint_springs import JointSprings, make_joint_springs, no_joint_springs
 from lamella.structure.model.block_nodes import block_places
@@ -24,6 +29,7 @@ from lamella.structure.model.divisions import Divisions
 from lamella.structure.model.layer_sections import layers_section
 from lamella.structure.model.lines import Lines
 from lamella.structure.model.node_poses import bare_nodes, joint_numbers, node_frames
+from lamella.structure.model.rim_beams import RimBeams, rim_beams
 from lamella.structure.model.rules import ModelRules
 from lamella.structure.model.slots import slotted
 from lamella.structure.node_springs import make_node_springs
@@ -41,7 +47,9 @@ class Model(Result):
     structure : Structure
         Its first nodes are those of the network, in its order; its joints are at `joint_nodes`.
     lines : Lines
-        Which element is where.
+        Where the elements of lamellas are, the first ones.
+    rims : RimBeams
+        Those of edge beams, which come after them.
     joint_nodes : (k,) int
         Node of the network of each joint; none where joints are locked.
     supports : NodeSupports
@@ -51,6 +59,7 @@ class Model(Result):
     rules: ModelRules
     structure: Structure
     lines: Lines
+    rims: RimBeams
     joint_nodes: Integers
     supports: NodeSupports
 
@@ -73,6 +82,8 @@ def make_model(
     rules: ModelRules | None = None,
     *,
     cables: CableRules | None = None,
+    edge_beams: EdgeBeamAxes | None = None,
+    materials: Mapping[str, Material] = MATERIALS,
 ) -> Model:
     """The model of a net as it was designed: curved and twisted strips, whose natural state is flat.
 
@@ -87,6 +98,10 @@ def make_model(
     rules : ModelRules, optional
     cables : CableRules, optional
         Default: no cables.
+    edge_beams : EdgeBeamAxes, optional
+        Default: none.
+    materials : mapping
+        Those of edge beams by name.
 
     Raises
     ------
@@ -108,23 +123,45 @@ def make_model(
         lines = Lines.along(lamellas, centre, divisions, poses, _at_nodes(lamellas, divisions), -1)
         kind = layers_section(lamellas.material, section)
     poses = _with_inner(poses, lines)
-    beams = make_beams(
-        lines.nodes,
-        lines.length,
-        kind,
-        natural=(0.0, -network.normal_curvature, 0.0),
-        turns=lines.turns,
-        offsets=lines.offsets,
-        joints=lines.joints,
-    )
-    if rules.slots == "reduced":
-        beams = slotted(beams, lines.crossed.sum(1).astype(float), section.height, rules.slot_width)
-    beams = turning(beams, poses)
+    rims = rim_beams(network, edge_beams, poses, rules.elements, materials)
+    poses = _with_inner(poses, rims)
+    beams = turning(_beams(lamellas, lines, rims, poses, kind, rules), poses)
     structure = _supported(lamellas, poses, beams, supports)
     structure = replace(
         structure, cables=brace(network, poses, cables, section.height), joint_springs=_springs(poses, rules)
     )
-    return Model(lamellas, rules, structure, lines, np.flatnonzero(joints >= 0) if loose else joints[:0], supports)
+    return Model(
+        lamellas, rules, structure, lines, rims, np.flatnonzero(joints >= 0) if loose else joints[:0], supports
+    )
+
+
+def _beams(
+    lamellas: Lamellas, lines: Lines, rims: RimBeams, poses: Poses, kind: CrossSection, rules: ModelRules
+) -> Beams:
+    """Elements of lamellas, whose natural state is flat, and of edge beams, which are as they were bent."""
+    of_lamellas, of_rims = len(lines.length), len(rims.nodes)
+    nodes = np.concatenate((lines.nodes, rims.nodes))
+    turns = np.concatenate((lines.turns, rims.turns))
+    offsets = np.concatenate((lines.offsets, rims.offsets))
+    joints = np.concatenate((lines.joints, np.full((of_rims, 2), -1)))
+    points, frames = Attachment(nodes, turns, offsets, joints).ends(poses)
+    motion = RelativeMotion.between(points[of_lamellas:], frames[of_lamellas:])
+    present = np.linalg.norm(motion.local_rho, axis=0)
+    beams = make_beams(
+        nodes,
+        np.concatenate((lines.length, present)),
+        (kind, *(one.section for one in rims.sections)),
+        section=np.concatenate((np.zeros(of_lamellas, np.int64), rims.section + 1)),
+        natural=(0.0, -lamellas.network.normal_curvature, 0.0),
+        turns=turns,
+        offsets=offsets,
+        joints=joints,
+    )
+    beams = beams.unstrained(poses, np.arange(len(beams)) >= of_lamellas)
+    if rules.slots == "whole":
+        return beams
+    slots = np.concatenate((lines.crossed.sum(1), np.zeros(of_rims)))
+    return slotted(beams, slots.astype(float), lamellas.section.height, rules.slot_width)
 
 
 def _at_nodes(lamellas: Lamellas, divisions: Divisions) -> Integers:
@@ -153,7 +190,8 @@ def _layer_lines(lamellas: Lamellas, divisions: Divisions, poses: Poses, rules: 
     return poses, lines
 
 
-def _with_inner(poses: Poses, lines: Lines) -> Poses:
+def _with_inner(poses: Poses, lines: Lines | RimBeams) -> Poses:
+    """The nodes that are there, and those of lines after them."""
     return replace(
         poses,
         points=np.concatenate((poses.points, lines.points)),
