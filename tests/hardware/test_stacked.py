@@ -215,6 +215,7 @@ PROJECT = {
         ({"joint": {"kind": "stacked", "block_material": "cheese"}}, "joint.block_material"),
         ({"lamella": PROJECT["lamella"] | {"layer_curves": "lamella"}}, "lamella.layer_curves"),
         ({"lamella": PROJECT["lamella"] | {"height": 2.9}}, "lamella.height"),
+        ({"structure": {}}, "structure"),
     ],
 )
 def test_what_cannot_be_stacked_is_refused_by_its_key(tables: dict, where: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
@@ -78,6 +78,14 @@ class Section:
     def own_parts(self) -> bool:
         """Whether the layers of a lamella differ, so that each is a part of its own."""
         return self.layers > 1 and (self.layer_lengths == "own" or self.layer_curves != "offset")
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """What files tell of it: the level only of stacked lamellas."""
+        told = asdict(self)
+        if not self.level:
+            del told["level"]
+        return told
 
     def __post_init__(self) -> None:
         """Raise an `InputError` for a section that is none."""

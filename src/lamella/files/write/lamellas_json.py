@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -102,7 +102,7 @@ def write_lamellas(path: Path, network: Network, lamellas: Lamellas, *, name: st
         "version": version,
         "name": one_line(name),
         "units": {"length": "m", "curvature": "1/m", "stress": "Pa"},
-        "section": asdict(lamellas.section),
+        "section": lamellas.section.record,
         "development": {"curvature": float(network.normal_curvature)},
     }
     write_whole(path, _parts(orjson.dumps(head)[:-1], network, lamellas))

@@ -16,13 +16,6 @@ from lamella.strip.unroll import development_deviation
 Rows = Iterator[tuple[str, str, str]]
 
 
-def _section(out: LamellasOutput) -> dict[str, Any]:
-    told = asdict(out.lamellas.section)
-    if not told["level"]:
-        del told["level"]
-    return told
-
-
 def _planarity(out: LamellasOutput) -> dict[str, Any]:
     score, quads = out.lamellas.planarity, np.ones(len(out.lamellas.planarity), bool)
     # the last sample of a lamella begins no quad
@@ -88,7 +81,7 @@ FIGURES: tuple[Figure[LamellasOutput], ...] = (
         "section",
         "m",
         "height, thickness, layers, offset, marks, layer_lengths, layer_curves, and of stacked lamellas level",
-        _section,
+        lambda out: out.lamellas.section.record,
         {"type": "object"},
     ),
     Figure(
