@@ -149,16 +149,18 @@ def test_quoted_figures_of_the_papers_pictures(
 
 
 def test_project_in_getting_started_is_good() -> None:
-    project, stock, joints, segments = blocks((DOCS / "getting-started.md").read_text(), "toml")
+    project, stock, joints, beams, segments = blocks((DOCS / "getting-started.md").read_text(), "toml")
     assert lamella.parse_project(tomllib.loads(project)).name == "Pavilion"
     # the tables of stock and joints go below it
-    joined = lamella.parse_project(tomllib.loads(f"{project}\n{stock}\n{joints}\n{segments}"))
+    joined = lamella.parse_project(tomllib.loads(f"{project}\n{stock}\n{joints}\n{beams}\n{segments}"))
     assert joined.segments is not None
     assert joined.stock is not None
     assert [one.kind for one in joined.stock] == ["bar", "sheet", "coil"]
     assert joined.joint is not None
     assert joined.cables is not None
     assert joined.cables.every == 2
+    assert joined.edge_beam is not None
+    assert joined.edge_beam.ground == 0
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/getting-started.md", "docs/projection.md"])
