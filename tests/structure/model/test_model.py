@@ -271,3 +271,23 @@ def test_joints_hold_as_they_are_told():
             0 if not rules else (network.node_degrees()[0] * network.node_degrees()[1] > 0).sum()
         )
     assert moved[0] > moved[1] > moved[2] > 0
+
+
+def test_stacked_lamellas_lie_beside_their_nodes():
+    """On two levels strips hang on the nodes by half of what is between them, have no slots, and are cut to r - z."""
+    network = lamella.net(lamella.Unduloid(0.8, 1.2, (0.0, 1.5)), cells=12)
+    section = Section(height=0.06, thickness=0.004, layers=1, level=0.035)
+    lamellas = network.strips(section, STEEL)
+    model = make_model(lamellas, pinned_rim(network), ModelRules(elements=2))
+    on_nodes = model.lines.nodes < model.nodes
+    offsets = model.lines.offsets[on_nodes]
+    below = (network.families == "A")[np.repeat(model.lines.lamella, 2).reshape(-1, 2)[on_nodes]]
+    assert offsets == pytest.approx(np.outer(np.where(below, -0.035, 0.035), (0, 0, 1)), abs=1e-9)
+    assert not model.lines.crossed.any()
+    curvature = -model.structure.beams.law.natural[:, 1]
+    z = np.where((network.families == "A")[model.lines.lamella], -0.035, 0.035)
+    assert curvature == pytest.approx(1 / (1 / network.mean_curvature - z), rel=1e-12)
+    loads = case_loads(model, pushed(network, (0, 0, -5.0), weight=1.0))
+    there = loaded(at_rest(model.structure, loads))
+    mass = 7850 * section.height * section.thickness * lamellas.network.lengths.sum()
+    assert there.reactions[:, 2].sum() == pytest.approx(mass * GRAVITY + 5.0 * model.nodes, rel=1e-8)

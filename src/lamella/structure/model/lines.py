@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.network.network import Network
-from lamella.strip.lamellas import Lamellas
+from lamella.strip.lamellas import Lamellas, slotted
 from lamella.strip.layers import running
 from lamella.strip.stress import shortening
 from lamella.structure.beam.poses import Poses
 from lamella.structure.model.curve_samples import CurveSamples
 from lamella.structure.model.divisions import Divisions
 from lamella.structure.model.node_poses import joint_numbers
+from lamella.structure.model.rim_beams import ON_NODE
 
 
 @dataclass(frozen=True)
@@ -85,14 +86,12 @@ class Lines:
         back = np.swapaxes(node_frames[numbers], -1, -2)
         turns = back @ frames
         offsets = np.einsum("ejkl,ejl->ejk", back, points - node_points[numbers])
-        if layer < 0:
-            # on their nodes, but for hubs
-            beside = np.zeros(own.shape, bool)
-            beside[:, [0, -1]] = divisions.hubs
-            offsets[~beside] = 0.0
+        # what is on its node up to rounding
+        offsets[np.abs(offsets).max(-1) < ON_NODE] = 0.0
         turns[own], offsets[own] = np.eye(3), 0.0
         length = _natural_lengths(lamellas, curve, divisions, layer)
         crossed = _at_ends(divisions, joint_numbers(network)[network.stop_nodes[divisions.stops]])
+        slots = slotted(network, lamellas.section)[network.stop_nodes[divisions.stops]]
         is_b = network.families[divisions.lamella] == "B"
         joints = np.where(is_b[:, None], crossed, -1) if len(poses.angles) else np.full_like(crossed, -1)
         count = divisions.elements
@@ -106,7 +105,7 @@ class Lines:
             _pairs(turns),
             _pairs(offsets),
             _pairs(joints),
-            _pairs(crossed >= 0),
+            _pairs(_at_ends(divisions, slots) > 0),
             points[own],
             frames[own],
         )
@@ -145,7 +144,7 @@ def _arc_lengths(network: Network, curve: CurveSamples, divisions: Divisions) ->
     return total
 
 
-def _at_ends(divisions: Divisions, values: Integers) -> Integers:
+def _at_ends(divisions: Divisions, values: Integers | Booleans) -> Integers:
     """Values (e, 2) at the ends of edges, -1 between them, (e, elements + 1)."""
     result = np.full(divisions.arclengths.shape, -1)
     result[:, [0, -1]] = values

@@ -140,6 +140,7 @@ def _beams(
 ) -> Beams:
     """Elements of lamellas, whose natural state is flat, and of edge beams, which are as they were bent."""
     of_lamellas, of_rims = len(lines.length), len(rims.nodes)
+    cut = lamellas.cut_curvatures[lines.lamella]
     nodes = np.concatenate((lines.nodes, rims.nodes))
     turns = np.concatenate((lines.turns, rims.turns))
     offsets = np.concatenate((lines.offsets, rims.offsets))
@@ -152,7 +153,7 @@ def _beams(
         np.concatenate((lines.length, present)),
         (kind, *(one.section for one in rims.sections)),
         section=np.concatenate((np.zeros(of_lamellas, np.int64), rims.section + 1)),
-        natural=(0.0, -lamellas.network.normal_curvature, 0.0),
+        natural=np.outer(np.concatenate((cut, np.zeros(of_rims))), (0.0, -1.0, 0.0)),
         turns=turns,
         offsets=offsets,
         joints=joints,
