@@ -101,7 +101,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "hardware": ("base", *SURFACES, "network", "strip", "cutting", "fabrication", "files", "files.write"),
     "segments": ("base", "network", "strip", "fabrication", "hardware", "files.write"),
     "solid": ("base", "network", "strip", "fabrication", "hardware"),
-    "drawings": ("base", "network", "strip", "fabrication", "hardware", "solid"),
+    "drawings": ("base", "network", "strip", "fabrication", "hardware", "segments", "solid"),
     "view": ("base", *SURFACES, "surface.boundary", "network", "strip", "fabrication", *FILES, *PROJECTIONS),
     "stages": STAGE_NEEDS,
     "stages.run": (*STAGE_NEEDS, "view", "stages", *STAGES),

@@ -11,6 +11,7 @@ from lamella.base.arrays import Floats
 from lamella.fabrication.part import Parts
 from lamella.hardware.item import Hardware, Item
 from lamella.network.network import Network
+from lamella.segments.segments import Segments
 from lamella.solid.bodies import body_name
 from lamella.solid.extrusion import between, item_solid
 from lamella.solid.solid import Solid
@@ -37,6 +38,8 @@ class Built:
         Of the strips.
     kind : str
         How lamellas are joined, `joint.kind`.
+    segments : Segments or None
+        Which parts are assembled, carried and lifted in one, where the structure is divided.
     """
 
     network: Network
@@ -47,6 +50,7 @@ class Built:
     version: str
     material: str
     kind: str = "interlocked"
+    segments: Segments | None = None
 
 
 @dataclass(frozen=True, eq=False)

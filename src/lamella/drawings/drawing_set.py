@@ -12,10 +12,11 @@ from lamella.drawings.paper import PAPERS
 from lamella.drawings.parts_list import list_pages
 from lamella.drawings.pdf import pdf_bytes
 from lamella.drawings.plate_sheets import plate_pages
+from lamella.drawings.segment_sheets import segment_pages
 from lamella.drawings.strip_sheets import strip_pages
 from lamella.drawings.terms import terms
 
-SHEETS = (overview_pages, joint_pages, hub_pages, plate_pages, strip_pages, assembly_pages, list_pages)
+SHEETS = (overview_pages, joint_pages, hub_pages, plate_pages, strip_pages, assembly_pages, segment_pages, list_pages)
 """What is drawn, in the order of the sheets."""
 
 

@@ -222,8 +222,9 @@ def _tell_cut(
 ) -> None:
     """Height of the strips, length of the bolt."""
     x, _, normal = axes
-    half = built.lamellas.section.height / 2
-    ends = centre - reach * x + np.array([[half], [-half]]) * normal
+    half, level = built.lamellas.section.height / 2, built.lamellas.section.level
+    # the A lamella's own height, on its level
+    ends = centre - reach * x + np.array([[half - level], [-half - level]]) * normal
     view.dimension(page, words, ends, -DETAIL_BORDER * 0.4)
     for item, origin, frame in _on_axis(pieces, centre, normal):
         tips = [one.low for one in item.shape if isinstance(one, Prism)]

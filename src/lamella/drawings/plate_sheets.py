@@ -28,30 +28,26 @@ FIRST_ROW, SECOND_ROW = 8.0, 14.5
 MOST_CORNERS = 7
 """Different places of corners along an axis up to which their distances are told."""
 CHAINED = 4
-"""Holes up to this number are told by their places; more are radial, at the angles of a hub's rays."""
-MOST_SHARE = 0.5
+"""Holes up to this number are told by their places, and round ones; more are slots at the angles of a hub's rays."""
+MOST_SHARE = 0.4
 """Of a sheet's width and height that one plate's place takes at most."""
 
 
 def plate_pages(built: Built, paper: Paper, words: Terms) -> Iterator[Page]:
-    """Plates in rows; every sheet with the one scale in which the largest fits half of it."""
+    """Plates in rows, each in the largest scale in which it fits its share of the sheet."""
     plates = [item for item in built.hardware if item.plate]
-    if not plates:
-        return
     left, low, right, high = paper.room
-    least_scale = _scale(plates, (right - left, high - low))
-    cells = [_cell(item, least_scale) for item in plates]
     page, x, y, row = None, left, high, 0.0
-    number = 0
-    for item, (width, height) in zip(plates, cells, strict=True):
+    for item in plates:
+        scale = _scale(item, (right - left, high - low))
+        width, height = _cell(item, scale)
         if page is not None and x + width > right + 1e-6:
             x, y, row = left, y - row, 0.0
         if page is None or y - height < low - 1e-6:
             if page is not None:
                 yield page
-            number += 1
-            page, x, y, row = Page(words("plates"), scale_text(least_scale)), left, high, 0.0
-        _draw(page, words, item, (x, y - height, x + width, y), least_scale)
+            page, x, y, row = Page(words("plates")), left, high, 0.0
+        _draw(page, words, item, (x, y - height, x + width, y), scale)
         x, row = x + width, max(row, height)
     if page is not None:
         yield page
@@ -62,13 +58,11 @@ def _size(item: Item) -> Floats:
     return np.asarray(np.ptp(outline_points(item.cut.outline, PLATE_ARCS), axis=0))
 
 
-def _scale(plates: list[Item], room: tuple[float, float]) -> float:
-    """Of all plates: the largest one fits its share of the sheet, one of middle size a place of the least size."""
-    sizes = np.array([_size(item) for item in plates])
+def _scale(item: Item, room: tuple[float, float]) -> float:
+    """Of a plate; not above 1:1."""
+    width, height = _size(item).tolist()
     share = MOST_SHARE * room[0] - 2 * AROUND, MOST_SHARE * room[1] - 2 * AROUND - HEADLINE
-    largest = standard_scale((float(sizes[:, 0].max()), float(sizes[:, 1].max())), share)
-    middle = float(np.median(sizes.max(axis=1)))
-    return max(largest, standard_scale((middle, middle), (2 * CELL - 2 * AROUND, 2 * CELL - 2 * AROUND - HEADLINE)))
+    return max(standard_scale((width, height), share), 1.0)
 
 
 def _cell(item: Item, scale: float) -> tuple[float, float]:
@@ -85,7 +79,8 @@ def _draw(page: Page, words: Terms, item: Item, room: tuple[float, float, float,
     view = View.flat((least + most) / 2, at, scale)
     page.label(shortened(item.id, right - left - 4, HEAD_EM, True), left, high - HEAD_EM, HEAD_EM, bold=True)
     count = words("one_piece") if item.quantity == 1 else words("pieces", count=item.quantity)
-    text = f"{words('thickness', value=words.mm(item.thickness))}, {item.material}, {count}"
+    thickness = words("thickness", value=words.mm(item.thickness))
+    text = f"{scale_text(scale)}, {thickness}, {item.material}, {count}"
     page.label(shortened(text, right - left - 4, NOTE_EM), left, high - HEAD_EM - 1.4 * NOTE_EM, NOTE_EM)
     page.shape([view.place(outline), *(view.place(outline_points(hole, PLATE_ARCS)) for hole in item.cut.holes)], 0.93)
     page.line(view.place(outline), "medium", closed=True)
@@ -132,13 +127,18 @@ def _holes(page: Page, words: Terms, view: View, item: Item, least: Floats, most
         left = float(corner[0])
         page.line([(x, y), (left + 1, height), (left, height)], "fine")
         page.label(text if same == 1 else f"{same}: {text}", left - 0.5, height - 0.3 * TEXT_EM, NOTE_EM, anchor="end")
-    if 0 < len(middles) <= CHAINED:
+    round_ones = all(len(hole) == 2 for hole in item.cut.holes)
+    if len(middles) and (round_ones or len(middles) <= CHAINED):
         _chain(page, words, view, middles, least, most)
 
 
 def _chain(page: Page, words: Terms, view: View, middles: Floats, least: Floats, most: Floats) -> None:
-    """Distances from the left and the lower edge to the holes and from one to the next, above and to the left."""
-    for axis, away in ((0, FIRST_ROW), (1, FIRST_ROW)):
+    """Distances from the left and the lower edge to the holes and from one to the next, above and to the left.
+
+    Where these are too near to each other for their numbers, the places are listed from the edge.
+    """
+    listed = []
+    for axis, name in enumerate("xy"):
         stops = np.unique(np.round(middles[:, axis], 7))
         if len(stops) == 1 and abs(stops[0] - (least[axis] + most[axis]) / 2) < 1e-7:
             continue
@@ -146,8 +146,16 @@ def _chain(page: Page, words: Terms, view: View, middles: Floats, least: Floats,
         fixed = most[1] if axis == 0 else least[0]
         ends = np.full((len(stops), 2), fixed)
         ends[:, axis] = stops
+        told = [text_width(words.mm(step), TEXT_EM) + 2 for step in np.diff(stops).tolist()]
+        if (np.diff(stops) * view.mm < told).any():
+            places = ", ".join(words.mm(place) for place in (stops[1:] - stops[0]).tolist())
+            listed.append(f"{name}: {places}")
+            continue
         for first, second in pairwise(ends):
-            view.dimension(page, words, np.array([first, second]), away)
+            view.dimension(page, words, np.array([first, second]), FIRST_ROW)
+    if listed:
+        x, y = view.place(np.array([least[0], least[1]])).tolist()
+        page.label(words("holes", places="; ".join(listed)), x, y - AROUND + 1, NOTE_EM)
 
 
 def _hole_size(hole: Floats) -> tuple[float, float]:

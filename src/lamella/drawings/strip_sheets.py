@@ -33,7 +33,7 @@ STRIP_LIMIT = 1_000
 
 @dataclass(frozen=True)
 class Feature:
-    """A slot or hole: what its column in the table says."""
+    """A slot, hole or mark of a node: what its column in the table says."""
 
     station: float
     number: str
@@ -84,7 +84,7 @@ def strip_pages(built: Built, paper: Paper, words: Terms) -> Iterator[Page]:
 
 
 def _features(built: Built, part: Part, words: Terms) -> list[Feature]:
-    """Slots and holes in the order of their stations."""
+    """Slots, holes and marks of nodes in the order of their stations."""
     network = built.network
     stops = slice(int(network.stop_offsets[part.lamella]), int(network.stop_offsets[part.lamella + 1]))
     row = max(part.layer - 1, 0)
@@ -96,6 +96,14 @@ def _features(built: Built, part: Part, words: Terms) -> list[Feature]:
         name = f"{words('slot_short')}{number}"
         cells = (name, str(node), words.mm(slot - part.start), "", words.mm(part.slot_width))
         found.append(Feature(slot - part.start, name, cells))
+    # marks of nodes that no slot is beside: on the rim, and of lamellas that are laid upon each other
+    reach = built.lamellas.section.layers * built.lamellas.section.offset
+    marks = [s for s in part.nodes.tolist() if part.start <= s <= part.end]
+    marks = [s for s in marks if not len(part.slots) or np.abs(part.slots - s).min() > reach]
+    for number, station in enumerate(marks, 1):
+        node = int(nodes[np.argmin(np.round(np.abs(places - station), 9))])
+        name = f"{words('node_short')}{number}"
+        found.append(Feature(station - part.start, name, (name, str(node), words.mm(station - part.start), "", "")))
     for number, (station, height, diameter) in enumerate(part.holes.tolist(), 1):
         name = f"{words('hole_short')}{number}"
         cells = (name, "", words.mm(station - part.start), words.mm(height), f"Ø{words.mm(diameter)}")
@@ -141,7 +149,7 @@ def _draw(
 
 
 def _numbers(page: Page, view: View, part: Part, features: list[Feature], right: float) -> None:
-    """Numbers of the slots over the strip, as far as they fit side by side."""
+    """Numbers of the slots and of nodes without one over the strip, as far as they fit side by side."""
     slots = [one for one in features if one.cells[1]]
     if not slots:
         return

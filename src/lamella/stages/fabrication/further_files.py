@@ -73,5 +73,6 @@ def _pdf(out: FabricationOutput, up: Upstream, drawings: DrawingsTable) -> bytes
         __version__,
         project.lamella.material,
         project.joint.kind if project.joint is not None else "interlocked",
+        out.segments if out.segments.segments else None,
     )
     return drawings_pdf(built, paper=drawings.paper, language=drawings.language)
