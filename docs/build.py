@@ -20,6 +20,7 @@ from lamella.fabrication.schedule import COLUMNS as PART_LIST
 from lamella.files.write.lamellas_json import COLUMNS, lamellas_schema
 from lamella.files.write.network_json import network_schema
 from lamella.files.write.optimise_json import optimise_schema
+from lamella.files.write.sizing_csv import COLUMNS as SIZING_LIST
 from lamella.hardware.lists import COLUMNS as HARDWARE_LIST
 from lamella.project.list_tables import LIST_TABLES
 from lamella.project.load_tables import RegionTable
@@ -266,6 +267,7 @@ def files_page() -> str:
         "part list": _list_table(PART_LIST),
         "hardware list": _list_table(HARDWARE_LIST),
         "segment list": _list_table(SEGMENT_LIST),
+        "sizing list": _list_table(SIZING_LIST),
     }
     for name, table in tables.items():
         before, rest = page.split(f"<!-- {name}: made by docs/build.py -->\n")

@@ -25,6 +25,9 @@ class Material:
     source : str
     expansion : float
         Strain by one kelvin, 1/K (along the grain for timber).
+    k_mod, gamma_m : float or None
+        Modification factor for duration of load and moisture, and partial factor of the material (EN 1995-1-1);
+        with either of them strengths are k_mod f / gamma_M.
 
     Examples
     --------
@@ -41,6 +44,18 @@ class Material:
     shear_strength: float | None = None
     source: str = "project file"
     expansion: float = 12e-6
+    k_mod: float | None = None
+    gamma_m: float | None = None
+
+    @property
+    def has_design_values(self) -> bool:
+        """Whether strengths are design values."""
+        return self.k_mod is not None or self.gamma_m is not None
+
+    @property
+    def design_factor(self) -> float:
+        """Design strength over strength; 1 without factors."""
+        return (1.0 if self.k_mod is None else self.k_mod) / (1.0 if self.gamma_m is None else self.gamma_m)
 
 
 _STAINLESS = "EN 1993-1-4 table 2.1 (cold-rolled strip), density and expansion EN 10088-1"

@@ -15,4 +15,18 @@ class MaterialTable(Table):
     shear_strength: float | None = number(
         "Limit of the shear stress where it is not that of von Mises (timber).", "Pa", ge=1e3, le=1e11, default=None
     )
+    k_mod: float | None = number(
+        "Modification factor for duration of load and moisture (timber, EN 1995-1-1 table 3.1).",
+        "",
+        gt=0,
+        le=1.5,
+        default=None,
+    )
+    gamma_m: float | None = number(
+        "Partial factor of the material; with it or k_mod utilisations are of design strengths.",
+        "",
+        ge=1,
+        le=10,
+        default=None,
+    )
     expansion: float = number("Strain by one kelvin.", "1/K", ge=0, le=1e-3, default=12e-6)

@@ -29,6 +29,7 @@ from lamella.project.list_tables import LIST_TABLES
 from lamella.project.load_tables import ACTION_TABLES, CombinationTable, LoadTable, check_actions
 from lamella.project.material_table import MaterialTable
 from lamella.project.segments_table import SegmentsTable
+from lamella.project.sizing_table import SizingTable
 from lamella.project.stock_table import StockTable, check_stock
 from lamella.project.structure_tables import StructureTable, SupportTable, check_list, list_key
 from lamella.project.surface_tables import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
@@ -274,6 +275,7 @@ FURTHER_TABLES: dict[str, type[Table]] = {
     "cables": CablesTable,
     "edge_beam": EdgeBeamTable,
     "drawings": DrawingsTable,
+    "sizing": SizingTable,
     "segments": SegmentsTable,
     "structure": StructureTable,
     "files": FilesTable,
@@ -298,6 +300,7 @@ class Project(Table):
     fabrication: FabricationTable = FabricationTable()
     joint: JointTable | None = Field(default=None, description=(JointTable.__doc__ or "").strip())
     cables: CablesTable | None = Field(default=None, description=(CablesTable.__doc__ or "").strip())
+    sizing: SizingTable | None = Field(default=None, description=(SizingTable.__doc__ or "").strip())
     segments: SegmentsTable | None = Field(default=None, description=(SegmentsTable.__doc__ or "").partition("\n")[0])
     stock: Annotated[tuple[StockTable, ...], Field(strict=False)] | None = list_key(StockTable)
     edge_beam: EdgeBeamTable | None = Field(default=None, description=(EdgeBeamTable.__doc__ or "").strip())

@@ -287,7 +287,7 @@ def make_lamellas(
     _check_level(section)
     network = on_levels(network, section.level)
     held, tg = section.marks == "arc-length", network.sample_darboux.tg
-    s = _stresses(network, section, material)
+    s = stresses_of(network, section, material)
 
     lengthening = np.zeros_like(tg) if held else shortening(section.height, tg)
     stations = network.stop_arclengths + at_stops(network, running(network, lengthening))
@@ -325,20 +325,38 @@ def _planarity(network: Network, height: float) -> Floats:
 
 def largest_utilisation(network: Network, section: Section, material: Material) -> float:
     """The largest utilisation of strips that `make_lamellas` would make, from their stresses alone."""
-    return float(_stresses(on_levels(network, section.level), section, material).utilisation.max())
+    return float(stresses_of(on_levels(network, section.level), section, material).utilisation.max())
 
 
-def _stresses(network: Network, section: Section, material: Material) -> Stresses:
-    """Stresses at the samples of a network."""
+def stresses_of(
+    network: Network,
+    section: Section,
+    material: Material,
+    *,
+    height: Floats | None = None,
+    thickness: Floats | None = None,
+    offset: Floats | None = None,
+) -> Stresses:
+    """Stresses at the samples of a network.
+
+    Parameters
+    ----------
+    network : Network
+    section : Section
+    material : Material
+    height, thickness, offset : (k,), optional
+        Instead of the section's, m.
+    """
     kn, kg, tg = network.sample_darboux
     cut = np.repeat(cut_curvatures(network, section.level), np.diff(network.sample_offsets))
-    beside = np.abs(section.layer_offsets).max() * np.abs(network.sample_slopes)
+    farthest = np.abs(section.layer_offsets).max() if offset is None else (section.layers - 1) / 2 * offset
+    beside = farthest * np.abs(network.sample_slopes)
     # what layers cut to their own curvature are cut to
     off = kn - cut if section.layer_curves != "cut" or not section.level else np.zeros_like(kn)
     return stresses(
         material,
-        section.height,
-        section.thickness,
+        section.height if height is None else height,
+        section.thickness if thickness is None else thickness,
         curvature_error=off,
         layer_curvature=beside if section.layer_curves == "offset" else np.zeros_like(kn),
         kg=kg,

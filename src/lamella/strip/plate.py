@@ -54,13 +54,15 @@ class Plate:
     Parameters
     ----------
     material : Material
-    height, thickness : float
+    height, thickness : float or (k,)
         m.
     kg, tg : (k,)
         1/m.
     """
 
-    def __init__(self, material: Material, height: float, thickness: float, kg: Floats, tg: Floats) -> None:
+    def __init__(
+        self, material: Material, height: float | Floats, thickness: float | Floats, kg: Floats, tg: Floats
+    ) -> None:
         self._nu, self._kg, self._tg = poisson_ratio(material), np.abs(kg), tg
         # beta h / 2
         rate = np.sqrt(3 * (1 - self._nu**2)) / thickness

@@ -19,17 +19,17 @@ from lamella.strip.plate import Plate, poisson_ratio
 HEIGHTS = (0.0, 0.5, 1.0)
 
 
-def bending(material: Material, thickness: float, kg: Floats) -> Floats:
+def bending(material: Material, thickness: float | Floats, kg: Floats) -> Floats:
     """Weak-axis bending stress at the faces, E t |kg| / 2, Pa."""
     return np.asarray(material.youngs_modulus * thickness * np.abs(kg) / 2)
 
 
-def strong_axis(material: Material, height: float, curvature_error: Floats) -> Floats:
+def strong_axis(material: Material, height: float | Floats, curvature_error: Floats) -> Floats:
     """Strong-axis bending stress at the edges, E h |kn - 1/r| / 2, Pa; zero by design."""
     return np.asarray(material.youngs_modulus * height * np.abs(curvature_error) / 2)
 
 
-def torsion(material: Material, thickness: float, tg: Floats) -> Floats:
+def torsion(material: Material, thickness: float | Floats, tg: Floats) -> Floats:
     """St-Venant shear stress at the faces, G t |tg|, Pa."""
     return np.asarray(material.shear_modulus * thickness * np.abs(tg))
 
@@ -56,8 +56,8 @@ class Stresses:
 
 def stresses(
     material: Material,
-    height: float,
-    thickness: float,
+    height: float | Floats,
+    thickness: float | Floats,
     *,
     curvature_error: Floats,
     layer_curvature: Floats,
@@ -71,7 +71,7 @@ def stresses(
     Parameters
     ----------
     material : Material
-    height, thickness : float
+    height, thickness : float or (k,)
         m.
     curvature_error : (k,)
         kn - 1/r of the centre line, 1/m.
@@ -90,14 +90,16 @@ def stresses(
         Von Mises stress of plane stress, the worst of both faces at `HEIGHTS`: membrane stress of the helix with its
         plate action (`lamella.strip.plate`), bending of the plate along and across, strong-axis bending, and the
         St-Venant shear of the long faces everywhere. Utilisation is von Mises over strength, or, where the
-        material has a shear strength of its own, the worse of normal and shear stress over their strengths.
+        material has a shear strength of its own, the worse of normal and shear stress over their strengths; with
+        k_mod or gamma_M both together over design strengths.
         The net section's is that at a slot, see `net_section`.
     """
     result = Stresses(*np.empty((len(fields(Stresses)), len(kg))))
     everywhere = np.broadcast_to(axial, kg.shape)
     for block in blocks(len(kg)):
         own = _Along(curvature_error[block], layer_curvature[block], kg[block], tg[block], everywhere[block])
-        part = _stresses(material, height, thickness, own, held)
+        h, t = (one[block] if isinstance(one, np.ndarray) else one for one in (height, thickness))
+        part = _stresses(material, h, t, own, held)
         for one in fields(Stresses):
             getattr(result, one.name)[block] = getattr(part, one.name)
     return result
@@ -113,7 +115,9 @@ class _Along(NamedTuple):
     axial: Floats
 
 
-def _stresses(material: Material, height: float, thickness: float, along: _Along, held: bool) -> Stresses:
+def _stresses(
+    material: Material, height: float | Floats, thickness: float | Floats, along: _Along, held: bool
+) -> Stresses:
     kg, tg = along.kg, along.tg
     weak, shear = bending(material, thickness, kg), torsion(material, thickness, tg)
     layer = strong_axis(material, height, along.layer_curvature)
@@ -142,8 +146,8 @@ def _stresses(material: Material, height: float, thickness: float, along: _Along
         centre,
         -centre if held else np.zeros_like(weak),
         mises,
-        _utilisation(material, mises, normal, shear),
-        _utilisation(material, np.sqrt(net**2 + 3 * shear**2), net, shear),
+        _utilisation(material, mises, normal, shear, height / thickness),
+        _utilisation(material, np.sqrt(net**2 + 3 * shear**2), net, shear, height / thickness),
     )
 
 
@@ -168,7 +172,22 @@ def net_section(bending: Floats, tension: Floats, strong: Floats) -> Floats:
     return np.asarray(bending + 2 * np.abs(tension) + 4 * strong)
 
 
-def _utilisation(material: Material, mises: Floats, normal: Floats, shear: Floats) -> Floats:
+def torsion_shape(slenderness: float | Floats) -> Floats:
+    """Factor k_shape of a rectangle's torsion strength, of height over thickness (EN 1995-1-1:2004/A2:2014, 6.1.8)."""
+    return np.minimum(1 + 0.05 * np.asarray(slenderness), 1.3)
+
+
+def _utilisation(
+    material: Material, mises: Floats, normal: Floats, shear: Floats, slenderness: float | Floats
+) -> Floats:
+    """Of metals von Mises; of other materials the worse of normal and shear, of timber by design values both together.
+
+    With k_mod and gamma_M strengths are k_mod f / gamma_M, torsion's k_shape times as large (EN 1995-1-1, 2.4.1 and
+    6.1.8); bending and torsion together are judged by the sum of their squares, which EN 1995-1-1 leaves open.
+    """
     if material.shear_strength is None:
-        return np.asarray(mises / material.strength)
-    return np.maximum(normal / material.strength, shear / material.shear_strength)
+        return np.asarray(mises / (material.strength * material.design_factor))
+    bent, sheared = normal / material.strength, shear / material.shear_strength
+    if not material.has_design_values:
+        return np.maximum(bent, sheared)
+    return np.asarray(np.hypot(bent, sheared / torsion_shape(slenderness)) / material.design_factor)

@@ -11,6 +11,7 @@ import numpy as np
 from lamella.stages.figure import ABSENT, NUMBER, Figure, line, list_of, nullable, record
 from lamella.stages.lamellas.developable import MEANING, SCHEMA, developable_figure
 from lamella.stages.lamellas.output import LamellasOutput
+from lamella.stages.lamellas.sizing_figure import SIZING
 from lamella.strip.unroll import development_deviation
 
 Rows = Iterator[tuple[str, str, str]]
@@ -196,6 +197,7 @@ FIGURES: tuple[Figure[LamellasOutput], ...] = (
         NUMBER,
         always=False,
     ),
+    SIZING,
 )
 
 REPORT = (
@@ -214,5 +216,6 @@ REPORT = (
     "utilisation_net_section_max",
     "layer_distances",
     "developable",
+    "sizing",
 )
 """Order of the report's lines."""

@@ -10,6 +10,7 @@ from lamella.base.material import Material
 from lamella.network.network import Network
 from lamella.strip.developable_strips import DevelopableStrips
 from lamella.strip.lamellas import Lamellas
+from lamella.strip.sizing import Sizing
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,8 @@ class LamellasOutput:
         What made the net, as `lamella.stages.network.stage.NetworkOutput.made`.
     developable : DevelopableStrips or None
         Along the same lamellas, where the project asks for them.
+    sizing : Sizing or None
+        Largest measures, where the project asks for them.
     """
 
     network: Network
@@ -34,6 +37,7 @@ class LamellasOutput:
     material: Material
     made: Any
     developable: DevelopableStrips | None = None
+    sizing: Sizing | None = None
 
     @cached_property
     def corner_stresses(self) -> dict[str, Any]:

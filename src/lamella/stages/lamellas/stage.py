@@ -9,7 +9,7 @@ from typing import Any
 from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
-from lamella.base.progress import Progress
+from lamella.base.progress import Progress, Report
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
 from lamella.stages.keys import keys
@@ -24,6 +24,7 @@ from lamella.stages.surface.surface_of_table import make_surface
 from lamella.strip.developable_strips import developable_strips
 from lamella.strip.lamellas import Lamellas, largest_utilisation, make_lamellas
 from lamella.strip.layer_curves import check_layer_curves
+from lamella.strip.sizing import largest_measures
 from lamella.surface.surface import Surface
 
 
@@ -35,12 +36,13 @@ class LamellasStage(Stage[LamellasOutput]):
     writes = (
         ("lamellas.json", "curvatures and stresses along every lamella, node marks of the flat strips"),
         ("developable.csv", 'where `lamella.strips = "developable"`: the rulings of developable strips'),
+        ("sizing.csv", "where `[sizing]` is given: how thick, high and far apart the strips of each lamella may be"),
     )
     figures = FIGURES
     report = ("Lamellas", REPORT)
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
-        return ("lamella", "materials", "joint")
+        return ("lamella", "materials", "sizing", "joint")
 
     def warned_by(self, project: Project) -> tuple[str, ...]:
         return ("fabrication",)
@@ -66,8 +68,13 @@ class LamellasStage(Stage[LamellasOutput]):
         with keys("lamella", section="lamella", network="network"):
             lamellas = strips_of(up.project, up.surface)(net.network)
         developable = developable_strips(lamellas) if up.project.lamella.strips == "developable" else None
-        material = up.project.lamella.material, up.project.material()
-        return LamellasOutput(lamellas.network, lamellas, *material, net.made, developable)
+        table, material = up.project.sizing, up.project.material()
+        sizing = None
+        if table is not None:
+            progress(Report.step("largest measures that stay elastic"))
+            sizing = largest_measures(lamellas.network, lamellas.section, material, table.safety)
+        named = up.project.lamella.material, material
+        return LamellasOutput(lamellas.network, lamellas, *named, net.made, developable, sizing)
 
     def result(self, figures: Mapping[str, Any], out: LamellasOutput) -> str:
         return f"{figures['total_length']:.4g} m of lamella, utilisation up to {figures['utilisation_max']:.2f}"
@@ -104,6 +111,11 @@ class LamellasStage(Stage[LamellasOutput]):
 
             made = out.developable
             yield File("developable.csv", lambda path: write_developable(path, network, out.lamellas, made, **signed))
+        if out.sizing is not None:
+            from lamella.files.write.sizing_csv import write_sizing
+
+            sizing = out.sizing
+            yield File("sizing.csv", lambda path: write_sizing(path, sizing, network, out.lamellas, **signed))
 
 
 def strips_of(project: Project, surface: Surface[Any]) -> partial[Lamellas]:
