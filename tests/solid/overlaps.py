@@ -56,14 +56,18 @@ class Structure:
         """Numbers of the solids whose names begin so."""
         return [k for k, name in enumerate(self.names) if name.startswith(start)]
 
+    def solid(self, number: int) -> manifold3d.Manifold:
+        """The library's solid of a number."""
+        if number not in self._made:
+            made = self._fine[number]() if number in self._fine else self.solids[number]
+            self._made[number] = manifold(made)
+        return self._made[number]
+
     def overlaps(self, place: Floats) -> list[tuple[str, str, float]]:
         """Pairs that overlap around a place, and by what volume, mm3."""
         near = np.flatnonzero(((self.low < place + AROUND) & (self.high > place - AROUND)).all(axis=1)).tolist()
         box = manifold3d.Manifold.cube((4 * AROUND,) * 3, True).translate(tuple(place.tolist()))
-        for k in near:
-            if k not in self._made:
-                self._made[k] = manifold(self._fine[k]() if k in self._fine else self.solids[k])
-        cut = [self._made[k] ^ box for k in near]
+        cut = [self.solid(k) ^ box for k in near]
         found = []
         for a in range(len(near)):
             for b in range(a + 1, len(near)):
