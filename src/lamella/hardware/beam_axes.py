@@ -283,17 +283,21 @@ def _met(
     along, arclengths, folds = np.empty((3, len(some)))
     heights = np.array([-0.5, 0.5]) * section.height
     beyond = np.full(len(some), np.inf)
-    for k, (end, number) in enumerate(zip(some.tolist(), of_axis.tolist(), strict=True)):
-        lamella, last, axis = int(found.lamellas[end]), bool(found.last[end]), axes[number]
-        maps = [LayerMap.of(lamellas, lamella, row) for row in range(section.layers)]
-        middle = LayerMap.of(lamellas, lamella, section.layers // 2, by_arclength=True)
-        other = LayerMap.of(lamellas, lamella, (section.layers - 1) // 2, by_arclength=True)
+    maps: list[LayerMap] = []
+    inner: list[LayerMap] = []
+    # both ends of a lamella one after the other
+    order = np.argsort(found.lamellas[some], kind="stable").tolist()
+    for place, k in enumerate(order):
+        end = int(some[k])
+        lamella, last, axis = int(found.lamellas[end]), bool(found.last[end]), axes[int(of_axis[k])]
+        if not place or lamella != found.lamellas[some[order[place - 1]]]:
+            maps, inner = _maps(lamellas, lamella)
         start = np.array([network.stop_arclengths[found.stops[end]]])
         begin = found.along[[end]]
-        met = [_meets(one, axis.piece, start, begin, np.zeros(1), axis.middle) for one in (middle, other)]
+        met = [_meets(one, axis.piece, start, begin, np.zeros(1), axis.middle) for one in inner]
         arclengths[k] = sum(float(station[0]) for station, _ in met) / 2
         along[k] = sum(float(place[0]) for _, place in met) / 2
-        _, ahead, normal, _ = middle.frames(arclengths[[k]])
+        _, ahead, normal, _ = inner[0].frames(arclengths[[k]])
         beam = axis.piece.frames(along[[k]]).ahead[0]
         flat = ahead[0] - (ahead[0] @ normal[0]) * normal[0]
         folds[k] = np.arccos(min(abs(float(flat @ beam)) / float(np.linalg.norm(flat)), 1.0))
@@ -305,6 +309,19 @@ def _met(
     ends = BeamEnds(found.lamellas[some], found.last[some], of_axis, along, arclengths, folds, found.inner[some])
     _check_slots(lamellas, axes, ends, beyond)
     return ends, Trims(trims)
+
+
+def _maps(lamellas: Lamellas, lamella: int) -> tuple[list[LayerMap], list[LayerMap]]:
+    """All layers of a lamella by their stations; the two innermost ones, or the middle one twice, by arc length."""
+    network, layers = lamellas.network, lamellas.section.layers
+    span = slice(int(network.sample_offsets[lamella]), int(network.sample_offsets[lamella + 1]))
+    maps = [LayerMap.of(lamellas, lamella, row) for row in range(layers)]
+    inner = []
+    for row in (layers // 2, (layers - 1) // 2):
+        # layers that are alike have the same stations
+        alike = np.array_equal(lamellas.layers.stations[row, span], network.sample_arclengths[span])
+        inner.append(maps[row] if alike else LayerMap.of(lamellas, lamella, row, by_arclength=True))
+    return maps, inner
 
 
 def _meets(

@@ -36,7 +36,7 @@ FOLD_STEP = 0.5
 CONTACT = 5e-5
 """m; between a beam and a plate on it as they are drawn: straight pieces of a bent beam leave it by about as much."""
 
-SCREW_ROUNDS = 4
+SCREW_ROUNDS = 3
 """Steps for the place of the screws: each leaves the square of the error over the lamella's radius."""
 
 
@@ -163,8 +163,7 @@ class _OnAxis:
         levels = level_heights(lamellas.network, section.level)[ends.lamellas]
         screw = ends.arclengths - senses * first
         for _ in range(SCREW_ROUNDS):
-            near, normal = _middles(lamellas, ends.lamellas, screw)
-            far, _ = _middles(lamellas, ends.lamellas, screw - senses * pitch)
+            near, far, normal = _screw_places(lamellas, ends.lamellas, screw, screw - senses * pitch)
             x = _unit(near - far)
             y = _unit(normal - np.einsum("ij,ij->i", normal, x)[:, None] * x)
             z = np.cross(x, y)
@@ -276,12 +275,13 @@ def _packers(lamellas: Lamellas, joints: JointRules, gaps: list[tuple[Floats, Pl
     return filling("end-packer", "packer", joints, length, height, widths, places, (-spread, spread))
 
 
-def _middles(lamellas: Lamellas, owner: Integers, arclengths: Floats) -> tuple[Floats, Floats]:
-    """Points halfway between the two innermost layers, m, and normals there, (e, 3) each."""
+def _screw_places(lamellas: Lamellas, owner: Integers, outer: Floats, inner: Floats) -> tuple[Floats, Floats, Floats]:
+    """Points halfway between the two innermost layers, m, at both screws, and normals at the outer one, (e, 3) each."""
     zero = np.zeros(1)
-    faces = LayerFaces.of(lamellas, owner, arclengths, zero, zero)
+    faces = LayerFaces.of(lamellas, np.tile(owner, 2), np.concatenate([outer, inner]), zero, zero)
     half = lamellas.section.layers // 2
-    return (faces.middles[half - 1] + faces.middles[half]) / 2, faces.normals
+    middles = (faces.middles[half - 1] + faces.middles[half]) / 2
+    return middles[: len(owner)], middles[len(owner) :], faces.normals[: len(owner)]
 
 
 def _touching(axis: BeamAxis, ends: BeamEnds, towards: Floats, away: Floats, height: float, levels: Floats) -> Floats:
