@@ -4,29 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
-from io import BytesIO
 from pathlib import Path
 
-import xlsxwriter
-
-from lamella.base.wording import one_line
 from lamella.fabrication.part import Parts
 from lamella.fabrication.schedule import COLUMNS as PART_COLUMNS
 from lamella.fabrication.schedule import schedule_rows
 from lamella.fabrication.sheet import Nesting
 from lamella.files.whole import write_whole
+from lamella.files.write.xlsx_pages import add_page, new_book
 from lamella.hardware.item import Hardware
 from lamella.hardware.lists import COLUMNS as HARDWARE_COLUMNS
 from lamella.hardware.rules import MM
 from lamella.network.network import Network
 from lamella.strip.lamellas import Lamellas
-
-NOON = datetime(2000, 1, 1, 12, tzinfo=UTC).replace(tzinfo=None)
-"""When a workbook says it was made: the time of a run would make equal ones differ."""
-
-CHARACTERS = 60
-"""Widest column."""
 
 CUT_PLAN = ("sheet", "length_mm", "width_mm", "part", "copy", "x_mm", "y_mm", "turned_deg")
 TOTALS = ("what", "pieces", "different", "mass_kg")
@@ -83,52 +73,16 @@ def write_workbook(
         Where the file cannot be written whole.
     """
     rows = list(schedule_rows(parts, nesting, network, lamellas))
-    content = BytesIO()
-    book = xlsxwriter.Workbook(content, {"in_memory": True})
-    book.set_properties({"title": one_line(name), "comments": f"lamella {one_line(version)}", "created": NOON})
+    book, content = new_book(name, version)
     items = ([column.value(item) for column in HARDWARE_COLUMNS] for item in hardware)
-    _page(book, "strips", [column.name for column in PART_COLUMNS], rows)
-    _page(book, "hardware", [column.name for column in HARDWARE_COLUMNS], items)
-    _page(book, "cut plan", CUT_PLAN, _cut_plan(parts, nesting))
-    _page(book, "totals", TOTALS, _totals(parts, rows, hardware))
+    add_page(book, "strips", [column.name for column in PART_COLUMNS], rows)
+    add_page(book, "hardware", [column.name for column in HARDWARE_COLUMNS], items)
+    add_page(book, "cut plan", CUT_PLAN, _cut_plan(parts, nesting))
+    add_page(book, "totals", TOTALS, _totals(parts, rows, hardware))
     for page in further:
-        _page(book, page.title, page.header, page.rows)
+        add_page(book, page.title, page.header, page.rows)
     book.close()
     write_whole(path, content.getvalue())
-
-
-def _page(book: xlsxwriter.Workbook, title: str, header: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-    page = book.add_worksheet(title)
-    bold = book.add_format({"bold": True})
-    page.write_row(0, 0, header, bold)
-    page.freeze_panes(1, 1)
-    width = [len(text) for text in header]
-    for k, row in enumerate(rows):
-        for column, value in enumerate(row):
-            number = _number(value)
-            if value == "":
-                continue
-            if number is None:
-                page.write_string(k + 1, column, str(value))
-            else:
-                page.write_number(k + 1, column, number)
-            width[column] = min(max(width[column], len(str(value))), CHARACTERS)
-    for column, characters in enumerate(width):
-        page.set_column(column, column, characters + 1)
-
-
-def _number(value: object) -> float | None:
-    """A number that stands in a cell; None for text."""
-    if isinstance(value, int | float):
-        return value
-    text = str(value)
-    # ids such as "1E5" are text: numbers begin with a digit or a sign and have no letter but an exponent's
-    if not text or text[0] not in "-0123456789" or any(c.isalpha() and c != "e" for c in text):
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        return None
 
 
 def _cut_plan(parts: Parts, nesting: Nesting) -> Iterable[Sequence[object]]:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from lamella import __version__
+from lamella.base.drawing_origin import drawing_origin
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress
@@ -18,6 +20,9 @@ from lamella.stages.structure.figures import FIGURES, REPORT
 from lamella.stages.structure.output import StructureOutput
 from lamella.surface.surface import Surface
 
+if TYPE_CHECKING:
+    from lamella.structure.analysis.analyse import Analysis
+
 
 class StructureStage(Stage[StructureOutput]):
     """See `lamella.stages.stage.Stage`."""
@@ -29,6 +34,13 @@ class StructureStage(Stage[StructureOutput]):
             "structure/results.json",
             "where `[structure]`, `[[support]]` or `[[load]]` is given: what each case does to every node",
         ),
+        (
+            "structure/nodes.csv, structure/elements.csv, structure/supports.csv, structure/cables.csv, "
+            "structure/results.xlsx",
+            "displacements, forces and stresses of all cases, and a workbook of the largest",
+        ),
+        ("structure/curvatures.csv", "what the strips of each element were bent and twisted by"),
+        ("structure/opensees.py", "the model as a script for OpenSees"),
     )
     figures = FIGURES
     report = ("Structure", REPORT)
@@ -91,3 +103,21 @@ class StructureStage(Stage[StructureOutput]):
 
         signed: Any = {"name": up.project.name, "version": __version__}
         yield File("structure/results.json", lambda path: write_results(path, out.analysis, **signed))
+        yield from _exports(out.analysis, signed | {"origin": drawing_origin(up.surface)})
+
+
+def _exports(analysis: Analysis, signed: Any) -> Iterator[File]:
+    """Tables, and the model in the formats of other programs."""
+    from lamella.structure.export.imposed_curvatures import write_imposed_curvatures
+    from lamella.structure.export.opensees import write_opensees
+    from lamella.structure.export.result_tables import CSV_TABLES, write_result_book, write_result_table
+
+    model, cases = analysis.model, analysis.cases
+    for table in CSV_TABLES:
+        yield File(f"structure/{table}.csv", partial(write_result_table, table=table, cases=cases, **signed))
+    yield File("structure/results.xlsx", lambda path: write_result_book(path, cases, **signed))
+    yield File("structure/curvatures.csv", lambda path: write_imposed_curvatures(path, model, **signed))
+    loads = {case.name: case.equilibrium.loads for case in cases[1:]}
+    yield File(
+        "structure/opensees.py", lambda path: write_opensees(path, model.structure, loads, model.nodes, **signed)
+    )

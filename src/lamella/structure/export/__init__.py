@@ -1,0 +1,1 @@
+"""The structural model in the formats of other programs."""
