@@ -10,13 +10,14 @@ curvature kn and twisted by tg.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.message import Message
 from lamella.base.wording import counted
+from lamella.fabrication.flat import outline_points
 from lamella.hardware.base_plates import base_plates
 from lamella.hardware.beam_axes import LEAST_ANGLE, BeamAxis, EdgeBeamAxes
 from lamella.hardware.bores import Bores
@@ -34,6 +35,9 @@ TWIST_SAG = 4e-5
 
 PIECES_MAX = 4000
 """Straight pieces of a beam at most."""
+
+CONGRUENT = 1e-4
+"""m; segments that differ by less anywhere are made alike."""
 
 LEAST_SEGMENT = 0.05
 """m; what is shorter is no segment."""
@@ -75,10 +79,11 @@ def edge_beams(lamellas: Lamellas, found: EdgeBeamAxes, joints: JointRules, half
     """
     network = lamellas.network
     plates = end_plates(lamellas, found, joints, half_joint)
-    items: list[Item] = []
+    segments: list[Item] = []
     for number, axis in enumerate(found.axes):
         places = np.sort(plates.ends.along[plates.ends.axes == number])
-        items += _segments(axis, places, found.axes)
+        segments += _segments(axis, places, found.axes)
+    items = _alike(segments)
     items += plates.items
     items += base_plates(found.axes)
     keep_clear = np.zeros(len(network.stop_nodes))
@@ -119,8 +124,43 @@ def _segments(axis: BeamAxis, places: Floats, axes: tuple[BeamAxis, ...]) -> lis
         if high - low < LEAST_SEGMENT:
             continue
         mitred = (number == 0 and not axis.piece.closed, number == len(bounds) - 2 and not axis.piece.closed)
-        items.append(_segment(axis, low, high, mitred, axes, f"{axis.name}.{number + 1}"))
+        items.append(_segment(axis, low, high, mitred, axes))
     return items
+
+
+def _alike(segments: list[Item]) -> list[Item]:
+    """Segments that are congruent within `CONGRUENT` as one item."""
+    kinds: list[list[Item]] = []
+    for item in segments:
+        kind = next((one for one in kinds if _congruent(one[0], item)), None)
+        if kind is None:
+            kinds.append([item])
+        else:
+            kind.append(item)
+    found = []
+    for number, kind in enumerate(kinds):
+        places = Places(
+            np.concatenate([item.places.origins for item in kind]),
+            np.concatenate([item.places.axes for item in kind]),
+            tuple(label for item in kind for label in item.places.labels),
+        )
+        found.append(replace(kind[0], id=f"edge-{number + 1}", places=places))
+    return found
+
+
+def _congruent(one: Item, other: Item) -> bool:
+    if (one.material, one.description.split(",")[0]) != (other.material, other.description.split(",")[0]):
+        return False
+    (a,), (b,) = one.shape, other.shape
+    if not (isinstance(a, Sweep) and isinstance(b, Sweep)) or len(a.points) != len(b.points):
+        return False
+    if (a.cuts is None) != (b.cuts is None) or np.abs(a.points - b.points).max() > CONGRUENT:
+        return False
+    turned = np.abs(a.up - b.up).max()
+    if a.cuts is not None and b.cuts is not None:
+        turned = max(turned, np.abs(a.cuts - b.cuts).max())
+    # over a cross section
+    return bool(turned * np.abs(outline_points(a.outline)).max() < CONGRUENT)
 
 
 def _extent(axis: BeamAxis, axes: tuple[BeamAxis, ...]) -> tuple[float, float]:
@@ -186,9 +226,8 @@ def _widest(places: Floats, length: float) -> float:
     return float(places[k] + gaps[k] / 2)
 
 
-def _segment(
-    axis: BeamAxis, low: float, high: float, mitred: tuple[bool, bool], axes: tuple[BeamAxis, ...], name: str
-) -> Item:
+def _segment(axis: BeamAxis, low: float, high: float, mitred: tuple[bool, bool], axes: tuple[BeamAxis, ...]) -> Item:
+    """One segment in axes of its own: x along it in its middle, y along the surface's normal there."""
     curve = axis.piece.frames(np.linspace(low, high, 257))
     middle = curve.beside(axis.distance)
     length = float(np.linalg.norm(np.diff(middle, axis=0), axis=1).sum())
@@ -202,12 +241,21 @@ def _segment(
     frames = axis.piece.frames(np.linspace(low, high, pieces + 1))
     points = frames.beside(axis.distance)
     cuts = _cuts(axis, frames.ahead, mitred, axes)
-    shape = Sweep(axis.beam.outline, points, frames.up, axis.beam.holes, cuts)
-    here = f"boundary {axis.piece.loop + 1} from {MM * low:.0f} to {MM * high:.0f} mm"
-    places = Places(np.zeros((1, 3)), np.eye(3)[None], (here,))
+    here = axis.piece.frames(np.array([(low + high) / 2]))
+    origin = here.beside(axis.distance)[0]
+    own = np.stack([here.ahead[0], here.up[0], here.out[0]])
+    shape = Sweep(
+        axis.beam.outline,
+        (points - origin) @ own.T,
+        frames.up @ own.T,
+        axis.beam.holes,
+        None if cuts is None else cuts @ own.T,
+    )
+    label = f"side {axis.piece.number + 1} of boundary {axis.piece.loop + 1}, {MM * low:.0f} to {MM * high:.0f} mm"
+    places = Places(origin[None], own[None], (label,))
     text = f"{axis.beam.name}, {MM * shape.length:.1f} mm, {_bent_to(axis, kn, kg, tg)}"
     rules = axis.rules
-    return Item(name, "edge_beam", text, rules.material, rules.density, (shape,), places, length=shape.length)
+    return Item("edge", "edge_beam", text, rules.material, rules.density, (shape,), places, length=shape.length)
 
 
 def _bend(points: Floats, up: Floats) -> tuple[Floats, Floats, Floats]:
