@@ -149,10 +149,11 @@ def test_quoted_figures_of_the_papers_pictures(
 
 
 def test_project_in_getting_started_is_good() -> None:
-    project, stock, joints, beams, segments = blocks((DOCS / "getting-started.md").read_text(), "toml")
+    project, *further = blocks((DOCS / "getting-started.md").read_text(), "toml")
     assert lamella.parse_project(tomllib.loads(project)).name == "Pavilion"
-    # the tables of stock and joints go below it
-    joined = lamella.parse_project(tomllib.loads(f"{project}\n{stock}\n{joints}\n{beams}\n{segments}"))
+    # the tables of stock, joints and what follows go below it
+    joined = lamella.parse_project(tomllib.loads("\n".join((project, *further))))
+    assert joined.erection is not None
     assert joined.segments is not None
     assert joined.stock is not None
     assert [one.kind for one in joined.stock] == ["bar", "sheet", "coil"]

@@ -64,7 +64,8 @@ def test_run_help_lists_every_stage_and_its_files(capsys: pytest.CaptureFixture[
     told = capsys.readouterr().out
     every, *stages = re.split(r"^  (\w+)(?:, after \w+)?$", told, flags=re.M)
     listed = dict(zip(stages[::2], stages[1::2], strict=True))
-    assert list(listed) == [*FILES, "structure"]
+    assert list(listed) == [*FILES, "erection", "structure"]
+    assert "erection/states.json" in listed.pop("erection")
     assert "structure/results.json" in listed.pop("structure")
     for stage, files in FILES.items():
         for file in files:

@@ -23,6 +23,7 @@ from lamella.project.boundary_tables import (
 from lamella.project.csv_table import CsvTable
 from lamella.project.drawings_table import DrawingsTable
 from lamella.project.edge_beam_table import EdgeBeamTable
+from lamella.project.erection_table import ErectionTable
 from lamella.project.fabrication_table import FabricationTable
 from lamella.project.joint_table import CablesTable, JointTable
 from lamella.project.list_tables import LIST_TABLES
@@ -53,6 +54,7 @@ __all__ = [
     "CircleTable",
     "DrawingsTable",
     "EdgeBeamTable",
+    "ErectionTable",
     "FabricationTable",
     "FilesTable",
     "FormFoundTable",
@@ -277,6 +279,7 @@ FURTHER_TABLES: dict[str, type[Table]] = {
     "drawings": DrawingsTable,
     "sizing": SizingTable,
     "segments": SegmentsTable,
+    "erection": ErectionTable,
     "structure": StructureTable,
     "files": FilesTable,
 }
@@ -304,6 +307,7 @@ class Project(Table):
     segments: SegmentsTable | None = Field(default=None, description=(SegmentsTable.__doc__ or "").partition("\n")[0])
     stock: Annotated[tuple[StockTable, ...], Field(strict=False)] | None = list_key(StockTable)
     edge_beam: EdgeBeamTable | None = Field(default=None, description=(EdgeBeamTable.__doc__ or "").strip())
+    erection: ErectionTable | None = Field(default=None, description=(ErectionTable.__doc__ or "").strip())
     structure: StructureTable | None = Field(default=None, description=(StructureTable.__doc__ or "").strip())
     support: Annotated[tuple[SupportTable, ...], Field(strict=False)] | None = list_key(SupportTable)
     load: Annotated[tuple[LoadTable, ...], Field(strict=False)] | None = list_key(LoadTable)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from lamella.stages.erection.stage import ErectionStage
 from lamella.stages.fabrication.stage import FabricationStage
 from lamella.stages.lamellas.stage import LamellasStage
 from lamella.stages.network.stage import NetworkStage
@@ -16,6 +17,7 @@ STAGES: tuple[Stage[Any], ...] = (
     NetworkStage(),
     LamellasStage(),
     FabricationStage(),
+    ErectionStage(),
     StructureStage(),
 )
 

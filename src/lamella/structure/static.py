@@ -16,6 +16,7 @@ from lamella.structure.equilibrium import Equilibrium
 from lamella.structure.loads import Loads, no_loads
 from lamella.structure.mechanism import refuse_mechanism
 from lamella.structure.newton import StepError, step
+from lamella.structure.pseudo_transient import settled
 from lamella.structure.structure import Structure
 
 # iterations of a step after which the next one may be twice as long
@@ -39,7 +40,11 @@ def at_rest(structure: Structure, loads: Loads) -> Equilibrium:
     try:
         return step(own, LoadControl(0.0))
     except StepError:
+        pass
+    try:
         return released(structure, loads)
+    except (StepError, InputError):
+        return settled(own, LoadControl(0.0), LoadControl(0.0))
 
 
 def equilibrium(structure: Structure, loads: Loads, *, factor: float = 1.0, steps: int = 1) -> Equilibrium:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -119,6 +119,16 @@ class Structure(Lean):
         nodes = len(self.poses.points)
         springs = [self.node_springs.unknowns(), self.joint_springs.unknowns(nodes)]
         return [*self.beams.unknowns(nodes), self.cables.unknowns(nodes), *springs]
+
+    def on_springs(self, node_springs: NodeSprings, joint_springs: JointSprings) -> Structure:
+        """The same on other springs. What is computed once for all is kept where they are on the same unknowns."""
+        other = replace(self, node_springs=node_springs, joint_springs=joint_springs)
+        same_nodes = np.array_equal(node_springs.nodes, self.node_springs.nodes)
+        if same_nodes and np.array_equal(joint_springs.joints, self.joint_springs.joints):
+            for name in ("held_unknowns", "free", "unknowns", "pattern"):
+                if name in vars(self):
+                    vars(other)[name] = vars(self)[name]
+        return other
 
     def at(self, poses: Poses, beams: BeamState, *, cable_swelling: float = 0.0) -> StructureState:
         """In a pose, with its beams in it, and cables longer by a strain."""

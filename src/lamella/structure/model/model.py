@@ -125,7 +125,9 @@ def make_model(
     poses = _with_inner(poses, lines)
     rims = rim_beams(network, edge_beams, poses, rules.elements, materials)
     poses = _with_inner(poses, rims)
-    beams = turning(_beams(lamellas, lines, rims, poses, kind, rules), poses)
+    beams = _beams(lamellas, lines, rims, poses, kind, rules)
+    if rules.near_design:
+        beams = turning(beams, poses)
     structure = _supported(lamellas, poses, beams, supports)
     structure = replace(
         structure, cables=brace(network, poses, cables, section.height), joint_springs=_springs(poses, rules)

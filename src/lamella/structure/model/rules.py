@@ -43,6 +43,9 @@ class ModelRules:
         Around singular nodes, m: strips begin there on a rigid hub.
     block_spacing : float
         Largest distance of shear blocks, m; 0: none.
+    near_design : bool
+        Whether elements are exact to first order about the designed shape (`lamella.structure.beam.turning`). What
+        untwists them, as laying a net flat does, is for elements without.
     """
 
     elements: int = 4
@@ -54,6 +57,7 @@ class ModelRules:
     slot_width: float = 0.0
     hub_radius: float = 0.0
     block_spacing: float = 0.0
+    near_design: bool = True
 
     def __post_init__(self) -> None:
         """Raise an `InputError` for rules that are none."""

@@ -1,0 +1,136 @@
+"""A net laid flat, and driven from there to its designed shape."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from lamella.base.arrays import Floats
+from lamella.base.errors import InputError
+from lamella.base.progress import Progress, Report, silent
+from lamella.erection.driver import Driver
+from lamella.erection.erection import Erection
+from lamella.erection.flat_shape import FlatShape
+from lamella.erection.lone_joints import lone_joints
+from lamella.erection.path import driven_states, joint_moment, turned_states
+from lamella.erection.release import released
+from lamella.erection.rigid_motion import moved_onto
+from lamella.erection.state import State
+from lamella.erection.warnings import erection_warnings
+from lamella.strip.lamellas import Lamellas
+from lamella.structure.actions.node_supports import NodeSupports
+from lamella.structure.beam.poses import NODE_UNKNOWNS
+from lamella.structure.equilibrium import Equilibrium
+from lamella.structure.loads import no_loads
+from lamella.structure.model.model import Model, make_model
+from lamella.structure.model.rules import ModelRules
+from lamella.structure.stability import is_stable
+from lamella.structure.static import at_rest
+from lamella.structure.structure import Structure
+
+# rad: a net of which a joint, let go, turns farther is folding up
+FOLDING = np.radians(75.0)
+# of the net's size: farther from the locked shape the driver alone does not hold the net in it
+LET_GO = 0.1
+
+
+def erect(lamellas: Lamellas, *, states: int = 20, elements: int = 2, progress: Progress = silent) -> Erection:
+    """The flat state of a net and its way to the designed shape.
+
+    One number drives all joints, their angles weighted by what they have to turn. Where that alone would let the net
+    go elsewhere, each joint is turned to its own angle instead.
+
+    Parameters
+    ----------
+    lamellas : Lamellas
+    states : int
+        Both ends counted.
+    elements : int
+        Beam elements in a cell edge.
+    progress : callable
+
+    Raises
+    ------
+    InputError
+        A net without joints; one that does not come to rest; fewer than two states.
+    """
+    if states < 2:
+        raise InputError(f"states = {states}", "both ends are states: at least 2", "states")
+    model = _free_model(lamellas, elements)
+    free = model.structure
+    held = replace(free, held_joints=np.ones_like(free.held_joints))
+    progress(Report.step("joints locked: how far it springs back"))
+    locked = at_rest(held, no_loads(held))
+    progress(Report.step("joints let go: how it lies flat"))
+    lying = _lying(locked, free, progress)
+    driver = Driver.between(lying.poses, locked.poses)
+    progress(Report.step("driven from the designed shape to flat"))
+    told, each_joint = _states(model, locked, lying, driver, states, progress)
+    off = moved_onto(locked.poses.points[: model.nodes], free.poses.points[: model.nodes])
+    result = Erection(
+        model=model,
+        driver=driver,
+        each_joint=each_joint,
+        states=told,
+        flat=FlatShape.of(model, lying.poses),
+        held=bool(lying.loads.forces.any()),
+        hold=abs(lying.factor) * float(np.abs(lying.loads.forces).max(initial=0.0)),
+        locked=State.of(model, locked, 1.0, 0.0, stable=locked.negative == 0),
+        spring_back=float(off.max()),
+        warnings=(),
+    )
+    return replace(result, warnings=tuple(erection_warnings(result)))
+
+
+def _lying(locked: Equilibrium, free: Structure, progress: Progress) -> Equilibrium:
+    """The flat state; with the mean of the joints' angles kept where the net would fold up."""
+    alone = released(locked, free, progress=progress)
+    if np.abs(alone.poses.angles).max(initial=0.0) < FOLDING:
+        return alone
+    loose = ~free.held_joints
+    weights = np.zeros(free.poses.unknowns)
+    weights[NODE_UNKNOWNS * len(free.poses.points) :][loose] = 1 / np.sqrt(loose.sum())
+    return released(locked, free, weights, progress)
+
+
+def _states(
+    model: Model, locked: Equilibrium, lying: Equilibrium, driver: Driver, states: int, progress: Progress
+) -> tuple[tuple[State, ...], bool]:
+    """From flat to designed; and whether each joint had to be turned."""
+
+    def driven(found: Iterable[Equilibrium]) -> list[State]:
+        return [
+            State.of(model, one, driver.share(one.poses), one.factor, stable=is_stable(one, driver.weights))
+            for one in found
+        ]
+
+    if not lying.loads.forces.any():
+        way = driven_states(locked, model.structure, driver, states, progress)
+        first = next(way)
+        nodes = slice(0, model.nodes)
+        away = float(moved_onto(first.poses.points[nodes], locked.poses.points[nodes]).max())
+        if away <= LET_GO * model.structure.size:
+            return tuple(driven([first, *way])[::-1]), False
+    turned = [
+        State.of(model, one, driver.share(one.poses), joint_moment(one, driver), stable=one.negative == 0)
+        for one in turned_states(locked, driver, states, progress)
+    ]
+    return tuple(turned[::-1]), True
+
+
+def _free_model(lamellas: Lamellas, elements: int) -> Model:
+    """A body free in space, its joints free but for those of lamellas that nothing else holds."""
+    network = lamellas.network
+    points: Floats = network.node_points
+    reached = np.unique(network.stop_nodes)
+    middle = reached[np.linalg.norm(points[reached] - points[reached].mean(0), axis=1).argmin()]
+    fixed = np.zeros((len(points), NODE_UNKNOWNS), bool)
+    fixed[middle] = True
+    supports = NodeSupports(fixed, np.zeros((len(points), NODE_UNKNOWNS)))
+    rules = ModelRules(elements=elements, joints="hinged", slots="whole", near_design=False)
+    model = make_model(lamellas, supports, rules)
+    if not len(model.joint_nodes):
+        raise InputError("no lamella crosses another one", "a net that is erected has joints", "lamellas")
+    return replace(model, structure=replace(model.structure, held_joints=lone_joints(network, model.joint_nodes)))

@@ -1,0 +1,66 @@
+"""States of a net from flat to designed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lamella.base.message import Message
+from lamella.base.result import Result
+from lamella.erection.driver import Driver
+from lamella.erection.flat_shape import FlatShape
+from lamella.erection.slot_room import slot_width_needed
+from lamella.erection.state import State
+from lamella.structure.model.model import Model
+
+# deg off square: no slot is wide enough to turn farther
+NEARLY_STRAIGHT = 89.0
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Erection(Result):
+    """States of a net from flat to designed.
+
+    Attributes
+    ----------
+    model : Model
+        With free joints; one node in its middle is held, so that the net is a body free in space.
+    driver : Driver
+    each_joint : bool
+        Whether each joint is turned to its own angle, because the driver alone would not lead the net.
+    states : tuple of State
+        From flat to designed, at equal shares of the way.
+    flat : FlatShape
+    held : bool
+        Whether the mean of the joints' angles is held in the flat state, because the net would fold up without.
+    hold : float
+        Moment on each joint that does so, N m.
+    locked : State
+        All joints at their designed angles, and nothing else holding the net.
+    spring_back : float
+        Largest distance of a node of that state from where it was designed, after the best rigid motion, m.
+    warnings : tuple of Message
+    """
+
+    model: Model
+    driver: Driver
+    each_joint: bool
+    states: tuple[State, ...]
+    flat: FlatShape
+    held: bool
+    hold: float
+    locked: State
+    spring_back: float
+    warnings: tuple[Message, ...]
+
+    @property
+    def slot_width_needed(self) -> float:
+        """In which the joints turn as far as they do, m."""
+        thickness = self.model.lamellas.section.thickness
+        farthest = max(float(np.abs(90 - state.angles).max()) for state in self.states)
+        return float(slot_width_needed(np.radians(min(farthest, NEARLY_STRAIGHT)), thickness))
+
+    def _line(self) -> str:
+        lies = "planar" if self.flat.planar else f"on a sphere of {self.flat.radius:.4g} m"
+        return f"flat state {lies}, {len(self.states)} states, springs back by {self.spring_back:.3g} m"

@@ -1,0 +1,24 @@
+"""Angles between the lamellas of a net at its joints."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lamella.base.arrays import Floats, Integers
+from lamella.network.network import Network
+
+
+def designed_angles(network: Network, nodes: Integers) -> Floats:
+    """From the A to the B lamella about the node's normal, rad, 0 to pi, at nodes (k,) where one crosses the other.
+
+    Lamellas have no direction: a straight angle more is the same.
+    """
+    sample = network.sample_offsets[network.stop_owner] + network.stop_samples
+    is_a = network.families[network.stop_owner] == "A"
+    tangents = np.zeros((2, len(network.node_points), 3))
+    for family, stops in enumerate((np.flatnonzero(is_a)[::-1], np.flatnonzero(~is_a)[::-1])):
+        # the first stop of a family counts, as for the frames of the structural model
+        tangents[family, network.stop_nodes[stops]] = network.sample_tangents[sample[stops]]
+    a, b = tangents[:, nodes]
+    sine = (network.node_normals[nodes] * np.cross(a, b)).sum(1)
+    return np.asarray(np.arctan2(sine, (a * b).sum(1)) % np.pi)

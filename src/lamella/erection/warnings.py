@@ -1,0 +1,96 @@
+"""What a user should know of a net's way from flat to designed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lamella.base.message import Message
+from lamella.erection.slot_room import largest_turn
+
+if TYPE_CHECKING:
+    from lamella.erection.erection import Erection
+
+# deg: a joint that has closed to less than this from straight is folded up, layers and all
+FOLDED_ANGLE = 15.0
+
+
+def erection_warnings(erection: Erection) -> Iterator[Message]:
+    """Of the states alone."""
+    flat, first = erection.flat, erection.states[0]
+    ids, node = erection.model.lamellas.network.ids, erection.model.joint_nodes
+    # angles are told without jumps: a joint that turns past straight has more than 180 or less than 0
+    left = np.minimum(first.angles, 180 - first.angles)
+    folded = int((left < FOLDED_ANGLE).sum())
+    if folded:
+        worst = int(left.argmin())
+        yield Message(
+            "folds_up",
+            f"let go, the net folds up: the joint at node {node[worst]} goes to {first.angles[worst]:.1f} deg, and "
+            f"{folded} of {len(node)} joints to less than {FOLDED_ANGLE:g} deg from straight; hold it on the floor, or "
+            "divide it into segments",
+        )
+    if len(flat.overlaps):
+        one, other = (ids[i] for i in flat.overlaps[0].tolist())
+        yield Message(
+            "flat_overlaps",
+            f"laid flat, {len(flat.overlaps)} pairs of lamellas cross that are not joined, {one} and {other} for one: "
+            "the net cannot be laid flat in one piece; divide it into segments",
+        )
+    if erection.held:
+        yield Message(
+            "flat_is_held",
+            f"let go, the net folds up; it lies flat with the mean of its joints' angles held, by {erection.hold:.2f} "
+            "N m on each joint: brace a cell on the floor",
+        )
+    if not flat.lies:
+        network = erection.model.lamellas.network
+        around = network.closed.any() or any(abs(p.a_cells) + abs(p.b_cells) > 0.5 for p in network.periods)
+        why = "the net closes around, and has to be cut along a lamella" if around else "divide it into segments"
+        shape = "a plane" if flat.planar else f"a sphere of radius {flat.radius:.3g} m"
+        yield Message(
+            "not_flat", f"let go, the net does not lie flat: nodes are up to {flat.off:.3g} m off {shape}; {why}"
+        )
+    if erection.each_joint:
+        yield Message(
+            "each_joint_turned",
+            "one moment shared by all joints does not lead the net to its designed shape: the states have each joint "
+            "turned to its own angle, in proportion",
+        )
+    loose = [state for state in erection.states if not state.stable]
+    if loose:
+        yield Message(
+            "way_unstable",
+            f"{len(loose)} of {len(erection.states)} states are unstable with their joints held, at "
+            f"{100 * loose[0].share:.0f} % of the way for one: the net snaps there",
+        )
+
+
+def slot_warning(erection: Erection, slot_width: float) -> Iterator[Message]:
+    """Of slots that are too narrow for a state.
+
+    Parameters
+    ----------
+    erection : Erection
+    slot_width : float
+        m.
+    """
+    thickness = erection.model.lamellas.section.thickness
+    if slot_width < thickness:
+        return
+    room = np.degrees(largest_turn(slot_width, thickness))
+    for state in erection.states:
+        off = np.abs(90 - state.angles)
+        tight = int((off > room).sum())
+        if tight:
+            worst = int(off.argmax())
+            yield Message(
+                "slots_too_narrow",
+                f"slots {1e3 * slot_width:.3g} mm wide let a joint turn by {room:.3g} deg off square; at "
+                f"{100 * state.share:.0f} % of the way {tight} of {len(off)} joints are beyond that, the one at node "
+                f"{erection.model.joint_nodes[worst]} by {off[worst]:.3g} deg; "
+                f"{1e3 * erection.slot_width_needed:.3g} mm would do for all states",
+            )
+            return

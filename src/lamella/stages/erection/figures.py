@@ -1,0 +1,203 @@
+"""Figures of the erection: key, unit, meaning and value of each, and how the report shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from lamella.base.wording import counted
+from lamella.erection.erection import Erection
+from lamella.stages.figure import FLAG, INTEGER, NUMBER, PAIR, Figure, line, nullable, record
+
+Rows = Iterator[tuple[str, str, str]]
+
+
+def _flat(out: Erection) -> dict[str, Any]:
+    flat, angles = out.flat, out.states[0].angles
+    return {
+        "height": flat.height,
+        "radius": None if flat.planar else flat.radius,
+        "off": flat.off,
+        "lies": flat.lies,
+        "size": list(flat.size),
+        "joint_angle_min_deg": float(angles.min()),
+        "joint_angle_max_deg": float(angles.max()),
+        "overlaps": len(flat.overlaps),
+    }
+
+
+FLAT = record(
+    height=NUMBER,
+    radius=nullable(NUMBER),
+    off=NUMBER,
+    lies=FLAG,
+    size=PAIR,
+    joint_angle_min_deg=NUMBER,
+    joint_angle_max_deg=NUMBER,
+    overlaps=INTEGER,
+)
+
+
+def _flat_rows(value: dict[str, Any], summary: dict[str, Any]) -> Rows:
+    length, width = value["size"]
+    yield "Flat state", f"{length:.2f} x {width:.2f}", "m"
+    if value["radius"] is not None:
+        yield "Lies on a sphere of radius", f"{value['radius']:.4g}", "m"
+    yield "Joint angles, flat", f"{value['joint_angle_min_deg']:.1f} to {value['joint_angle_max_deg']:.1f}", "°"
+    if value["overlaps"]:
+        yield "Overlaps, flat", counted(value["overlaps"], "pair"), "of lamellas"
+
+
+def _gap(out: Erection) -> float | None:
+    return min((state.stiffness_gap for state in out.states if state.stiffness_gap is not None), default=None)
+
+
+def _leaves_plane(out: Erection) -> float | None:
+    """By the square of the height over the plane, which grows steadily where the net begins to leave it."""
+    if not out.flat.planar:
+        return None
+    size = out.model.structure.size
+    heights = np.array([state.height for state in out.states])
+    shares = np.array([state.share for state in out.states])
+    up = np.flatnonzero(heights > 1e-6 * size)
+    if not len(up) or up[0] == 0:
+        return None
+    first = int(up[0])
+    if first + 1 < len(shares):
+        one, two = heights[first] ** 2, heights[first + 1] ** 2
+        reached = shares[first] - one * (shares[first + 1] - shares[first]) / (two - one)
+        return float(np.clip(reached, shares[first - 1], shares[first]))
+    return float(shares[first - 1])
+
+
+def _largest(name: str) -> Any:
+    return lambda out: max(getattr(state, name) for state in out.states)
+
+
+FIGURES: tuple[Figure[Erection], ...] = (
+    Figure(
+        "flat",
+        "",
+        "the flat state: `height` over its plane of least squares (m), `radius` of its sphere (m; null where strips "
+        "are straight), `off`, how far nodes are off that plane or sphere (m), `lies`, whether that is no more than "
+        "strips give, `size` of the floor it takes (m), smallest and largest joint angle from A to B "
+        "(`joint_angle_min_deg`, `joint_angle_max_deg`), `overlaps`, pairs of lamellas that cross without a joint",
+        _flat,
+        FLAT,
+        rows=_flat_rows,
+    ),
+    Figure("states", "", "states of the way", lambda out: len(out.states), INTEGER),
+    Figure(
+        "energy_flat",
+        "J",
+        "elastic energy of all layers, flat",
+        lambda out: out.states[0].energy,
+        NUMBER,
+        rows=line("Elastic energy, flat", "J"),
+    ),
+    Figure(
+        "energy_designed",
+        "J",
+        "the same, joints locked in the designed shape",
+        lambda out: out.locked.energy,
+        NUMBER,
+        rows=line("Elastic energy, designed", "J"),
+    ),
+    Figure(
+        "driver_max",
+        "N m",
+        "largest moment of the driver: each joint is turned by as much as its weight says, the sum of their squares 1",
+        _largest("driver"),
+        NUMBER,
+        rows=line("Driver, at most", "N m"),
+    ),
+    Figure(
+        "joint_moment_max",
+        "N m",
+        "largest moment that a joint is driven by",
+        lambda out: max(abs(state.driver) for state in out.states) * float(np.abs(out.driver.weights).max()),
+        NUMBER,
+        rows=line("Moment on a joint, at most", "N m"),
+    ),
+    Figure(
+        "strong_axis_stress_max",
+        "Pa",
+        "largest bending stress about the strong axis on the way",
+        _largest("strong_axis"),
+        NUMBER,
+        rows=line("Strong-axis stress on the way", "MPa", scale=1e-6),
+    ),
+    Figure(
+        "von_mises_max",
+        "Pa",
+        "largest equivalent stress on the way",
+        _largest("von_mises"),
+        NUMBER,
+        rows=line("Equivalent stress on the way", "MPa", scale=1e-6),
+    ),
+    Figure(
+        "leaves_plane",
+        "",
+        "share of the way at which the net leaves its plane; null where it never lies in one",
+        _leaves_plane,
+        nullable(NUMBER),
+    ),
+    Figure(
+        "stiffness_gap_min",
+        "",
+        "smallest 1 - k1/k2 of the stable states, k the stiffness of the easiest and the "
+        "second easiest motion with free joints: near 0 the net opens in a second way; null where no state is stable "
+        "without the driver",
+        _gap,
+        nullable(NUMBER),
+        rows=line("Stiffness gap, at least", form=".2f"),
+    ),
+    Figure(
+        "slot_width_needed",
+        "m",
+        "width of slots in which the joints turn as far as they do",
+        lambda out: out.slot_width_needed,
+        NUMBER,
+        rows=line("Slots needed on the way", "mm", scale=1e3, form=".2f"),
+    ),
+    Figure(
+        "spring_back",
+        "m",
+        "how far a node is from where it was designed where joints are locked and nothing else "
+        "holds the net, after the best rigid motion",
+        lambda out: out.spring_back,
+        NUMBER,
+        rows=line("Springs back by", "m", form=".3f"),
+    ),
+    Figure(
+        "each_joint",
+        "",
+        "whether each joint is turned to its own angle on the way, as one moment shared by all would "
+        "not lead the net to its designed shape",
+        lambda out: out.each_joint,
+        FLAG,
+    ),
+    Figure(
+        "hold",
+        "N m",
+        "moment on each joint that keeps the net from folding up in the flat state; 0 where it lies by itself",
+        lambda out: out.hold,
+        NUMBER,
+    ),
+)
+
+REPORT = (
+    "flat",
+    "energy_flat",
+    "energy_designed",
+    "driver_max",
+    "joint_moment_max",
+    "strong_axis_stress_max",
+    "von_mises_max",
+    "stiffness_gap_min",
+    "slot_width_needed",
+    "spring_back",
+)
+"""Order of the report's lines."""

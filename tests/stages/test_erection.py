@@ -1,0 +1,138 @@
+"""The stage "erection": its files, its figures, and what is refused."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+
+import lamella
+from lamella import InputError
+from validation.measure_network import measure
+
+PROJECT = {
+    "name": "Patch",
+    "surface": {"kind": "enneper", "order": 2, "radius": 0.6, "scale": 3.0},
+    "network": {"spacing": 0.6},
+    "lamella": {"layers": 2},
+    "erection": {"states": 4, "elements": 3},
+}
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("erection") / "out"
+    lamella.write(lamella.compute(lamella.parse_project(PROJECT), until="erection"), folder)
+    return folder
+
+
+def test_states_are_networks(run: Path) -> None:
+    """The ruler measures every state from its points: edges keep their lengths, the flat one is planar."""
+    network = json.loads((run / "network.json").read_text())
+    states = json.loads((run / "erection" / "states.json").read_text())
+    assert states["schema"] == "lamella/erection/1"
+    assert [state["share"] for state in states["states"]] == pytest.approx([0, 1 / 3, 2 / 3, 1], abs=1e-9)
+    angles = []
+    for state in states["states"]:
+        laid = network | {
+            "nodes": [
+                node | {"point": point, "normal": normal}
+                for node, point, normal in zip(network["nodes"], state["nodes"], state["normals"], strict=True)
+            ],
+            "lamellas": [
+                one | {"centreline": other["centreline"], "normals": other["normals"]}
+                for one, other in zip(network["lamellas"], state["lamellas"], strict=True)
+            ],
+        }
+        assert [one["id"] for one in network["lamellas"]] == [one["id"] for one in state["lamellas"]]
+        figures = measure(laid)
+        # two elements of the helix between the samples: nodes lie on the lamellas
+        assert figures["node_off_centreline_max"] < 1e-9
+        assert figures["node_arclength_error_max"] < 2e-4
+        kinds = [node["kind"] for node in network["nodes"]]
+        told = [a for a, kind in zip(state["joint_angles_deg"], kinds, strict=True) if kind == "regular"]
+        # the ruler's tangents are rough where curvature jumps from element to element
+        mean = np.mean([abs(a - 90) for a in told])
+        assert mean == pytest.approx(figures["node_angle_deviation_mean_deg"], abs=0.4)
+        angles.append(max(abs(a - 90) for a in told))
+    assert np.ptp(np.array(states["states"][0]["nodes"])[:, 2]) < 1e-9
+    assert angles == sorted(angles, reverse=True)
+
+
+def test_path(run: Path) -> None:
+    """A row a node and state, the same places to 0.01 mm."""
+    states = json.loads((run / "erection" / "states.json").read_text())["states"]
+    lines = (run / "erection" / "path.csv").read_text().splitlines()
+    rows = list(csv.DictReader(lines[1:]))
+    assert len(rows) == sum(len(state["nodes"]) for state in states)
+    places = np.array([[float(row[key]) for key in ("x_m", "y_m", "z_m")] for row in rows])
+    np.testing.assert_allclose(places, np.concatenate([state["nodes"] for state in states]), atol=5.1e-6)
+
+
+def test_assembly_drawing(run: Path) -> None:
+    """Every layer of every lamella once, as long and as thick as it is; no errors of the file."""
+    drawing = ezdxf.readfile(run / "erection" / "flat.dxf")
+    assert not drawing.audit().errors
+    network = json.loads((run / "network.json").read_text())
+    layers = [entity for entity in drawing.modelspace() if entity.dxf.layer == "MARK"]
+    lengths = {one["id"]: one["node_arclengths"][-1] for one in network["lamellas"]}
+    found: dict[str, list[float]] = {}
+    for entity in layers:
+        corners = np.array([point[:2] for point in entity.get_points()])
+        half = len(corners) // 2
+        tag = entity.get_xdata("LAMELLA")[0].value
+        one, other = corners[:half], corners[half:][::-1]
+        assert np.linalg.norm(one - other, axis=1) == pytest.approx(1.5, abs=1e-6)
+        found.setdefault(tag, []).append(np.linalg.norm(np.diff((one + other) / 2, axis=0), axis=1).sum() / 1000)
+    assert set(found) == set(lengths)
+    for tag, both in found.items():
+        assert len(both) == 2
+        # layers to either side are longer and shorter than the centre line, which drawn in chords loses little
+        assert np.mean(both) == pytest.approx(lengths[tag], rel=2e-3)
+
+
+def test_figures(run: Path) -> None:
+    figures = json.loads((run / "summary.json").read_text())["erection"]
+    assert figures["flat"]["lies"]
+    assert figures["flat"]["height"] == 0
+    assert figures["flat"]["overlaps"] == 0
+    assert figures["flat"]["joint_angle_min_deg"] + figures["flat"]["joint_angle_max_deg"] == pytest.approx(
+        180, abs=1e-5
+    )
+    off = np.radians(figures["flat"]["joint_angle_max_deg"] - 90)
+    assert figures["slot_width_needed"] == pytest.approx(0.0015 * (1 + np.sin(off)) / np.cos(off), rel=1e-9)
+    assert 0 < figures["energy_flat"] < figures["energy_designed"]
+    assert 0.3 < figures["leaves_plane"] < 1
+
+
+def test_same_bytes_twice(run: Path, tmp_path: Path) -> None:
+    lamella.write(lamella.compute(lamella.parse_project(PROJECT), until="erection"), tmp_path / "out")
+    for name in ("states.json", "path.csv", "flat.dxf"):
+        assert (tmp_path / "out" / "erection" / name).read_bytes() == (run / "erection" / name).read_bytes()
+
+
+def test_no_stage_without_its_table() -> None:
+    project = lamella.parse_project({key: value for key, value in PROJECT.items() if key != "erection"})
+    assert lamella.compute(project).summary["erection"] is None
+    with pytest.raises(InputError) as caught:
+        lamella.compute(project, until="erection")
+    assert caught.value.where == "erection"
+
+
+@pytest.mark.parametrize(("key", "value"), [("states", 1), ("elements", 0), ("driver", "wind")])
+def test_refused(key: str, value: object) -> None:
+    with pytest.raises(InputError) as caught:
+        lamella.parse_project(PROJECT | {"erection": {key: value}})
+    assert caught.value.where == f"erection.{key}"
+
+
+def test_narrow_slots_are_named() -> None:
+    """A slot as wide as the strip lets nothing turn: the joint and the width that is needed are told."""
+    project = lamella.parse_project(PROJECT | {"fabrication": {"slot_width": 0.0016}})
+    results = lamella.compute(project, until="erection")
+    (warning,) = [text for text in results.summary["warnings"] if text.key == "slots_too_narrow"]
+    assert f"{1e3 * results.summary['erection']['slot_width_needed']:.3g} mm" in warning
