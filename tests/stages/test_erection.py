@@ -55,9 +55,9 @@ def test_states_are_networks(run: Path) -> None:
         assert figures["node_arclength_error_max"] < 2e-4
         kinds = [node["kind"] for node in network["nodes"]]
         told = [a for a, kind in zip(state["joint_angles_deg"], kinds, strict=True) if kind == "regular"]
-        # the ruler's tangents are rough where curvature jumps from element to element
+        # the ruler fits quartics across joints, where the slope of the curvature jumps
         mean = np.mean([abs(a - 90) for a in told])
-        assert mean == pytest.approx(figures["node_angle_deviation_mean_deg"], abs=0.4)
+        assert mean == pytest.approx(figures["node_angle_deviation_mean_deg"], abs=0.8)
         angles.append(max(abs(a - 90) for a in told))
     assert np.ptp(np.array(states["states"][0]["nodes"])[:, 2]) < 1e-9
     assert angles == sorted(angles, reverse=True)
