@@ -10,6 +10,7 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
+from lamella.base.ties import grid_of, rounded
 from lamella.erection.driver import Driver
 from lamella.erection.erection import Erection
 from lamella.erection.flat_shape import FlatShape
@@ -125,7 +126,9 @@ def _free_model(lamellas: Lamellas, elements: int) -> Model:
     network = lamellas.network
     points: Floats = network.node_points
     reached = np.unique(network.stop_nodes)
-    middle = reached[np.linalg.norm(points[reached] - points[reached].mean(0), axis=1).argmin()]
+    away = np.linalg.norm(points[reached] - points[reached].mean(0), axis=1)
+    # of several as near the first one
+    middle = reached[rounded(away, grid_of(float(away.max(initial=1.0)))).argmin()]
     fixed = np.zeros((len(points), NODE_UNKNOWNS), bool)
     fixed[middle] = True
     supports = NodeSupports(fixed, np.zeros((len(points), NODE_UNKNOWNS)))
