@@ -347,12 +347,6 @@ class Project(Table):
                 "add a table [joint] with washer = true, its default",
                 "cables",
             )
-        if self.structure is not None and self.joint is not None and self.joint.kind == "stacked":
-            raise Refusal(
-                "the structural model has both families on one level, and stacked lamellas stand on two",
-                'leave [structure] out, or write kind = "interlocked" in [joint]',
-                "structure",
-            )
         own = any(table.edge_beam for table in getattr(self.surface, "boundary", ()))
         if self.joint is None and (self.edge_beam is not None or own):
             raise Refusal(
