@@ -18,11 +18,17 @@ from lamella.base.vectors import crosses, dots, lengths
 
 # samples a cell (docs/files.md): of nets of up to so many nodes, and of larger ones
 SAMPLES_PER_CELL, SAMPLES_PER_CELL_LARGE, LARGE_NET_NODES = 16, 8, 20_000
+# parts: a piece is divided into a whole number of them where it is no longer than that by more than this; whole cells
+# are, but for the errors of where a line meets the rim
+WHOLE_PARTS = 1e-3
 # samples a piece at least, where curvatures are read from neighbouring samples: the last ones next to the rim
 SAMPLES_PER_PIECE_MIN = 3
 # radians between the tangents of following samples, and how many times more samples a piece may get for it: at a kink,
 # as in a corner of the boundary, no number is enough
 SAMPLE_TURN, REFINEMENT_MAX = 0.06, 32
+# times the samples' distance in such a piece that it is beside it, and times more samples that a piece may get for it:
+# polynomials through samples of both, from which written lines are measured, are off where it changes by more
+GRADED_SAMPLES = 4
 
 
 class HasTangents(Protocol):
@@ -84,16 +90,22 @@ def parts_of(share: Floats, nodes: int, least: int = SAMPLES_PER_PIECE_MIN) -> I
         Parts of a piece, however short.
     """
     per_cell = SAMPLES_PER_CELL if nodes <= LARGE_NET_NODES else SAMPLES_PER_CELL_LARGE
-    return np.maximum(np.ceil(share * per_cell - 1e-6), least).astype(np.int64)
+    return np.maximum(np.ceil(share * per_cell - WHOLE_PARTS), least).astype(np.int64)
 
 
-def divide(first: Integers, owner: Integers, sample: Callable[[Division], Samples]) -> tuple[Division, Samples]:
+def divide(
+    first: Integers, length: Floats, owner: Integers, sample: Callable[[Division], Samples]
+) -> tuple[Division, Samples]:
     """Samples along pieces of curves, so many that tangents of following ones differ by no more than `SAMPLE_TURN`.
+
+    Beside pieces that are given many for it, the next ones are given more, see `GRADED_SAMPLES`.
 
     Parameters
     ----------
     first : (s,) int
         Parts of each piece where nothing turns, see `parts_of`.
+    length : (s,)
+        Of each piece, m.
     owner : (s,) int
         Curve of each piece; a curve's pieces follow each other.
     sample : callable
@@ -104,6 +116,7 @@ def divide(first: Integers, owner: Integers, sample: Callable[[Division], Sample
     while True:
         samples = sample(division)
         finer = more_samples(first, division.counts, division.given, samples.tangents)
+        finer = _graded(finer, first, length, last)
         if (finer == division.counts).all():
             return division, samples
         division = Division(finer, last)
@@ -138,3 +151,16 @@ def more_samples(first: Integers, count: Integers, given: Integers, tangents: Fl
     largest = np.maximum.reduceat(turn, end - given)
     times = np.maximum(np.ceil(largest / SAMPLE_TURN - 1e-6), 1).astype(np.int64)
     return np.asarray(np.minimum(count * times, np.maximum(REFINEMENT_MAX * first, count)))
+
+
+def _graded(count: Integers, first: Integers, length: Floats, last: Booleans) -> Integers:
+    """Numbers of parts, (s,), at least `count`, also beside pieces that got more than `first` for their turns."""
+    if count.size < 2:
+        return count
+    refined = np.where(count > first, count / np.maximum(length, np.finfo(float).tiny), 0.0)
+    beside = np.zeros(len(count))
+    joined = ~last[:-1]
+    beside[:-1] = np.where(joined, refined[1:], 0.0)
+    beside[1:] = np.maximum(beside[1:], np.where(joined, refined[:-1], 0.0))
+    wanted = np.minimum(np.ceil(length * beside / GRADED_SAMPLES - 1e-6), GRADED_SAMPLES * first)
+    return np.maximum(count, wanted.astype(np.int64))

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from lamella.base.vectors import diagonal
+from lamella.surface.element.umbilics import DEPTH, deepest_first
 from surface.element.weierstrass import weierstrass
 
 
@@ -33,6 +35,18 @@ def test_a_double_zero_beside_others() -> None:
 
 def test_zeros_nearer_than_the_surface_can_tell_are_one() -> None:
     assert weierstrass([1e-4, -1e-4], noise=1e-6).umbilics.orders.tolist() == [2]
+
+
+def test_umbilics_next_to_each_other_have_an_order_of_their_own() -> None:
+    """In whatever order they are found: it hangs on the numbers of the elements."""
+    surface = weierstrass([0.01, -0.01])
+    size = diagonal(surface.nodes)
+    around = np.exp(2j * np.pi * (np.arange(6) + 0.3) / 6)
+    position = 1e-3 * size * np.column_stack([around.real, around.imag, 0 * around.real])
+    wanted = position[deepest_first(surface, position, DEPTH * size)]
+    for seed in range(5):
+        some = position[np.random.default_rng(seed).permutation(6)]
+        assert np.array_equal(some[deepest_first(surface, some, DEPTH * size)], wanted)
 
 
 def test_smallest_separation_falls_with_the_square_root_of_the_error() -> None:

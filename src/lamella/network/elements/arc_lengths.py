@@ -42,7 +42,7 @@ class ElementArcs:
         order = np.lexsort((begin, segment))
         self._parts = _Parts(segments, segment[order], begin[order])
         self._arcs = ArcLengths(self._parts, SEGMENT_TAIL, SETTLE, SEGMENT_POINTS)
-        self.length = np.bincount(self._parts.owner, self._arcs.length, count)
+        self.length: Floats = np.bincount(self._parts.owner, self._arcs.length, count).astype(np.float64)
         self._first = np.searchsorted(self._parts.owner, np.arange(count + 1))
         self._before = np.cumsum(self._arcs.length) - self._arcs.length
 

@@ -259,7 +259,7 @@ def _sampled(
     # a lamella shorter than a cell is sampled as finely as a whole cell
     whole = np.minimum(np.bincount(owner, segments.reach), 1.0)[owner]
     parts = parts_of(segments.reach / whole, len(curves.kinds))
-    division, spots = divide(parts, owner, _Sampler(segments, arcs))
+    division, spots = divide(parts, arcs.length, owner, _Sampler(segments, arcs))
     sampled = SampledCurves(curves, division)
     places, points = spots.places, onto(spots.places.element, spots.points)
     order = _by_element(spots.near, len(segments.cells.value))

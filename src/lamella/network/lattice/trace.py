@@ -112,7 +112,7 @@ def _traced(surface: ClosedForm, density: Density, minimum_length: float) -> Net
     # a lamella shorter than a cell is sampled as finely as a whole cell
     cells = np.minimum(np.bincount(segments.owner, segments.span), _cell_spans(density.pattern)[lines.family])
     first = parts_of(segments.span / cells[segments.owner], len(lattice.kinds), least=1)
-    division, samples = divide(first, segments.owner, partial(_sample, surface, segments, arcs))
+    division, samples = divide(first, arcs.length, segments.owner, partial(_sample, surface, segments, arcs))
     sampled = SampledCurves(Curves(lines.family, lines.closed, lattice.owner, lattice.nodes, lattice.kinds), division)
     where = samples.where[sampled.node_samples]
     return assemble(

@@ -319,5 +319,5 @@ def _sampled(streamlines: Streamlines, stops: Floats, curves: Curves, spacing: f
         where, sample, tangents = streamlines.at(line, s)
         return _Samples(tangents, where, sample, s)
 
-    division, samples = divide(parts_of(length / whole, len(curves.kinds)), owner, along)
+    division, samples = divide(parts_of(length / whole, len(curves.kinds)), length, owner, along)
     return SampledCurves(curves, division), samples

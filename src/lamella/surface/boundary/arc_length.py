@@ -73,6 +73,13 @@ class Course:
         s = start[:, None] + width[:, None] * _NODES
         return np.asarray(width * (self.pieces.speed(piece, s) @ _WEIGHTS))
 
+    def _reached(self, piece: Integers, start: Floats, stop: Floats) -> tuple[Floats, Floats]:
+        """Arc length of each piece between two parameters, m, and the speed at the second one, m."""
+        width = stop - start
+        s = np.concatenate([start[:, None] + width[:, None] * _NODES, stop[:, None]], axis=1)
+        speed = self.pieces.speed(piece, s)
+        return np.asarray(width * (speed[:, :-1] @ _WEIGHTS)), speed[:, -1]
+
     def _cells(self) -> tuple[Integers, Floats, Floats, Floats]:
         """Halve pieces until the quadrature of every cell is exact to rounding."""
         m = self.pieces.count
@@ -130,11 +137,12 @@ class Course:
         active = np.arange(len(s))
         for _ in range(60):
             p, x = piece[active], s[active]
-            residual = self._integral(p, start[active], x) - wanted[active]
+            length, speed = self._reached(p, start[active], x)
+            residual = length - wanted[active]
             low[active] = np.where(residual < 0, x, low[active])
             high[active] = np.where(residual > 0, x, high[active])
             with np.errstate(divide="ignore", invalid="ignore"):
-                new = x - residual / self._speed(p, x)
+                new = x - residual / speed
             inside = (new >= low[active]) & (new <= high[active])
             new = np.where(inside, new, (low[active] + high[active]) / 2)
             s[active] = np.where(residual == 0, x, new)

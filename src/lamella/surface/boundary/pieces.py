@@ -14,7 +14,7 @@ from math import comb
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
-from lamella.base.vectors import diagonal
+from lamella.base.vectors import diagonal, lengths
 
 _ROUNDING = 1e-9
 """Of a curve's size: ends further apart have a gap."""
@@ -125,15 +125,20 @@ class Pieces:
         """
         d = self.degree
         basis = _bernstein(d - 1, s)
+        if not self._rational:
+            return lengths(basis @ self._slopes[piece])
         controls = self.controls[piece]
         low, high = basis @ controls[:, :-1], basis @ controls[:, 1:]
         dx = d * (high - low)
-        if not self._rational:
-            return np.asarray(np.sqrt(np.einsum("...i,...i", dx[..., :3], dx[..., :3])))
         s = s[..., None]
         x = (1 - s) * low + s * high
         first = (dx[..., :3] - x[..., :3] * (dx[..., 3:] / x[..., 3:])) / x[..., 3:]
         return np.asarray(np.sqrt(np.einsum("...i,...i", first, first)))
+
+    @cached_property
+    def _slopes(self) -> Floats:
+        """Bezier points of the first derivative where all weights are 1, (m, degree, 3), m."""
+        return np.asarray(self.degree * np.diff(self.controls[..., :3], axis=1))
 
     @cached_property
     def _rational(self) -> bool:
@@ -223,6 +228,13 @@ def lines(points: Floats, *, closed: bool) -> Pieces:
 
 def _bernstein(degree: int, s: Floats) -> Floats:
     """Bernstein polynomials at s (...): (..., degree + 1)."""
-    i = np.arange(degree + 1)
-    factors = np.array([comb(degree, k) for k in i], float)
-    return np.asarray(factors * s[..., None] ** i * (1 - s)[..., None] ** (degree - i))
+    basis = np.empty((*s.shape, degree + 1))
+    rest, power = 1 - s, np.ones_like(s)
+    for k in range(degree + 1):
+        basis[..., k] = comb(degree, k) * power
+        power = power * s
+    power = rest
+    for k in range(degree - 1, -1, -1):
+        basis[..., k] *= power
+        power = power * rest
+    return basis

@@ -7,8 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Complexes, Floats
+from lamella.base.blocks import blocks
 from lamella.base.vectors import crosses, dots, lengths
 from lamella.surface.element.connectivity import Connectivity
+
+# elements worked on at a time: their tables stay in the processor's cache
+CURVATURE_BLOCK = 96
 
 
 @dataclass(frozen=True)
@@ -68,6 +72,35 @@ def frames(position: Floats, first: Floats, second: Floats) -> ElementFrames:
     to_local = np.zeros((len(position), 2, 2))
     to_local[:, 0, 0], to_local[:, 0, 1], to_local[:, 1, 1] = 1 / length, -skew / length / height, 1 / height
     return ElementFrames(position, normal, e_u, e_v, to_local)
+
+
+def curvature_sizes(connectivity: Connectivity, corners: Floats, local: Floats) -> tuple[Floats, Floats, Floats]:
+    """Positions (m, q, 3), mean curvatures (m, q) and sizes of the trace-free shape operator (m, q) in elements.
+
+    Parameters
+    ----------
+    connectivity : Connectivity
+    corners : (m, k, 3)
+        Nodes of each element.
+    local : (q, 2)
+        Local coordinates, the same in every element.
+    """
+    jet = connectivity.basis.second_jet(local)
+    m, q = len(corners), len(local)
+    position, mean, deviator = np.empty((m, q, 3)), np.empty((m, q)), np.empty((m, q))
+    for some in blocks(m, CURVATURE_BLOCK):
+        x, a, b, aa, ab, bb = (np.matmul(f, corners[some]) for f in jet)
+        cross = crosses(a, b)
+        e, f, g = dots(a, a), dots(a, b), dots(b, b)
+        determinant = e * g - f * f
+        # second fundamental form times the area element
+        l_, m_, n_ = (dots(d, cross) for d in (aa, ab, bb))
+        half = (e * n_ - 2 * f * m_ + g * l_) / (2 * determinant)
+        gauss = (l_ * n_ - m_ * m_) / determinant
+        position[some] = x
+        mean[some] = half / np.sqrt(determinant)
+        deviator[some] = np.sqrt(np.maximum(half * half - gauss, 0) / determinant)
+    return position, mean, deviator
 
 
 def element_points(connectivity: Connectivity, corners: Floats, local: Floats, paired: bool) -> ElementPoints:

@@ -38,6 +38,8 @@ CIRCLE_RADIUS, CIRCLE_RADIUS_MIN, CIRCLE_TO_NEXT = 1.5, 2e-3, 0.5
 CIRCLE, SURE = 48, 20.0
 # of the size: umbilics whose distances from the rim differ by less are alike
 DEPTH = 0.01
+# parts of that, one after the other, for umbilics next to each other
+SHORTER = (1.0, 0.1, 0.01)
 # shares of the outer loop from its start on: of umbilics that are alike the one nearest to the first of these places
 # goes first, to the next one where that does not tell them apart
 MARKS = np.array([0.0, 0.25, 0.125])
@@ -131,15 +133,15 @@ def find_umbilics(surface: SmoothElements) -> Umbilics:
     kept = np.flatnonzero(orders > 0)
     places, position = _recentred(surface, places[kept], position[kept], orders[kept])
     orders, kept = orders[kept], np.arange(len(kept))
-    kept = kept[_deepest_first(surface, position[kept], DEPTH * size)]
+    kept = kept[deepest_first(surface, position[kept], DEPTH * size)]
     return Umbilics(places[kept], position[kept], orders[kept])
 
 
-def _deepest_first(surface: SmoothElements, position: Floats, step: float) -> Integers:
+def deepest_first(surface: SmoothElements, position: Floats, step: float) -> Integers:
     """Order of places (n, 3) by their distance from the rim, the farthest first: nets begin there on whatever elements.
 
     Of those about as far, within a step (m), the one nearest to a mark on the outer loop goes first: marks are turned,
-    mirrored and scaled with the surface.
+    mirrored and scaled with the surface. Those that are within a step of each other are told apart by shorter ones.
     """
     connectivity = surface.connectivity
     depth, _ = cKDTree(surface.nodes[np.unique(connectivity.rim_nodes)]).query(position)
@@ -148,8 +150,9 @@ def _deepest_first(surface: SmoothElements, position: Floats, step: float) -> In
     left, order = np.arange(len(position)), []
     while len(left):
         alike = left
-        for measure in measures:
-            alike = alike[measure[alike] < measure[alike].min() + step]
+        for part in SHORTER:
+            for measure in measures:
+                alike = alike[measure[alike] < measure[alike].min() + part * step]
         order.append(int(alike[0]))
         left = left[left != alike[0]]
     return np.array(order, np.int64)

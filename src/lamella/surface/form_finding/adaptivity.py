@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats
-from lamella.surface.element.curvature import element_points
+from lamella.surface.element.curvature import curvature_sizes
 from lamella.surface.element.lagrange import lagrange
 from lamella.surface.element.quadrature import triangle_rule
 from lamella.surface.element.rim import CORNER_CORE, CORNER_PART, SHARP_TURN
@@ -67,23 +67,24 @@ def deviation_of(film: Film, mean_curvature: float) -> Deviation:
     points = np.concatenate([inside, lagrange(CHECKED).nodes])
     weights = np.append(weights, np.zeros(len(points) - len(inside)))
     corners = film.nodes[film.connectivity.elements]
-    there = element_points(film.connectivity, corners, points, False)
+    position, mean, deviator = curvature_sizes(film.connectivity, corners, points)
     m = len(corners)
-    off = np.abs(there.mean_curvature - mean_curvature).reshape(m, -1)
-    bend = (there.mean_curvature**2 + np.abs(there.deviator) ** 2).reshape(m, -1)
+    places = position.reshape(-1, 3)
+    off = np.abs(mean - mean_curvature)
+    bend = mean**2 + deviator**2
     flat = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     weight = flat[:, None] * weights
     zones = CornerZones.of(film)
-    away = ~_within(there.position, zones.points, zones.radius).reshape(m, -1)
+    away = ~_within(places, zones.points, zones.radius).reshape(m, -1)
     weight = np.where(away, weight, 0)
     total = max(weight.sum(), 1e-300)
     scale = max(float(np.sqrt((weight * bend).sum() / total)), 0.01 / film.size)
     # an error d of the shape operator turns principal directions by d / (2 |D|) and changes isothermic coordinates,
     # the integral of sqrt |D|, by d / (2 sqrt |D|): where |D| is small, next to umbilics, elements have to be better
-    deviator = np.abs(there.deviator).reshape(m, -1) / scale
+    deviator = deviator / scale
     # next to a corner the curvature is what directions are taken from, however large
-    zones = zones.concentrated(there.position, deviator.ravel())
-    counted = ~_within(there.position, zones.points, zones.core).reshape(m, -1)
+    zones = zones.concentrated(places, deviator.ravel())
+    counted = ~_within(places, zones.points, zones.core).reshape(m, -1)
     local = np.where(counted, off / np.maximum(deviator, 1), 0)
     off = np.where(away, off, 0)
     of_element = np.where(away, off, local).max(1) / scale / np.sqrt(np.clip(deviator.min(1), LEAST_WEIGHED, 1))

@@ -75,9 +75,13 @@ class Draft:
     size_at: Callable[[Floats], Floats]
     nearest: Callable[[Floats], Floats]
     grid: float
+    _known: Topology | None = None
 
     def topology(self) -> Topology:
-        return connect(self.faces, len(self.points))
+        """That of the present faces, made anew where these have changed: an operation replaces them."""
+        if self._known is None or self._known.faces is not self.faces or self._known.vertices != len(self.points):
+            self._known = connect(self.faces, len(self.points))
+        return self._known
 
     @property
     def boundary(self) -> Booleans:

@@ -35,6 +35,8 @@ def flip(draft: Draft, by_valence: bool, bridges: bool = False) -> int:
     # Two flips far apart in faces can still ask for the same new edge.
     key = np.minimum(c[some], d[some]) * topology.vertices + np.maximum(c[some], d[some])
     some = some[np.sort(np.unique(key, return_index=True)[1])]
+    if not some.size:
+        return 0
     faces = draft.faces.copy()
     faces[first[some]] = np.column_stack([a[some], d[some], c[some]])
     faces[second[some]] = np.column_stack([d[some], b[some], c[some]])
