@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from lamella.base.arrays import Floats
+from lamella.fabrication.contours import PLAIN, CutOptions, draw_contours
 from lamella.fabrication.engraving import engrave
 from lamella.fabrication.part import Part, Parts
 from lamella.fabrication.sheet import Nesting
@@ -21,7 +22,9 @@ SHEET_SPACE = 0.05
 NARROW = 0.04
 
 
-def write_drawings(folder: Path, parts: Parts, nesting: Nesting, *, name: str, version: str) -> tuple[Path, ...]:
+def write_drawings(
+    folder: Path, parts: Parts, nesting: Nesting, options: CutOptions = PLAIN, *, name: str, version: str
+) -> tuple[Path, ...]:
     """Write ``A.dxf``, ``B.dxf`` (each part once, in rows) and ``sheets.dxf`` (every piece in its place).
 
     Layer CUT holds closed outlines with slots as notches, MARK node centre lines (LINE) and orientation
@@ -36,6 +39,8 @@ def write_drawings(folder: Path, parts: Parts, nesting: Nesting, *, name: str, v
     parts : Parts
     nesting : Nesting
         Of those parts.
+    options : CutOptions
+        How contours are cut.
     name, version : str
         Of the project and of the program, for the header.
 
@@ -49,15 +54,17 @@ def write_drawings(folder: Path, parts: Parts, nesting: Nesting, *, name: str, v
     OSError
         Where a file cannot be written whole.
     """
-    file = DxfFile(name=name, version=version)
+    file = DxfFile(name=name, version=version, further=options.layers)
     paths = []
-    for sheet, placed in drawn_sheets(parts, nesting, file.owner).items():
+    for sheet, placed in drawn_sheets(parts, nesting, file.owner, options).items():
         paths.append(folder / f"{sheet}.dxf")
         file.write(paths[-1], placed)
     return tuple(paths)
 
 
-def drawn_sheets(parts: Parts, nesting: Nesting, owner: str = "") -> dict[str, Iterator[Placed]]:
+def drawn_sheets(
+    parts: Parts, nesting: Nesting, owner: str = "", options: CutOptions = PLAIN
+) -> dict[str, Iterator[Placed]]:
     """What the drawings hold, by their names: "A", "B" (each part once, in rows), "sheets" (every piece in its place).
 
     Parameters
@@ -67,8 +74,9 @@ def drawn_sheets(parts: Parts, nesting: Nesting, owner: str = "") -> dict[str, I
         Of those parts.
     owner : str
         Of DXF entities.
+    options : CutOptions
     """
-    blocks = [_part_block(part, owner) for part in parts.parts]
+    blocks = [_part_block(part, owner, options) for part in parts.parts]
     rows = {
         family: _rows([(p, b) for p, b in zip(parts.parts, blocks, strict=True) if p.family == family], nesting.gap)
         for family in "AB"
@@ -76,12 +84,11 @@ def drawn_sheets(parts: Parts, nesting: Nesting, owner: str = "") -> dict[str, I
     return rows | {"sheets": _sheets(nesting, blocks, owner)}
 
 
-def _part_block(part: Part, owner: str) -> Block:
+def _part_block(part: Part, owner: str, options: CutOptions) -> Block:
     """A part's entities in its own frame, mm."""
     engraving = engrave(part)
     writer = BlockWriter(owner)
-    for outline in (part.outline, *part.hole_outlines()):
-        writer.polyline("CUT", outline * (MM, MM, 1.0), closed=True, tag=part.id)
+    draw_contours(writer, part.outline, part.hole_outlines(), options, tag=part.id)
     writer.lines("MARK", MM * engraving.nodes, tag=part.id)
     writer.polyline("MARK", MM * engraving.arrow, closed=True, tag=part.id)
     for stroke in engraving.strokes:

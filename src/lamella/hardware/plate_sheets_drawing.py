@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from lamella.base.arrays import Floats
+from lamella.fabrication.contours import PLAIN, CutOptions, draw_contours
 from lamella.fabrication.drawing import SHEET_SPACE, sheet_block
 from lamella.files.write.dxf_text import Block, BlockWriter, DxfFile, Placed
 from lamella.hardware.item import Item
@@ -15,7 +16,9 @@ from lamella.hardware.plate_sheets import PlateSheets, sheet_rows
 from lamella.hardware.rules import MM
 
 
-def write_plate_sheets(path: Path, groups: Sequence[PlateSheets], *, name: str, version: str) -> None:
+def write_plate_sheets(
+    path: Path, groups: Sequence[PlateSheets], options: CutOptions = PLAIN, *, name: str, version: str
+) -> None:
     """Write the drawing: sheets from left to right, outlines and holes on layer CUT, sheets on layer SHEET.
 
     Entities carry extended data of the application "LAMELLA": the plate's id and the number of the piece.
@@ -25,11 +28,11 @@ def write_plate_sheets(path: Path, groups: Sequence[PlateSheets], *, name: str, 
     OSError
         Where the file cannot be written whole.
     """
-    file = DxfFile(name=name, version=version)
-    file.write(path, _sheets(groups, file.owner))
+    file = DxfFile(name=name, version=version, further=options.layers)
+    file.write(path, _sheets(groups, file.owner, options))
 
 
-def _sheets(groups: Sequence[PlateSheets], owner: str) -> Iterator[Placed]:
+def _sheets(groups: Sequence[PlateSheets], owner: str, options: CutOptions) -> Iterator[Placed]:
     left = 0.0
     blocks: dict[tuple[str, bool], Block] = {}
     for number, group, sheet in sheet_rows(groups):
@@ -39,17 +42,20 @@ def _sheets(groups: Sequence[PlateSheets], owner: str) -> Iterator[Placed]:
         for piece in np.flatnonzero(group.sheets == sheet).tolist():
             item, turned = group.items[int(group.kinds[piece])], bool(group.turned[piece])
             if (item.id, turned) not in blocks:
-                blocks[item.id, turned] = _block(item, owner, turned)
+                blocks[item.id, turned] = _block(item, owner, turned, options)
             x, y = group.origins[piece].tolist()
             yield Placed(blocks[item.id, turned], MM * (left + x), MM * y, copy=int(group.copies[piece]))
         left += length * (1 + SHEET_SPACE)
 
 
-def _block(item: Item, owner: str, turned: bool) -> Block:
-    """A plate's outline and holes in its own frame, or turned by 90 degrees, mm."""
+def _block(item: Item, owner: str, turned: bool, options: CutOptions) -> Block:
+    """A plate's outline, holes and folds in its own frame, or turned by 90 degrees, mm."""
     writer = BlockWriter(owner)
-    for outline in (item.cut.outline, *item.cut.holes):
-        writer.polyline("CUT", _turned(outline, turned) * (MM, MM, 1.0), closed=True, tag=item.id)
+    holes = tuple(_turned(hole, turned) for hole in item.cut.holes)
+    draw_contours(writer, _turned(item.cut.outline, turned), holes, options, tag=item.id)
+    for line in item.marks:
+        flat = np.column_stack([line, np.zeros(len(line))])
+        writer.polyline("MARK", MM * _turned(flat, turned)[:, :2], closed=False, tag=item.id)
     return writer.block()
 
 

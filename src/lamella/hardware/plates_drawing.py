@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lamella.fabrication.contours import PLAIN, CutOptions, draw_contours
 from lamella.fabrication.flat import outline_points
 from lamella.fabrication.stroke_font import text_strokes
 from lamella.files.write.dxf_text import Block, BlockWriter, DxfFile, Placed
@@ -17,7 +18,7 @@ from lamella.hardware.rules import MM
 TEXT, SPACE = 0.008, 0.02
 
 
-def write_plates(path: Path, hardware: Hardware, *, name: str, version: str) -> None:
+def write_plates(path: Path, hardware: Hardware, options: CutOptions = PLAIN, *, name: str, version: str) -> None:
     """Write the drawing: outlines and holes on layer CUT, folds on layer MARK, what a plate is on layer TEXT beside it.
 
     Entities carry extended data of the application "LAMELLA": the plate's id.
@@ -27,11 +28,11 @@ def write_plates(path: Path, hardware: Hardware, *, name: str, version: str) -> 
     OSError
         Where the file cannot be written whole.
     """
-    file = DxfFile(name=name, version=version)
-    file.write(path, drawn_plates(hardware, file.owner))
+    file = DxfFile(name=name, version=version, further=options.layers)
+    file.write(path, drawn_plates(hardware, file.owner, options))
 
 
-def drawn_plates(hardware: Hardware, owner: str = "") -> Iterator[Placed]:
+def drawn_plates(hardware: Hardware, owner: str = "", options: CutOptions = PLAIN) -> Iterator[Placed]:
     """What the drawing holds: plates below each other, their texts to the right; `owner` of DXF entities."""
     top = 0.0
     for item in hardware:
@@ -40,16 +41,17 @@ def drawn_plates(hardware: Hardware, owner: str = "") -> Iterator[Placed]:
         prism = item.cut
         points = outline_points(prism.outline)
         low, high = points.min(axis=0), points.max(axis=0)
-        yield Placed(_block(item, owner, float(high[0] - low[0])), -MM * float(low[0]), MM * (top - float(high[1])))
+        yield Placed(
+            _block(item, owner, float(high[0] - low[0]), options), -MM * float(low[0]), MM * (top - float(high[1]))
+        )
         top -= max(float(high[1] - low[1]), TEXT) + SPACE
 
 
-def _block(item: Item, owner: str, width: float) -> Block:
+def _block(item: Item, owner: str, width: float, options: CutOptions) -> Block:
     """A plate's entities in its own frame, mm."""
     writer = BlockWriter(owner)
     prism = item.cut
-    for outline in (prism.outline, *prism.holes):
-        writer.polyline("CUT", outline * (MM, MM, 1.0), closed=True, tag=item.id)
+    draw_contours(writer, prism.outline, prism.holes, options, tag=item.id)
     for line in item.marks:
         writer.polyline("MARK", MM * line, closed=False, tag=item.id)
     left = float(outline_points(prism.outline)[:, 0].min())

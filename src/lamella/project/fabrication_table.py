@@ -68,6 +68,34 @@ class FabricationTable(Table):
         examples=[0.25],
     )
 
+    kerf: float | None = number(
+        "Width of the cut: outlines are drawn half of it outside of the parts, holes inside; 0 when not given.",
+        "m",
+        ge=0,
+        le=0.02,
+        default=None,
+        examples=[0.0002],
+    )
+    lead_in: float | None = number(
+        "Length of a line from waste to each contour, on layer LEAD; none when not given.",
+        "m",
+        gt=0,
+        le=0.1,
+        default=None,
+        examples=[0.003],
+    )
+    tabs: int | None = number(
+        "Gaps in each outer contour that hold the part in its sheet; none when not given.",
+        "",
+        ge=1,
+        le=100,
+        default=None,
+        examples=[4],
+    )
+    tab_width: float | None = number(
+        "Of these gaps; 0.0005 when not given.", "m", gt=0, le=0.1, default=None, examples=[0.0005]
+    )
+
     @field_validator("sheet", mode="before")
     @classmethod
     def _positive(cls, value: Any) -> Any:
@@ -86,5 +114,17 @@ class FabricationTable(Table):
                 "either edge",
                 "choose a larger sheet or a smaller gap",
                 "sheet",
+            )
+        if self.lead_in is not None and self.lead_in >= self.gap:
+            raise Refusal(
+                f"lead_in = {self.lead_in:g} m would reach the next part, {self.gap:g} m away",
+                f"write a lead_in below gap = {self.gap:g}, or a larger gap",
+                "lead_in",
+            )
+        if self.kerf is not None and self.kerf >= self.gap:
+            raise Refusal(
+                f"kerf = {self.kerf:g} m leaves nothing of gaps of {self.gap:g} m",
+                f"write a kerf below gap = {self.gap:g}",
+                "kerf",
             )
         return self

@@ -7,7 +7,7 @@ object for each of a million vertices would take minutes. Coordinates are format
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -183,13 +183,15 @@ class DxfFile:
     ----------
     name, version : str
         Of the project and of the program, for the header's custom properties.
+    further : mapping of str to int, optional
+        Layers beside `LAYERS`, with their colours.
     """
 
-    def __init__(self, *, name: str, version: str) -> None:
+    def __init__(self, *, name: str, version: str, further: Mapping[str, int] | None = None) -> None:
         with _fixed_meta_data():
             self._document = ezdxf.new("R2010", units=units.MM)
         self._document.header["$MEASUREMENT"] = 1
-        for layer, colour in LAYERS.items():
+        for layer, colour in (LAYERS | dict(further or {})).items():
             self._document.layers.add(layer, color=colour)
         self._document.appids.add(APPLICATION)
         self._document.header.custom_vars.append("Program", f"lamella {version}")

@@ -10,6 +10,7 @@ from lamella.base.drawing_origin import drawing_origin
 from lamella.base.errors import InputError
 from lamella.base.material import find_material
 from lamella.base.wording import shown
+from lamella.fabrication.contours import CutOptions
 from lamella.fabrication.defaults import default_end_distance, default_hub_radius, default_slot_width
 from lamella.fabrication.rules import Rules, clear_hub
 from lamella.fabrication.stock import DEFAULT_SPLICE_WORTH, SAME, Stock, Supply
@@ -91,6 +92,13 @@ def supply_of(project: Project, surface: Surface[Any]) -> Supply | None:
         straight=not _normal_curvature(project, surface),
         splice_worth=worth,
     )
+
+
+def cut_options(project: Project) -> CutOptions:
+    """How contours are cut."""
+    cut = project.fabrication
+    given = {key: getattr(cut, key) for key in ("kerf", "lead_in", "tabs", "tab_width")}
+    return CutOptions(**{key: value for key, value in given.items() if value is not None})
 
 
 def splice_room(project: Project) -> float:
@@ -190,7 +198,7 @@ def check_fabrication(project: Project, surface: Surface[Any]) -> None:
 
 def part_measures(cut: FabricationTable) -> dict[str, Any]:
     """The measures of a table that decide parts."""
-    measures = cut.model_dump(exclude={"splice_worth"})
+    measures = cut.model_dump(exclude={"splice_worth", "kerf", "lead_in", "tabs", "tab_width"})
     return measures | {"transport_length": cut.transport_length or np.inf}
 
 

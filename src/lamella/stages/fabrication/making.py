@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from lamella.base.arrays import Integers
+from lamella.fabrication.contours import check_contours
 from lamella.fabrication.part import Parts
 from lamella.fabrication.parts import make_parts
 from lamella.fabrication.sheet import nest
@@ -17,6 +18,7 @@ from lamella.hardware.item import Hardware
 from lamella.hardware.plate_sheets import plate_sheets
 from lamella.stages.fabrication.defaults import (
     cable_rules,
+    cut_options,
     edge_beam_rules,
     joint_rules,
     part_measures,
@@ -79,6 +81,18 @@ def edge_beams_of(up: Upstream, lamellas: Lamellas) -> EdgeBeamAxes | None:
 
 def made(up: Upstream) -> FabricationOutput:
     """All parts of a project, in segments where it asks for them."""
+    out = _made(up)
+    options = cut_options(up.project)
+    with keys("fabrication"):
+        for part in out.parts.parts:
+            check_contours(part.outline, part.hole_outlines(), options, tag=part.id)
+        for item in out.hardware:
+            if item.plate:
+                check_contours(item.cut.outline, item.cut.holes, options, tag=item.id)
+    return out
+
+
+def _made(up: Upstream) -> FabricationOutput:
     table = up.project.segments
     if table is None:
         return laid(up, *made_parts(up))

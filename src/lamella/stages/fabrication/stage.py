@@ -12,7 +12,7 @@ from lamella.base.progress import Progress
 from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
-from lamella.stages.fabrication.defaults import check_drawings, check_fabrication, check_joint
+from lamella.stages.fabrication.defaults import check_drawings, check_fabrication, check_joint, cut_options
 from lamella.stages.fabrication.figures import FIGURES, REPORT
 from lamella.stages.fabrication.making import made
 from lamella.stages.fabrication.output import FabricationOutput
@@ -98,11 +98,12 @@ class FabricationStage(Stage[FabricationOutput]):
         from lamella.stages.figure import evaluate
 
         signed: Any = {"name": up.project.name, "version": __version__}
+        options = cut_options(up.project)
         network = in_drawing(up.outputs["network"].network, drawing_origin(up.surface))
         lamellas = up.outputs["lamellas"].lamellas
         yield File(
             "fabrication/A.dxf",
-            lambda path: write_drawings(path.parent, out.parts, out.nesting, **signed),
+            lambda path: write_drawings(path.parent, out.parts, out.nesting, options, **signed),
             also=("fabrication/B.dxf", "fabrication/sheets.dxf"),
         )
         yield File(
@@ -126,7 +127,7 @@ class FabricationStage(Stage[FabricationOutput]):
             drawn: Any = signed | {"origin": drawing_origin(up.surface)}
             yield File("fabrication/hardware.csv", lambda path: write_hardware(path, out.hardware, **signed))
             yield File("fabrication/places.csv", lambda path: write_places(path, out.hardware, **drawn))
-            yield File("fabrication/plates.dxf", lambda path: write_plates(path, out.hardware, **signed))
+            yield File("fabrication/plates.dxf", lambda path: write_plates(path, out.hardware, options, **signed))
         if out.segments.segments:
             from lamella.segments.lists import write_segments
 
@@ -146,7 +147,9 @@ class FabricationStage(Stage[FabricationOutput]):
         if out.plates:
             from lamella.hardware.plate_sheets_drawing import write_plate_sheets
 
-            yield File("fabrication/plate_sheets.dxf", lambda path: write_plate_sheets(path, out.plates, **signed))
+            yield File(
+                "fabrication/plate_sheets.dxf", lambda path: write_plate_sheets(path, out.plates, options, **signed)
+            )
         yield from further_files(out, up, lambda: self.scene(out, up))
 
     def scene(self, out: FabricationOutput, up: Upstream) -> Iterator[DrawnLayer]:
