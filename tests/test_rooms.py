@@ -118,6 +118,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
         "structure.actions",
         "structure.model",
         "fabrication",
+        "hardware",
         "files",
         "files.write",
     ),

@@ -137,3 +137,23 @@ def test_narrow_slots_are_named() -> None:
     results = lamella.compute(project, until="erection")
     (warning,) = [text for text in results.summary["warnings"] if text.key == "slots_too_narrow"]
     assert f"{1e3 * results.summary['erection']['slot_width_needed']:.3g} mm" in warning
+
+
+def test_bracing_keeps_the_shape() -> None:
+    """Locked joints alone hold nothing; diagonals hold it better, edge beams still better, both best (paper, 3.3)."""
+    project = PROJECT | {
+        "network": {"spacing": 0.8},
+        "joint": {},
+        "cables": {"every": 1},
+        "edge_beam": {"section": "tube 60.3x3.2"},
+        "erection": {"states": 2, "elements": 1},
+    }
+    figures = lamella.compute(lamella.parse_project(project), until="erection").summary["erection"]
+    braced = figures["spring_back_braced"]
+    assert braced["both"] < braced["edge_beams"] < braced["cables"] < figures["spring_back"]
+
+
+def test_a_net_that_nothing_braces_is_named() -> None:
+    results = lamella.compute(lamella.parse_project(PROJECT), until="erection")
+    (warning,) = [text for text in results.summary["warnings"] if text.key == "springs_back"]
+    assert f"{results.summary['erection']['spring_back']:.3g} m" in warning

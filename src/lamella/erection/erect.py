@@ -7,13 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
-from lamella.base.ties import grid_of, rounded
 from lamella.erection.driver import Driver
 from lamella.erection.erection import Erection
 from lamella.erection.flat_shape import FlatShape
+from lamella.erection.free_body import free_body
 from lamella.erection.lone_joints import lone_joints
 from lamella.erection.path import driven_states, joint_moment, turned_states
 from lamella.erection.release import released
@@ -21,7 +20,6 @@ from lamella.erection.rigid_motion import moved_onto
 from lamella.erection.state import State
 from lamella.erection.warnings import erection_warnings
 from lamella.strip.lamellas import Lamellas
-from lamella.structure.actions.node_supports import NodeSupports
 from lamella.structure.beam.poses import NODE_UNKNOWNS
 from lamella.structure.equilibrium import Equilibrium
 from lamella.structure.loads import no_loads
@@ -124,16 +122,8 @@ def _states(
 def _free_model(lamellas: Lamellas, elements: int) -> Model:
     """A body free in space, its joints free but for those of lamellas that nothing else holds."""
     network = lamellas.network
-    points: Floats = network.node_points
-    reached = np.unique(network.stop_nodes)
-    away = np.linalg.norm(points[reached] - points[reached].mean(0), axis=1)
-    # of several as near the first one
-    middle = reached[rounded(away, grid_of(float(away.max(initial=1.0)))).argmin()]
-    fixed = np.zeros((len(points), NODE_UNKNOWNS), bool)
-    fixed[middle] = True
-    supports = NodeSupports(fixed, np.zeros((len(points), NODE_UNKNOWNS)))
     rules = ModelRules(elements=elements, joints="hinged", slots="whole", near_design=False)
-    model = make_model(lamellas, supports, rules)
+    model = make_model(lamellas, free_body(network), rules)
     if not len(model.joint_nodes):
         raise InputError("no lamella crosses another one", "a net that is erected has joints", "lamellas")
     return replace(model, structure=replace(model.structure, held_joints=lone_joints(network, model.joint_nodes)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -41,6 +41,8 @@ class Erection(Result):
     spring_back : float
         Largest distance of a node of that state from where it was designed, after the best rigid motion, m.
     warnings : tuple of Message
+    braced : dict
+        The same with what braces the net, see `lamella.erection.braced`.
     """
 
     model: Model
@@ -53,6 +55,7 @@ class Erection(Result):
     locked: State
     spring_back: float
     warnings: tuple[Message, ...]
+    braced: dict[str, float | None] = field(default_factory=dict)
 
     @property
     def slot_width_needed(self) -> float:

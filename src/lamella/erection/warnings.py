@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 # deg: a joint that has closed to less than this from straight is folded up, layers and all
 FOLDED_ANGLE = 15.0
+# of the net's size: what springs back farther needs bracing
+SPRINGY = 0.02
 
 
 def erection_warnings(erection: Erection) -> Iterator[Message]:
@@ -65,6 +67,16 @@ def erection_warnings(erection: Erection) -> Iterator[Message]:
             "way_unstable",
             f"{len(loose)} of {len(erection.states)} states are unstable with their joints held, at "
             f"{100 * loose[0].share:.0f} % of the way for one: the net snaps there",
+        )
+
+
+def spring_back_warning(erection: Erection) -> Iterator[Message]:
+    """Of a net that does not keep its shape, where nothing braces it."""
+    if erection.spring_back > SPRINGY * erection.model.structure.size and not erection.braced:
+        yield Message(
+            "springs_back",
+            f"with its joints locked and nothing else holding it the net springs back by {erection.spring_back:.3g} m: "
+            "brace it before it is moved, by [cables] or an [edge_beam]",
         )
 
 

@@ -36,7 +36,7 @@ TWIST_SAG = 4e-5
 PIECES_MAX = 4000
 """Straight pieces of a beam at most."""
 
-CONGRUENT = 1e-4
+CONGRUENT_SEGMENTS = 1e-4
 """m; segments that differ by less anywhere are made alike."""
 
 LEAST_SEGMENT = 0.05
@@ -129,7 +129,7 @@ def _segments(axis: BeamAxis, places: Floats, axes: tuple[BeamAxis, ...]) -> lis
 
 
 def _alike(segments: list[Item]) -> list[Item]:
-    """Segments that are congruent within `CONGRUENT` as one item."""
+    """Segments that are congruent within `CONGRUENT_SEGMENTS` as one item."""
     kinds: list[list[Item]] = []
     for item in segments:
         kind = next((one for one in kinds if _congruent(one[0], item)), None)
@@ -154,13 +154,13 @@ def _congruent(one: Item, other: Item) -> bool:
     (a,), (b,) = one.shape, other.shape
     if not (isinstance(a, Sweep) and isinstance(b, Sweep)) or len(a.points) != len(b.points):
         return False
-    if (a.cuts is None) != (b.cuts is None) or np.abs(a.points - b.points).max() > CONGRUENT:
+    if (a.cuts is None) != (b.cuts is None) or np.abs(a.points - b.points).max() > CONGRUENT_SEGMENTS:
         return False
     turned = np.abs(a.up - b.up).max()
     if a.cuts is not None and b.cuts is not None:
         turned = max(turned, np.abs(a.cuts - b.cuts).max())
     # over a cross section
-    return bool(turned * np.abs(outline_points(a.outline)).max() < CONGRUENT)
+    return bool(turned * np.abs(outline_points(a.outline)).max() < CONGRUENT_SEGMENTS)
 
 
 def _extent(axis: BeamAxis, axes: tuple[BeamAxis, ...]) -> tuple[float, float]:

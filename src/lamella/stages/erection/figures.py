@@ -28,6 +28,8 @@ def _flat(out: Erection) -> dict[str, Any]:
     }
 
 
+BRACES = ("cables", "edge_beams", "both")
+
 FLAT = record(
     height=NUMBER,
     radius=nullable(NUMBER),
@@ -48,6 +50,13 @@ def _flat_rows(value: dict[str, Any], summary: dict[str, Any]) -> Rows:
     yield "Joint angles, flat", f"{value['joint_angle_min_deg']:.1f} to {value['joint_angle_max_deg']:.1f}", "°"
     if value["overlaps"]:
         yield "Overlaps, flat", counted(value["overlaps"], "pair"), "of lamellas"
+
+
+def _braced_rows(value: dict[str, Any], summary: dict[str, Any]) -> Rows:
+    names = {"cables": "cables", "edge_beams": "edge beams", "both": "cables and edge beams"}
+    for key, back in value.items():
+        if back is not None:
+            yield f"Springs back, with {names[key]}, by", f"{back:.3f}", "m"
 
 
 def _gap(out: Erection) -> float | None:
@@ -172,6 +181,20 @@ FIGURES: tuple[Figure[Erection], ...] = (
         rows=line("Springs back by", "m", form=".3f"),
     ),
     Figure(
+        "spring_back_braced",
+        "m",
+        "the same with what the project braces the net by: `cables` on its diagonals, `edge_beams`, `both`; null where "
+        "no equilibrium was found",
+        lambda out: out.braced,
+        record(
+            ("cables", "edge_beams", "both"),
+            cables=nullable(NUMBER),
+            edge_beams=nullable(NUMBER),
+            both=nullable(NUMBER),
+        ),
+        rows=_braced_rows,
+    ),
+    Figure(
         "each_joint",
         "",
         "whether each joint is turned to its own angle on the way, as one moment shared by all would "
@@ -199,5 +222,6 @@ REPORT = (
     "stiffness_gap_min",
     "slot_width_needed",
     "spring_back",
+    "spring_back_braced",
 )
 """Order of the report's lines."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from lamella.base.message import Message
 from lamella.base.progress import Progress
 from lamella.project.tables import Project
 from lamella.stages.erection.figures import FIGURES, REPORT
+from lamella.stages.fabrication.defaults import cable_rules
 from lamella.stages.keys import keys
 from lamella.stages.stage import File, Missing, Stage, Upstream
 
@@ -34,7 +36,7 @@ class ErectionStage(Stage["Erection"]):
     report = ("Erection", REPORT)
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
-        return ("erection",)
+        return ("erection", "joint", "cables", "edge_beam", "materials", "surface")
 
     def warned_by(self, project: Project) -> tuple[str, ...]:
         return ("fabrication", "joint")
@@ -49,23 +51,35 @@ class ErectionStage(Stage["Erection"]):
         return "laid flat, and driven to the designed shape"
 
     def run(self, up: Upstream, progress: Progress) -> Erection:
+        from lamella.erection.braced import spring_backs
         from lamella.erection.erect import erect
+        from lamella.stages.fabrication.making import edge_beams_of
 
         table = up.project.erection
         assert table is not None
+        lamellas = up.outputs["lamellas"].lamellas
         with keys("erection", lamellas="lamella"):
-            return erect(
-                up.outputs["lamellas"].lamellas, states=table.states, elements=table.elements, progress=progress
+            made = erect(lamellas, states=table.states, elements=table.elements, progress=progress)
+        with keys("erection", prestress="cables.prestress"):
+            braced = spring_backs(
+                lamellas,
+                elements=table.elements,
+                cables=cable_rules(up.project),
+                edge_beams=edge_beams_of(up, lamellas),
+                materials=up.project.known_materials(),
+                progress=progress,
             )
+        return replace(made, braced=braced)
 
     def result(self, figures: Mapping[str, Any], out: Erection) -> str:
         length, width = figures["flat"]["size"]
         return f"flat on {length:.3g} x {width:.3g} m, springs back by {figures['spring_back']:.3g} m"
 
     def warnings(self, out: Erection, up: Upstream, progress: Progress) -> Iterator[Message]:
-        from lamella.erection.warnings import slot_warning
+        from lamella.erection.warnings import slot_warning, spring_back_warning
 
         yield from out.warnings
+        yield from spring_back_warning(out)
         project = up.project
         given = project.fabrication.slot_width or (project.joint.slot_width if project.joint else None)
         yield from slot_warning(out, given or 2 * project.lamella.thickness)
