@@ -267,6 +267,12 @@ class FilesTable(Table):
         "When not given, where [joint] is and they have at most a million triangles (some 60 MB).",
     )
 
+    ifc: bool | None = Field(
+        default=None,
+        description="Whether model.ifc is written (IFC 4: members, plates, fasteners with properties); it needs the "
+        "library ifcopenshell, pip install lamella[ifc].",
+    )
+
 
 # tables that may be left out, in the order of the documentation
 FURTHER_TABLES: dict[str, type[Table]] = {

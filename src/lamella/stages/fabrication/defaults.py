@@ -155,12 +155,17 @@ def check_joint(project: Project) -> None:
 
 
 def check_drawings(project: Project) -> None:
-    """Refuse a language that there are no words in.
+    """Refuse a language that there are no words in, and files whose library is not there.
 
     Raises
     ------
     InputError
     """
+    if project.files.ifc:
+        from lamella.files.write.ifc import require_ifcopenshell
+
+        with keys("files"):
+            require_ifcopenshell()
     if project.drawings is None:
         return
     from lamella.drawings.terms import languages

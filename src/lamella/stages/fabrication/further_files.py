@@ -32,6 +32,11 @@ def further_files(out: FabricationOutput, up: Upstream, scene: Callable[[], Iter
 
         origin = drawing_origin(up.surface)
         yield File("model.glb", lambda path: write_whole(path, glb_bytes(scene(), origin=origin, **signed)))
+    if project.files.ifc:
+        from lamella.files.write.ifc import ifc_bytes
+
+        corner = drawing_origin(up.surface)
+        yield File("model.ifc", lambda path: write_whole(path, ifc_bytes(scene(), origin=corner, **signed)))
     if project.joint is None and project.drawings is None:
         return
     from lamella.files.write.svg import write_svg

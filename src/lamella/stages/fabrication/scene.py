@@ -52,7 +52,9 @@ def shows_solids(project: Project, out: FabricationOutput, lamellas: Lamellas) -
     """Whether files hold the strips as solids: where asked; unasked with [joint], up to `TRIANGLE_LIMIT`."""
     if project.files.solids is not None:
         return project.files.solids
-    return project.joint is not None and triangle_count(out.parts, body_step(lamellas)) <= TRIANGLE_LIMIT
+    return (project.joint is not None or bool(project.files.ifc)) and triangle_count(
+        out.parts, body_step(lamellas)
+    ) <= TRIANGLE_LIMIT
 
 
 def solids_left_out(project: Project, out: FabricationOutput, lamellas: Lamellas) -> Iterator[Message]:

@@ -46,6 +46,7 @@ class FabricationStage(Stage[FabricationOutput]):
             "fabrication/A.svg, fabrication/B.svg, fabrication/sheets.svg, fabrication/plates.svg",
             "with it: the cutting drawings as SVG",
         ),
+        ("model.ifc", "where `files.ifc` is true: the same as IFC 4 members, plates and fasteners"),
         ("model.glb", "where `[joint]` is given or `files.solids` is true: the same for viewers and renderers"),
         ("fabrication/plate_sheets.dxf", "where `[[stock]]` is given too: all these plates on their sheets"),
         (
