@@ -109,6 +109,14 @@ def test_cables_springs_and_settlements_are_in_a_script():
     assert tables(text)["CASES"][1][2] == [(node, 3, -0.01)]
 
 
+def test_cases_of_temperature_are_left_out_and_named():
+    model, loads = example(2)
+    warm = replace(loads, swelling=np.full(len(model.structure.beams), 1e-4))
+    found = tables(opensees_script(model.structure, {"warm": warm, "x": loads}, model.nodes, name="", version=""))
+    assert [case[0] for case in found["CASES"]] == ["residual", "x"]
+    assert found["LEFT_OUT"] == [("warm",)]
+
+
 def test_scripts_are_equal_between_runs_and_python_whatever_the_name():
     assert script(2) == script(2)
     model, _ = example(2)

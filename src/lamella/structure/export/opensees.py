@@ -77,7 +77,8 @@ def opensees_script(
     ----------
     structure : Structure
     cases : mapping
-        Loads by the cases' names, at the load factor 1; changes of natural curvature are left out.
+        Loads by the cases' names, at the load factor 1; those that change natural curvatures or lengths (temperature)
+        are left out, and the script says so.
     network_nodes : int
         Nodes whose displacements it writes, the structure's first ones.
     name, version : str
@@ -106,7 +107,7 @@ def opensees_script(
     springs = structure.node_springs
     grounds = count + np.arange(len(springs))
     held = structure.held
-    parts = {
+    parts: dict[str, list[tuple[object, ...]]] = {
         "NODES": _listed(_rounded(nodes.points)),
         "FIXED": _listed(np.flatnonzero(held.any(1)), held[held.any(1)].astype(int)),
         "ARMS": _arms(structure, nodes),
@@ -118,7 +119,11 @@ def opensees_script(
         "HINGES": hinges,
         "CABLES": cables,
         "SPRINGS": _listed(springs.nodes, grounds, springs.stiffness),
-        "CASES": [("residual", [], []), *(_case(structure, state, key, loads) for key, loads in cases.items())],
+        "CASES": [
+            ("residual", [], []),
+            *(_case(structure, state, key, loads) for key, loads in cases.items() if not _strained(loads)),
+        ],
+        "LEFT_OUT": [(key,) for key, loads in cases.items() if _strained(loads)],
     }
     text = HEAD.format(title=name.replace('"""', "'''").replace("\\", "/"), version=version)
     if any(origin):
@@ -243,6 +248,11 @@ def _cables(structure: Structure, nodes: _Nodes) -> tuple[list[tuple[object, ...
     # over the distance they span, which their own length is not
     axial, strain = cables.axial * span / cables.length, 1 - cables.length / span
     return _listed(ends.reshape(-1, 2), axial, strain), nodes
+
+
+def _strained(loads: Loads) -> bool:
+    """Whether a case changes what needs no force, which initial strains, fixed at the start, cannot follow."""
+    return bool(loads.natural.any() or np.any(loads.swelling) or np.any(loads.cable_swelling))
 
 
 def _case(structure: Structure, state: BeamState, name: str, loads: Loads) -> tuple[object, ...]:
