@@ -92,6 +92,11 @@ def test_rims_have_the_names_of_the_curves():
     [
         ('[[support]]\nboundary = "lower"\n[[support]]\nground = -9\n', "support[1].ground"),
         ('[[support]]\nboundary = "left"\n', "support[0].boundary"),
+        (
+            '[[support]]\nboundary = "lower"\nfixed = ["x", "y"]\n'
+            '[[load]]\nname = "x"\nkind = "settlement"\nvalue = 0.01\nboundary = "lower"\n',
+            "load[0].direction",
+        ),
         ('[[load]]\nname = "x"\nkind = "line"\nvalue = 100\nboundary = "side"\n', "load[0].boundary"),
         (
             '[[load]]\nname = "x"\nkind = "area"\nvalue = 100\n'

@@ -25,7 +25,7 @@ from lamella.structure.actions.combinations import (
     ultimate_combinations,
 )
 from lamella.structure.actions.load_case import LoadCase
-from lamella.structure.actions.load_rules import LoadRule, Region, Vector, load_cases
+from lamella.structure.actions.load_rules import LoadRule, Region, Vector, load_cases, refuse_loose_settlements
 from lamella.structure.actions.node_supports import NodeSupports, SupportRule, supports_of
 from lamella.structure.actions.places import GROUND_TOLERANCE, NamedRims, Place, named_rims
 from lamella.surface.element.surface import ElementSurface
@@ -68,6 +68,7 @@ def actions_of(project: Project, network: Network, surface: Surface[Any]) -> Act
     loads = [_load(table, origin) for table in project.load or ()]
     try:
         cases = load_cases(network, loads, rims)
+        refuse_loose_settlements(cases, supports)
     except InputError as error:
         key = key_of(error.where, "structure", loads="load").replace(".regions[", ".region[")
         raise InputError(error.message, error.remedy, key) from None

@@ -12,6 +12,7 @@ from lamella.base.arrays import Booleans, Floats
 from lamella.base.errors import InputError
 from lamella.network.network import Network
 from lamella.structure.actions.load_case import LoadCase, no_load
+from lamella.structure.actions.node_supports import DIRECTIONS, NodeSupports
 from lamella.structure.actions.places import NamedRims, Place, nodes_at
 from lamella.structure.actions.tributary import tributary_areas, tributary_lengths
 
@@ -129,6 +130,25 @@ def load_cases(network: Network, rules: Sequence[LoadRule], rims: NamedRims) -> 
         except InputError as error:
             raise InputError(error.message, error.remedy, f"loads[{k}].{error.where}") from None
     return tuple(cases)
+
+
+def refuse_loose_settlements(cases: Sequence[LoadCase], supports: NodeSupports) -> None:
+    """Refuse settlements of what no support holds.
+
+    Raises
+    ------
+    InputError
+        The load's number in `where` ("loads[1].direction").
+    """
+    for k, case in enumerate(cases):
+        loose = np.argwhere((case.settlements != 0) & ~supports.fixed)
+        if len(loose):
+            node, way = loose[0].tolist()
+            raise InputError(
+                f"node {node} is not fixed in {DIRECTIONS[way]}, where the load {case.name!r} moves it",
+                "settle what is fixed, or in a direction in which it is",
+                f"loads[{k}].direction",
+            )
 
 
 def _case(network: Network, rule: LoadRule, rims: NamedRims) -> LoadCase:
