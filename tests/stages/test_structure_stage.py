@@ -88,6 +88,14 @@ def test_loads_without_supports() -> None:
     assert refused.value.where == "support"
 
 
+def test_a_check_leaves_large_structures_to_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    small = check_project(project())
+    assert not small.left
+    monkeypatch.setattr("lamella.stages.structure.stage.MOST_CHECKED", 100)
+    (left,) = check_project(project()).left
+    assert "3 cases" in left
+
+
 def test_a_net_that_is_let_go() -> None:
     results = compute(project(support=None, load=None))
     warned(results.summary["warnings"], "structure_free")

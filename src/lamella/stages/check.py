@@ -118,7 +118,12 @@ def check_project(
         left.append("whether the boundary can be adjusted so that the net closes, and what its strips are")
     else:
         begun.warnings[:0] = messages
-        begun.run_all(stages[1:])
+        for stage in stages[1:]:
+            long = stage.takes_long(begun.upstream()) if begun.outputs.keys() >= set(stage.needs) else ""
+            if long:
+                left.append(long)
+            else:
+                begun.run_all([stage])
         if "network" in begun.outputs:
             nodes = len(begun.outputs["network"].network.node_points)
     warnings = tuple(begun.results().summary["warnings"])

@@ -194,6 +194,10 @@ class Stage(Generic[Out]):
         """What can be said before it is run, in seconds."""
         return Estimate({})
 
+    def takes_long(self, up: Upstream) -> str:
+        """What only a run can tell, where this stage takes longer than a check may; empty where it does not."""
+        return ""
+
     def heading(self, up: Upstream) -> str:
         """What is about to be done."""
         return ""

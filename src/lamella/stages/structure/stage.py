@@ -23,6 +23,9 @@ from lamella.surface.surface import Surface
 if TYPE_CHECKING:
     from lamella.structure.analysis.analyse import Analysis
 
+MOST_CHECKED = 20_000
+"""Elements of lamellas times cases that are analysed in a few seconds."""
+
 
 class StructureStage(Stage[StructureOutput]):
     """See `lamella.stages.stage.Stage`."""
@@ -61,6 +64,16 @@ class StructureStage(Stage[StructureOutput]):
                 'add a table [[support]] with boundary = "rim", ground = 0.0 or near = [x, y, z]',
                 "support",
             )
+
+    def takes_long(self, up: Upstream) -> str:
+        from lamella.stages.actions_of_tables import combinations_of
+
+        project, table = up.project, up.project.structure or StructureTable()
+        cases = 1 + len(project.load or ()) + len(combinations_of(project))
+        size = cases * table.elements * len(up.outputs["network"].network.cell_edges)
+        if size <= MOST_CHECKED:
+            return ""
+        return f"what the structure does under {cases} cases (checked up to {MOST_CHECKED:,} elements times cases)"
 
     def heading(self, up: Upstream) -> str:
         table = up.project.structure or StructureTable()
