@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
@@ -52,13 +53,16 @@ def stacked(blanks: Sequence[Blank], width: float, gap: float, bow: float, *, fi
         columns.append(column)
         while left:
             below, y = column.places[-1]
-            # without filling the next piece alone is looked at
-            looked_at = range(len(left) if filled else 1)
-            places = ((k, y + _rise(below, left[k], gap, bow)) for k in looked_at)
-            found = next(((k, at) for k, at in places if at + left[k].top <= limit), None)
-            if found is None:
+
+            def fits(blank: Blank, below: Blank = below, y: float = y) -> bool:
+                return y + _rise(below, blank, gap, bow) + blank.top <= limit
+
+            # the shorter a piece the less it needs; without filling the next one alone is looked at
+            chosen = bisect_left(left, True, key=fits) if filled else int(not fits(left[0]))
+            if chosen >= (len(left) if filled else 1):
                 break
-            column.places.append((left.pop(found[0]), found[1]))
+            above = left.pop(chosen)
+            column.places.append((above, y + _rise(below, above, gap, bow)))
     return columns
 
 
