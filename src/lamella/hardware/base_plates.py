@@ -119,7 +119,7 @@ def _item(some: list[tuple[BeamAxis, Floats]], name: str) -> Item:
         up = np.tile([0.0, 0.0, 1.0], (len(x), 1))
         origins.append(middle)
         axes.append(np.stack([x, np.cross(up, x), up], axis=1))
-        labels += tuple(f"{axis.name} at {MM * place:.0f} mm" for place in along.tolist())
+        labels += tuple(f"{axis.label}, {round(MM * place)} mm" for place in along.tolist())
     places = Places(np.concatenate(origins), np.concatenate(axes), labels)
     places = places.chosen(_apart(places.origins, rules.base_plate))
     side = MM * rules.base_plate

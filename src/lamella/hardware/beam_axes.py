@@ -42,15 +42,17 @@ class BeamAxis:
     beam : BeamSection
     distance : float
         From the rim to its axis, outwards, m.
-    name : str
-        Of its segments: "edge-1" for the first piece.
     """
 
     piece: RimPiece
     rules: EdgeBeamRules
     beam: BeamSection
     distance: float
-    name: str
+
+    @property
+    def label(self) -> str:
+        """Where it is, in words of the lists."""
+        return f"side {self.piece.number + 1} of boundary {self.piece.loop + 1}"
 
     @property
     def face(self) -> float:
@@ -190,7 +192,7 @@ def edge_beam_axes(
         along = np.abs(np.einsum("ij,ij->i", tangents[mine], piece.frames(found.along[mine]).ahead))
         folds[mine] = np.arccos(np.minimum(along, 1.0))
         which[number] = len(axes)
-        axes.append(BeamAxis(piece, one, one.beam, 0.0, f"edge-{len(axes) + 1}"))
+        axes.append(BeamAxis(piece, one, one.beam, 0.0))
     joined = (which[found.pieces] >= 0) if len(pieces) else np.zeros(0, bool)
     steep = joined & (np.nan_to_num(folds) >= LEAST_ANGLE)
     of_axis = which[found.pieces[steep]] if len(pieces) else np.zeros(0, np.int64)
@@ -270,7 +272,7 @@ def _placed(
         given = axis.rules.distance
         # one distance all around a loop: its pieces meet in its corners
         distance = float(needed[loops == axis.piece.loop].max()) if given is None else given
-        found.append(BeamAxis(axis.piece, axis.rules, axis.beam, distance, axis.name))
+        found.append(BeamAxis(axis.piece, axis.rules, axis.beam, distance))
     return found
 
 

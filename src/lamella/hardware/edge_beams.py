@@ -251,7 +251,7 @@ def _segment(axis: BeamAxis, low: float, high: float, mitred: tuple[bool, bool],
         axis.beam.holes,
         None if cuts is None else cuts @ own.T,
     )
-    label = f"side {axis.piece.number + 1} of boundary {axis.piece.loop + 1}, {MM * low:.0f} to {MM * high:.0f} mm"
+    label = f"{axis.label}, {round(MM * low)} to {round(MM * high)} mm"
     places = Places(origin[None], own[None], (label,))
     text = f"{axis.beam.name}, {MM * shape.length:.1f} mm, {_bent_to(axis, kn, kg, tg)}"
     rules = axis.rules

@@ -10,6 +10,7 @@ from lamella.base.wording import rounded
 from lamella.hardware.beam_axes import ROOM, BeamAxis, BeamEnds, end_lengths
 from lamella.hardware.rules import MM, JointRules
 from lamella.strip.lamellas import Lamellas
+from lamella.strip.levels import level_heights
 
 
 def with_room(
@@ -31,14 +32,25 @@ def with_room(
     towards = towards_of(axis, ends, lamellas)
     low = ends.along - np.maximum(sides, np.where(towards < 0, leg, 0.0))
     high = ends.along + np.maximum(sides, np.where(towards > 0, leg, 0.0))
-    some = some[~_in_the_way(axis, ends.along, sides, low, high)[some]]
+    # lamellas on two levels are clear of each other
+    level = level_heights(network, lamellas.section.level)[ends.lamellas]
+    found = []
+    for height in np.unique(level).tolist():
+        mine = np.flatnonzero(level == height)
+        clear = mine[~_in_the_way(axis, ends.along[mine], sides[mine], low[mine], high[mine])]
+        found += _apart(axis, np.intersect1d(some, clear), ends.along, low, high)
+    return np.array(sorted(found), np.int64)
+
+
+def _apart(axis: BeamAxis, some: Integers, along: Floats, low: Floats, high: Floats) -> list[int]:
+    """Those of some plates from `low` to `high` (e,) on the rim that do not meet one that was kept before them."""
     kept: list[int] = []
-    for k in some[np.argsort(np.round(ends.along[some], 6), kind="stable")].tolist():
+    for k in some[np.argsort(np.round(along[some], 6), kind="stable")].tolist():
         if not kept or low[k] >= high[kept[-1]]:
             kept.append(k)
     if axis.piece.closed and len(kept) > 1 and low[kept[0]] + axis.piece.length < high[kept[-1]]:
         kept.pop()
-    return np.array(kept, np.int64)
+    return kept
 
 
 def _half_width(lamellas: Lamellas, joints: JointRules) -> float:
@@ -54,8 +66,8 @@ def no_room(axis: BeamAxis, ends: BeamEnds, folds: Floats, lamellas: Lamellas, j
     most = apart - float((_half_width(lamellas, joints) / np.sin(folds)).max())
     first, rest = end_lengths(folds, axis.rules, lamellas.section, joints)
     return InputError(
-        f"no end plate has room on the edge beam {axis.name}: legs of {MM * axis.rules.end_plate_leg:g} mm on it and "
-        f"{MM * float((first + rest).max()):.4g} mm between the layers, lamellas {MM * apart:.4g} mm apart",
+        f"no end plate has room on the edge beam along {axis.label}: legs of {MM * axis.rules.end_plate_leg:g} mm on "
+        f"it and {MM * float((first + rest).max()):.4g} mm between the layers, lamellas {MM * apart:.4g} mm apart",
         f"write end_plate_leg = {rounded(most, up=False):g} or less, or fewer cells"
         if most > 0
         else f"choose fewer cells: their ends have to be {MM * (apart - most):.4g} mm apart or more",
