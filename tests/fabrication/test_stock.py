@@ -18,8 +18,8 @@ from lamella.fabrication.stock_nesting import nest_on_stock
 DENSITY = 7900.0
 
 
-def made(surface, stocks, cells=12, **measures):
-    strips = lamella.net(surface, cells=cells).strips()
+def made(surface, stocks, cells=12, section=None, **measures):
+    strips = lamella.net(surface, cells=cells).strips(section or lamella.Section())
     section = strips.section
     supply = Supply.of(
         tuple(stocks),
@@ -83,6 +83,23 @@ def test_pieces_on_stock_keep_their_distance(surface, stocks) -> None:
                     other.min(axis=0) < one.max(axis=0) + 0.01
                 ):
                     assert _distance(one, other) > 0.01 - 1e-4
+
+
+def test_families_on_two_levels_have_two_radii_and_are_laid_apart() -> None:
+    section = lamella.Section(height=0.06, thickness=0.004, offset=0.04, layer_lengths="own", level=0.03)
+    _, parts, nesting = made(ROUND, [SHEET], cells=8, section=section)
+    radii = {part.family: round(1 / part.curvature, 6) for part in parts.parts}
+    assert len(set(radii.values())) == 2
+    # pieces of one radius touch no others: their sheets are their own
+    for number in range(nesting.sheet_count):
+        on_it = nesting.parts[nesting.sheets == number]
+        assert len({parts.parts[k].family for k in on_it.tolist()}) == 1
+    outlines = list(placed_outlines(parts, nesting, 0.01))
+    for number in range(nesting.sheet_count):
+        here = [outlines[k] for k in np.flatnonzero(nesting.sheets == number)]
+        assert np.concatenate(here).min() > 0.01 - 1e-6
+        for k, one in enumerate(here):
+            assert all(_distance(one, other) > 0.01 - 1e-4 for other in here[:k])
 
 
 def _distance(one, other) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -80,16 +81,35 @@ def _with_stock(
     spans: Sequence[Span], fixed: Sequence[Floats], supply: Supply, rules: Rules, quantity: int, reach: float
 ) -> list[Floats]:
     """Cuts with which stock and splices cost least."""
+    # on levels the families' curvatures differ
+    groups: dict[float, list[int]] = {}
+    for number, span in enumerate(spans):
+        groups.setdefault(round(span.strip.curvature, 12), []).append(number)
+    cuts = list(fixed)
+    for curvature in sorted(groups):
+        own = replace(rules, curvature=curvature)
+        for number, found in _chosen(spans, fixed, groups[curvature], supply, own, quantity, reach):
+            cuts[number] = np.sort(np.concatenate([cuts[number], found]))
+    return cuts
+
+
+def _chosen(
+    spans: Sequence[Span],
+    fixed: Sequence[Floats],
+    numbers: Sequence[int],
+    supply: Supply,
+    rules: Rules,
+    quantity: int,
+    reach: float,
+) -> list[tuple[int, Floats]]:
+    """Cuts of some strips of one curvature, each with the strip's number; a strip may be there several times."""
     owners, bounds = [], []
-    for number, (span, own) in enumerate(zip(spans, fixed, strict=True)):
-        for part in _between(span.bounds(reach), own):
+    for number in numbers:
+        for part in _between(spans[number].bounds(reach), fixed[number]):
             owners.append(number)
             bounds.append(part)
     found = choose_splices(bounds, supply, rules, quantity)
     if np.isinf(found.cost) and reach:
         # cells too short for splices are told when these are made
-        return _with_stock(spans, fixed, supply, rules, quantity, 0.0)
-    cuts = list(fixed)
-    for number, own in zip(owners, found.cuts, strict=True):
-        cuts[number] = np.sort(np.concatenate([cuts[number], own]))
-    return cuts
+        return _chosen(spans, fixed, numbers, supply, rules, quantity, 0.0)
+    return list(zip(owners, found.cuts, strict=True))

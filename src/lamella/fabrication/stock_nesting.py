@@ -8,11 +8,11 @@ from math import isfinite
 import numpy as np
 
 from lamella.base.errors import InputError
-from lamella.fabrication.blanks import blank_of
+from lamella.fabrication.blanks import Blank, blank_of
 from lamella.fabrication.part import Parts
 from lamella.fabrication.sheet import Nesting, nest, pieces_of
 from lamella.fabrication.stock import Supply
-from lamella.fabrication.stock_layout import lay
+from lamella.fabrication.stock_layout import Laid, lay
 
 
 def nest_on_stock(parts: Parts, supply: Supply) -> Nesting:
@@ -36,7 +36,7 @@ def nest_on_stock(parts: Parts, supply: Supply) -> Nesting:
     blanks = [blank_of(part) for part in parts.parts]
     bow = max((part.bow for part in parts.parts), default=0.0)
     pieces = [replace(blanks[index], piece=piece) for piece, index in enumerate(of_part.tolist())]
-    laid = lay(pieces, supply, bow)
+    laid = _all_laid(pieces, supply, bow)
     if not isfinite(laid.cost):
         raise _too_large(parts, supply, bow)
     simple = _sheet_after_sheet(parts, supply)
@@ -57,6 +57,19 @@ def nest_on_stock(parts: Parts, supply: Supply) -> Nesting:
         parts,
         tuple(laid.stocks),
     )
+
+
+def _all_laid(pieces: list[Blank], supply: Supply, bow: float) -> Laid:
+    """Pieces of each radius on stock of their own: on levels the families' radii differ."""
+    groups: dict[tuple[float, float], list[Blank]] = {}
+    for blank in pieces:
+        groups.setdefault((round(blank.radius, 9), blank.height), []).append(blank)
+    found = Laid(0.0, [], [], [])
+    for key in sorted(groups):
+        own = lay(groups[key], supply, bow)
+        places = [(piece, number + len(found.stocks), x, y) for piece, number, x, y in own.places]
+        found = Laid(found.cost + own.cost, found.stocks + own.stocks, found.sizes + own.sizes, found.places + places)
+    return found
 
 
 def _sheet_after_sheet(parts: Parts, supply: Supply) -> tuple[float, Nesting] | None:
