@@ -16,6 +16,9 @@ from lamella.view.encoding import float32, integers
 PIECE_LIMIT = 20_000
 """Pieces of hardware in a report, 64 bytes each."""
 
+STORED_TRIANGLES = 100_000
+"""Triangles of all kinds, each counted once: 2 MB."""
+
 SHOWN_TRIANGLES = 1_500_000
 """Triangles of all pieces of hardware together that a browser draws in time."""
 
@@ -66,15 +69,18 @@ def _strips(layer: DrawnLayer, network: Network, kept: Integers, centre: Floats)
 
 
 def _bounded(kinds: list[tuple[DrawnLayer, Repeated]]) -> list[tuple[DrawnLayer, Repeated]]:
-    """The kinds that a report holds: where they are too many, those that take most are left out first."""
-    kept = list(kinds)
-    while kept:
-        pieces = sum(len(solid.origins) for _, solid in kept)
-        drawn = [len(solid.origins) * len(solid.triangles) for _, solid in kept]
-        if pieces <= PIECE_LIMIT and sum(drawn) <= SHOWN_TRIANGLES:
-            break
-        del kept[int(np.argmax([len(solid.origins) for _, solid in kept] if pieces > PIECE_LIMIT else drawn))]
-    return kept
+    """The kinds that a report holds within its limits: those that take least for each of their pieces come first."""
+    pieces = [len(solid.origins) for _, solid in kinds]
+    stored = [len(solid.triangles) for _, solid in kinds]
+    order = sorted(range(len(kinds)), key=lambda k: (stored[k] / max(pieces[k], 1), k))
+    room = np.array([PIECE_LIMIT, STORED_TRIANGLES, SHOWN_TRIANGLES])
+    kept = []
+    for k in order:
+        needs = np.array([pieces[k], stored[k], pieces[k] * stored[k]])
+        if (needs <= room).all():
+            room = room - needs
+            kept.append(k)
+    return [kinds[k] for k in sorted(kept)]
 
 
 def _kind(layer: DrawnLayer, solid: Repeated, centre: Floats) -> dict[str, Any]:
