@@ -66,7 +66,7 @@ def test_arcs_use_seven_tenths_of_their_sheets_and_straight_strips_nine_of_their
     ids=["arcs on sheets", "arcs on a coil", "rows", "rows on a coil", "two bars", "slit coil"],
 )
 def test_pieces_on_stock_keep_their_distance(surface, stocks) -> None:
-    _, parts, nesting = made(surface, stocks)
+    _, parts, nesting = made(surface, stocks, cells=8)
     assert len(nesting.parts) == parts.pieces
     assert np.bincount(nesting.parts).tolist() == [part.quantity for part in parts.parts]
     outlines = list(placed_outlines(parts, nesting, 0.01))
@@ -138,9 +138,9 @@ def test_cuts_keep_room_for_splices() -> None:
 
 def test_what_costs_least_is_cut() -> None:
     cheap, dear = replace(SHEET, price=1.0), replace(BAR, price=1.0)
-    *_, nesting = made(STRAIGHT, [cheap, dear])
+    *_, nesting = made(STRAIGHT, [cheap, dear], cells=6)
     assert {stock.kind for stock in nesting.stocks} == {"sheet"}
-    *_, nesting = made(STRAIGHT, [replace(cheap, price=100.0), dear])
+    *_, nesting = made(STRAIGHT, [replace(cheap, price=100.0), dear], cells=6)
     assert {stock.kind for stock in nesting.stocks} == {"bar"}
 
 

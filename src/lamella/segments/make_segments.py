@@ -105,8 +105,11 @@ def _segments(
         mass, centre = _weighed(weights, of_part == k, [places == k for places in of_place])
         inside = of_node == k
         nodes = np.flatnonzero(inside)
-        able = nodes[liftable[nodes]] if liftable[nodes].sum() >= 3 else nodes
+        able = nodes[liftable[nodes]]
         lifting, shares = lifting_nodes(able, network.node_points[able], centre)
+        if not len(lifting):
+            # small ones at the rim may be surrounded by its nodes alone
+            lifting, shares = lifting_nodes(nodes, network.node_points[nodes], centre)
         size = extent(graph, inside)
         found.append(Segment(f"S{k + 1}", nodes, np.unique(owners[own]), own, mass, centre, size, lifting, shares))
     return Segments(tuple(found), _joints(parts, of_part, lamellas), of_node, of_part, of_place, borders)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
+from lamella.base.message import Message
 from lamella.base.result import Result
 from lamella.base.wording import counted
 
@@ -98,6 +99,19 @@ class Segments(Result):
         heaviest = max((one.mass for one in self.segments), default=0.0)
         joints = counted(len(self.joints), "joint")
         return f"{counted(len(self.segments), 'segment')}, up to {heaviest:.4g} kg, {joints}"
+
+    @property
+    def warnings(self) -> tuple[Message, ...]:
+        """What the user should know about them."""
+        without = [one.id for one in self.segments if not len(one.lifting)]
+        if not without:
+            return ()
+        few = ", ".join(without[:5]) + (", ..." if len(without) > 5 else "")
+        text = (
+            f"{len(without)} of {counted(len(self.segments), 'segment')} ({few}) have no three nodes around their "
+            "centre of gravity to be lifted at: choose larger segments"
+        )
+        return (Message("segments_lifting", text),)
 
     @property
     def mass(self) -> float:

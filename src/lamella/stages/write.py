@@ -152,10 +152,10 @@ def write_files(results: Results, folder: Path, *, progress: Progress = silent) 
     table = results.project.files.csv
     style = None if table is None else (table.separator, table.decimal)
     few = results.network is None or len(results.network.sample_points) < SAMPLES_WRITTEN_ALONE
-    return run_side_by_side([partial(_styled, file, folder, style) for file in files], begins, alone=few)
+    return run_side_by_side([partial(write_styled, file, folder, style) for file in files], begins, alone=few)
 
 
-def _styled(file: File, folder: Path, style: tuple[str, str] | None) -> None:
+def write_styled(file: File, folder: Path, style: tuple[str, str] | None) -> None:
     """Write a file, and those beside it, lists in a style: separator and decimal sign."""
     file.write(folder / file.name)
     if style is not None:

@@ -83,6 +83,7 @@ class FabricationStage(Stage[FabricationOutput]):
         yield from (with_keys(warning, *named) for warning in out.parts.warnings)
         yield from out.hardware.warnings
         yield from out.notes
+        yield from out.segments.warnings
         if up.project.joint is not None:
             from lamella.stages.fabrication.scene import solids_left_out
 
