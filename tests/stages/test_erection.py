@@ -157,3 +157,30 @@ def test_a_net_that_nothing_braces_is_named() -> None:
     results = lamella.compute(lamella.parse_project(PROJECT), until="erection")
     (warning,) = [text for text in results.summary["warnings"] if text.key == "springs_back"]
     assert f"{results.summary['erection']['spring_back']:.3g} m" in warning
+
+
+def test_segments(tmp_path: Path) -> None:
+    """Each is laid flat by itself, in a folder of its own; together they have the edges that are not cut."""
+    project = PROJECT | {
+        "network": {"spacing": 0.45},
+        "lamella": {"layers": 1},
+        "segments": {"size": 3.0},
+        "erection": {"states": 3, "elements": 1},
+    }
+    results = lamella.compute(lamella.parse_project(project), until="erection")
+    lamella.write(results, tmp_path / "out")
+    figures = results.summary["erection"]
+    told = {one["id"]: one for one in figures["segments"]}
+    assert [one["id"] for one in results.summary["fabrication"]["segments"]] == list(told)
+    assert len(told) > 1
+    for name, one in told.items():
+        assert one["fault"] is None
+        assert one["flat"]["lies"]
+        assert max(one["flat"]["size"]) < 3.5
+        states = json.loads((tmp_path / "out" / "erection" / name / "states.json").read_text())["states"]
+        points = np.array(states[0]["nodes"])
+        assert np.linalg.svd(points - points.mean(0), compute_uv=False)[2] < 1e-8
+        assert (tmp_path / "out" / "erection" / name / "flat.dxf").stat().st_size > 0
+    assert figures["spring_back"] == max(one["spring_back"] for one in told.values())
+    assert figures["energy_designed"] == pytest.approx(sum(one["energy_designed"] for one in told.values()))
+    assert figures["spring_back_braced"] == {}

@@ -148,7 +148,7 @@ def write_files(results: Results, folder: Path, *, progress: Progress = silent) 
         begun += 1
 
     for file in files:
-        (folder / file.name).parent.mkdir(exist_ok=True)
+        (folder / file.name).parent.mkdir(parents=True, exist_ok=True)
     table = results.project.files.csv
     style = None if table is None else (table.separator, table.decimal)
     few = results.network is None or len(results.network.sample_points) < SAMPLES_WRITTEN_ALONE

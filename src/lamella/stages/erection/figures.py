@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
 from lamella.base.wording import counted
 from lamella.erection.erection import Erection
-from lamella.stages.figure import FLAG, INTEGER, NUMBER, PAIR, Figure, line, nullable, record
+from lamella.stages.erection.output import ErectionOutput
+from lamella.stages.figure import ABSENT, FLAG, INTEGER, NUMBER, PAIR, TEXT, Figure, line, list_of, nullable, record
 
 Rows = Iterator[tuple[str, str, str]]
 
 
-def _flat(out: Erection) -> dict[str, Any]:
-    flat, angles = out.flat, out.states[0].angles
+def _flat_of(made: Erection) -> dict[str, Any]:
+    flat, angles = made.flat, made.states[0].angles
     return {
         "height": flat.height,
         "radius": None if flat.planar else flat.radius,
@@ -26,6 +27,38 @@ def _flat(out: Erection) -> dict[str, Any]:
         "joint_angle_max_deg": float(angles.max()),
         "overlaps": len(flat.overlaps),
     }
+
+
+def _flat(out: ErectionOutput) -> dict[str, Any]:
+    every = [_flat_of(made) for made in out.made]
+    worst = max(every, key=lambda one: one["off"])
+    return {
+        "height": max(one["height"] for one in every),
+        "radius": worst["radius"],
+        "off": worst["off"],
+        "lies": all(one["lies"] for one in every),
+        "size": max((one["size"] for one in every), key=lambda size: size[0] * size[1]),
+        "joint_angle_min_deg": min(one["joint_angle_min_deg"] for one in every),
+        "joint_angle_max_deg": max(one["joint_angle_max_deg"] for one in every),
+        "overlaps": sum(one["overlaps"] for one in every),
+    }
+
+
+def _segments(out: ErectionOutput) -> Any:
+    if not out.divided:
+        return ABSENT
+    return [
+        {"id": one.id, "mass": one.mass, "fault": one.fault or None} | ({} if one.made is None else _told(one.made))
+        for one in out.segments
+    ]
+
+
+def _told(made: Erection) -> dict[str, Any]:
+    return {"flat": _flat_of(made)} | {key: of(made) for key, of in OF_SEGMENT.items()}
+
+
+def _segment_rows(value: list[dict[str, Any]], summary: dict[str, Any]) -> Rows:
+    yield "Segments laid flat", f"{sum('flat' in one and one['flat']['lies'] for one in value)} of {len(value)}", ""
 
 
 BRACES = ("cables", "edge_beams", "both")
@@ -59,17 +92,17 @@ def _braced_rows(value: dict[str, Any], summary: dict[str, Any]) -> Rows:
             yield f"Springs back, with {names[key]}, by", f"{back:.3f}", "m"
 
 
-def _gap(out: Erection) -> float | None:
-    return min((state.stiffness_gap for state in out.states if state.stiffness_gap is not None), default=None)
+def _gap(made: Erection) -> float | None:
+    return min((state.stiffness_gap for state in made.states if state.stiffness_gap is not None), default=None)
 
 
-def _leaves_plane(out: Erection) -> float | None:
+def _leaves_plane(made: Erection) -> float | None:
     """By the square of the height over the plane, which grows steadily where the net begins to leave it."""
-    if not out.flat.planar:
+    if not made.flat.planar:
         return None
-    size = out.model.structure.size
-    heights = np.array([state.height for state in out.states])
-    shares = np.array([state.share for state in out.states])
+    size = made.model.structure.size
+    heights = np.array([state.height for state in made.states])
+    shares = np.array([state.share for state in made.states])
     up = np.flatnonzero(heights > 1e-6 * size)
     if not len(up) or up[0] == 0:
         return None
@@ -81,11 +114,36 @@ def _leaves_plane(out: Erection) -> float | None:
     return float(shares[first - 1])
 
 
-def _largest(name: str) -> Any:
-    return lambda out: max(getattr(state, name) for state in out.states)
+def _on_the_way(name: str) -> Callable[[Erection], float]:
+    return lambda made: max(getattr(state, name) for state in made.states)
 
 
-FIGURES: tuple[Figure[Erection], ...] = (
+def _worst(of: Callable[[Erection], float | None], choose: Callable[[Iterator[float]], float] = max) -> Any:
+    """Of the whole net or all segments; null where none has it."""
+
+    def value(out: ErectionOutput) -> float | None:
+        found = [one for one in map(of, out.made) if one is not None]
+        return choose(iter(found)) if found else None
+
+    return value
+
+
+def _joint_moment(made: Erection) -> float:
+    return max(abs(state.driver) for state in made.states) * float(np.abs(made.driver.weights).max())
+
+
+OF_SEGMENT: dict[str, Callable[[Erection], Any]] = {
+    "energy_designed": lambda made: made.locked.energy,
+    "driver_max": _on_the_way("driver"),
+    "strong_axis_stress_max": _on_the_way("strong_axis"),
+    "von_mises_max": _on_the_way("von_mises"),
+    "slot_width_needed": lambda made: made.slot_width_needed,
+    "spring_back": lambda made: made.spring_back,
+}
+"""What is told of each segment."""
+
+
+FIGURES: tuple[Figure[ErectionOutput], ...] = (
     Figure(
         "flat",
         "",
@@ -97,12 +155,12 @@ FIGURES: tuple[Figure[Erection], ...] = (
         FLAT,
         rows=_flat_rows,
     ),
-    Figure("states", "", "states of the way", lambda out: len(out.states), INTEGER),
+    Figure("states", "", "states of the way", lambda out: len(out.made[0].states), INTEGER),
     Figure(
         "energy_flat",
         "J",
         "elastic energy of all layers, flat",
-        lambda out: out.states[0].energy,
+        _worst(lambda made: made.states[0].energy, sum),
         NUMBER,
         rows=line("Elastic energy, flat", "J"),
     ),
@@ -110,7 +168,7 @@ FIGURES: tuple[Figure[Erection], ...] = (
         "energy_designed",
         "J",
         "the same, joints locked in the designed shape",
-        lambda out: out.locked.energy,
+        _worst(lambda made: made.locked.energy, sum),
         NUMBER,
         rows=line("Elastic energy, designed", "J"),
     ),
@@ -118,7 +176,7 @@ FIGURES: tuple[Figure[Erection], ...] = (
         "driver_max",
         "N m",
         "largest moment of the driver: each joint is turned by as much as its weight says, the sum of their squares 1",
-        _largest("driver"),
+        _worst(_on_the_way("driver")),
         NUMBER,
         rows=line("Driver, at most", "N m"),
     ),
@@ -126,7 +184,7 @@ FIGURES: tuple[Figure[Erection], ...] = (
         "joint_moment_max",
         "N m",
         "largest moment that a joint is driven by",
-        lambda out: max(abs(state.driver) for state in out.states) * float(np.abs(out.driver.weights).max()),
+        _worst(_joint_moment),
         NUMBER,
         rows=line("Moment on a joint, at most", "N m"),
     ),
@@ -134,7 +192,7 @@ FIGURES: tuple[Figure[Erection], ...] = (
         "strong_axis_stress_max",
         "Pa",
         "largest bending stress about the strong axis on the way",
-        _largest("strong_axis"),
+        _worst(_on_the_way("strong_axis")),
         NUMBER,
         rows=line("Strong-axis stress on the way", "MPa", scale=1e-6),
     ),
@@ -142,7 +200,7 @@ FIGURES: tuple[Figure[Erection], ...] = (
         "von_mises_max",
         "Pa",
         "largest equivalent stress on the way",
-        _largest("von_mises"),
+        _worst(_on_the_way("von_mises")),
         NUMBER,
         rows=line("Equivalent stress on the way", "MPa", scale=1e-6),
     ),
@@ -150,7 +208,7 @@ FIGURES: tuple[Figure[Erection], ...] = (
         "leaves_plane",
         "",
         "share of the way at which the net leaves its plane; null where it never lies in one",
-        _leaves_plane,
+        _worst(_leaves_plane, min),
         nullable(NUMBER),
     ),
     Figure(
@@ -159,7 +217,7 @@ FIGURES: tuple[Figure[Erection], ...] = (
         "smallest 1 - k1/k2 of the stable states, k the stiffness of the easiest and the "
         "second easiest motion with free joints: near 0 the net opens in a second way; null where no state is stable "
         "without the driver",
-        _gap,
+        _worst(_gap, min),
         nullable(NUMBER),
         rows=line("Stiffness gap, at least", form=".2f"),
     ),
@@ -167,7 +225,7 @@ FIGURES: tuple[Figure[Erection], ...] = (
         "slot_width_needed",
         "m",
         "width of slots in which the joints turn as far as they do",
-        lambda out: out.slot_width_needed,
+        _worst(lambda made: made.slot_width_needed),
         NUMBER,
         rows=line("Slots needed on the way", "mm", scale=1e3, form=".2f"),
     ),
@@ -176,7 +234,7 @@ FIGURES: tuple[Figure[Erection], ...] = (
         "m",
         "how far a node is from where it was designed where joints are locked and nothing else "
         "holds the net, after the best rigid motion",
-        lambda out: out.spring_back,
+        _worst(lambda made: made.spring_back),
         NUMBER,
         rows=line("Springs back by", "m", form=".3f"),
     ),
@@ -185,7 +243,7 @@ FIGURES: tuple[Figure[Erection], ...] = (
         "m",
         "the same with what the project braces the net by: `cables` on its diagonals, `edge_beams`, `both`; null where "
         "no equilibrium was found",
-        lambda out: out.braced,
+        lambda out: {} if out.divided else out.made[0].braced,
         record(
             ("cables", "edge_beams", "both"),
             cables=nullable(NUMBER),
@@ -195,23 +253,44 @@ FIGURES: tuple[Figure[Erection], ...] = (
         rows=_braced_rows,
     ),
     Figure(
+        "segments",
+        "",
+        "where `[segments]` is given: `id`, `mass` (kg, with hardware), `fault`, why it could not be laid flat, or "
+        "null; else `flat` and some of the figures of each. All other figures are then of the worst segment, energies "
+        "of all",
+        _segments,
+        list_of(
+            record(
+                ("flat", *OF_SEGMENT),
+                id=TEXT,
+                mass=NUMBER,
+                fault=nullable(TEXT),
+                flat=FLAT,
+                **dict.fromkeys(OF_SEGMENT, NUMBER),
+            )
+        ),
+        always=False,
+        rows=_segment_rows,
+    ),
+    Figure(
         "each_joint",
         "",
         "whether each joint is turned to its own angle on the way, as one moment shared by all would "
         "not lead the net to its designed shape",
-        lambda out: out.each_joint,
+        lambda out: any(made.each_joint for made in out.made),
         FLAG,
     ),
     Figure(
         "hold",
         "N m",
         "moment on each joint that keeps the net from folding up in the flat state; 0 where it lies by itself",
-        lambda out: out.hold,
+        _worst(lambda made: made.hold),
         NUMBER,
     ),
 )
 
 REPORT = (
+    "segments",
     "flat",
     "energy_flat",
     "energy_designed",
