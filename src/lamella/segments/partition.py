@@ -9,7 +9,7 @@ of a spanning tree that divides it most evenly.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, inf
 
@@ -112,8 +112,9 @@ def partition(graph: Graph, limits: Limits) -> Integers:
     InputError
         A single node is too heavy or its cells are too large.
     """
-    nodes = np.arange(len(graph.masses))
-    todo = _components(graph, np.ones(len(nodes), bool))
+    graph, onto = _without_ends(graph)
+    kept = onto == np.arange(len(onto))
+    todo = _components(graph, kept)
     done: list[Booleans] = []
     while todo:
         patch = todo.pop()
@@ -123,10 +124,32 @@ def partition(graph: Graph, limits: Limits) -> Integers:
         if patch.sum() == 1:
             raise _too_much(graph, int(np.flatnonzero(patch)[0]), limits)
         todo += _halves(graph, patch, limits)
-    of_node = np.full(len(nodes), -1)
-    for number, patch in enumerate(sorted(done, key=lambda one: int(np.flatnonzero(one)[0]))):
+    of_node = np.full(len(onto), -1)
+    patches = [np.isin(onto, np.flatnonzero(patch)) for patch in done]
+    for number, patch in enumerate(sorted(patches, key=lambda one: int(np.flatnonzero(one)[0]))):
         of_node[patch] = number
     return of_node
+
+
+def _without_ends(graph: Graph) -> tuple[Graph, Integers]:
+    """The graph with ends of lamellas on the nodes they hang on, and for each node the one it goes with, (n,).
+
+    Where a lamella ends at the rim and no other one does, its end is no segment of its own.
+    """
+    count = len(graph.masses)
+    edges = np.bincount(graph.ends.ravel(), minlength=count)
+    onto = np.arange(count)
+    for side in (0, 1):
+        # of two ends that hang on each other, one stays
+        lone = (edges[graph.ends[:, side]] == 1) & ((edges[graph.ends[:, 1 - side]] > 1) | (side == 1))
+        onto[graph.ends[lone, side]] = graph.ends[lone, 1 - side]
+    ends = onto[graph.ends]
+    inward = ends[:, 0] == ends[:, 1]
+    # what was an edge to an end says how far the node now reaches
+    last = np.where(onto[graph.ends[:, 0]] != graph.ends[:, 0], graph.ends[:, 0], graph.ends[:, 1])
+    reach = np.where(inward[:, None], graph.points[last], graph.reach)
+    masses = np.bincount(onto, graph.masses, count)
+    return replace(graph, ends=ends, masses=masses, reach=reach), onto
 
 
 def extent(graph: Graph, patch: Booleans) -> float:
@@ -229,11 +252,11 @@ def _rated(graph: Graph, patch: Booleans, other: Booleans, limits: Limits) -> Ra
     nodes = tuple(np.flatnonzero(other).tolist())
     if graph.width(patch) / limits.size > sum(masses) / limits.mass:
         left = sum(graph.width(half) ** 2 for half in halves) / graph.width(patch) ** 2
-        uneven = 1 - min(masses) / max(masses)
+        uneven = round(1 - min(masses) / max(masses), 6)
         return (round(left + uneven + FIRM_COST * firm, 6), round(EDGE_SHARE * edges, 6)), uneven, nodes
     counts = [max(ceil(mass / limits.mass - 1e-9), 1) for mass in masses]
     shares = [mass / (limits.mass * count) for mass, count in zip(masses, counts, strict=True)]
-    uneven = 1 - min(shares) / max(shares)
+    uneven = round(1 - min(shares) / max(shares), 6)
     return (sum(counts) + FIRM_COST * firm, round(max(shares) + EDGE_SHARE * edges, 6)), uneven, nodes
 
 
@@ -276,7 +299,7 @@ def _subtree(graph: Graph, patch: Booleans) -> Booleans:
     for node in order[:0:-1].tolist():
         mass[before[node]] += mass[node]
     half = mass[order[0]] / 2
-    root = min(order[1:].tolist(), key=lambda node: (round(abs(float(mass[node]) - half), 6), node))
+    root = min(order[1:].tolist(), key=lambda node: (round(abs(float(mass[node]) / half - 1), 6), node))
     inside = np.zeros(n, bool)
     inside[root] = True
     for node in order[1:].tolist():
