@@ -162,7 +162,6 @@ def test_a_net_that_nothing_braces_is_named() -> None:
 def test_segments(tmp_path: Path) -> None:
     """Each is laid flat by itself, in a folder of its own; together they have the edges that are not cut."""
     project = PROJECT | {
-        "network": {"spacing": 0.45},
         "lamella": {"layers": 1},
         "segments": {"size": 3.0},
         "erection": {"states": 3, "elements": 1},
