@@ -148,7 +148,7 @@ def _without_ends(graph: Graph) -> tuple[Graph, Integers]:
     # what was an edge to an end says how far the node now reaches
     last = np.where(onto[graph.ends[:, 0]] != graph.ends[:, 0], graph.ends[:, 0], graph.ends[:, 1])
     reach = np.where(inward[:, None], graph.points[last], graph.reach)
-    masses = np.bincount(onto, graph.masses, count)
+    masses = np.asarray(np.bincount(onto, graph.masses, count), float)
     return replace(graph, ends=ends, masses=masses, reach=reach), onto
 
 
