@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.fabrication.cut_length import segment_lengths
 from lamella.fabrication.offset import offset_outline
-from lamella.files.write.dxf_text import BlockWriter
+
+if TYPE_CHECKING:
+    from lamella.files.write.dxf_text import BlockWriter
 
 LEAD = "LEAD"
 """Layer of the lead-ins."""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lamella.base.wording import counted
-from lamella.erection.erection import Erection
-from lamella.stages.erection.output import ErectionOutput
 from lamella.stages.figure import ABSENT, FLAG, INTEGER, NUMBER, PAIR, TEXT, Figure, line, list_of, nullable, record
+
+if TYPE_CHECKING:
+    from lamella.erection.erection import Erection
+    from lamella.stages.erection.output import ErectionOutput
 
 Rows = Iterator[tuple[str, str, str]]
 

@@ -16,7 +16,6 @@ from lamella.fabrication.rules import Rules, clear_hub
 from lamella.fabrication.stock import DEFAULT_SPLICE_WORTH, SAME, Stock, Supply
 from lamella.hardware.edge_rules import EdgeBeamRules
 from lamella.hardware.rules import CableRules, JointRules
-from lamella.hardware.splices import splice_length
 from lamella.project.surface_tables import MOST_LOOPS
 from lamella.project.tables import EdgeBeamTable, FabricationTable, JointTable, Project
 from lamella.stages.keys import keys
@@ -105,6 +104,8 @@ def splice_room(project: Project) -> float:
     """Half a splice and a slot's width, which a splice keeps from a slot, m; 0 where there are no splices."""
     if project.joint is None or not project.joint.splice:
         return 0.0
+    from lamella.hardware.splices import splice_length
+
     slot_width = project.fabrication.slot_width or default_slot_width(project.lamella.thickness)
     return splice_length(joint_rules(project, project.joint)) / 2 + slot_width + SAME
 

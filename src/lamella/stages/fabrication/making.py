@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +14,6 @@ from lamella.fabrication.part import Parts
 from lamella.fabrication.parts import make_parts
 from lamella.fabrication.sheet import nest
 from lamella.fabrication.stock_nesting import nest_on_stock
-from lamella.hardware.beam_axes import EdgeBeamAxes
 from lamella.hardware.item import Hardware
 from lamella.hardware.plate_sheets import plate_sheets
 from lamella.stages.fabrication.defaults import (
@@ -32,6 +32,9 @@ from lamella.stages.lamellas.stage import strips_of
 from lamella.stages.network.stage import other_cells
 from lamella.stages.stage import Upstream
 from lamella.strip.lamellas import Lamellas
+
+if TYPE_CHECKING:
+    from lamella.hardware.beam_axes import EdgeBeamAxes
 
 
 def made_parts(up: Upstream, borders: Sequence[Integers] | None = None) -> tuple[Parts, Hardware]:

@@ -14,7 +14,6 @@ from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
 from lamella.stages.fabrication.defaults import check_drawings, check_fabrication, check_joint, cut_options
 from lamella.stages.fabrication.figures import FIGURES, REPORT
-from lamella.stages.fabrication.making import made
 from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.keys import with_keys
 from lamella.stages.stage import File, Stage, Upstream
@@ -73,6 +72,8 @@ class FabricationStage(Stage[FabricationOutput]):
         return "parts and sheets"
 
     def run(self, up: Upstream, progress: Progress) -> FabricationOutput:
+        from lamella.stages.fabrication.making import made
+
         return made(up)
 
     def result(self, figures: Mapping[str, Any], out: FabricationOutput) -> str:
