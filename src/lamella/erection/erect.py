@@ -31,6 +31,8 @@ from lamella.structure.structure import Structure
 
 # rad: a net of which a joint, let go, turns farther is folding up
 FOLDING = np.radians(75.0)
+# over the largest force or moment of the locked net, in N and N m
+ROUNDING_MOMENT = 1e-9
 # of the net's size: farther from the locked shape the driver alone does not hold the net in it
 LET_GO = 0.1
 
@@ -75,12 +77,18 @@ def erect(lamellas: Lamellas, *, states: int = 20, elements: int = 2, progress: 
         states=told,
         flat=FlatShape.of(model, lying.poses),
         held=bool(lying.loads.forces.any()),
-        hold=abs(lying.factor) * float(np.abs(lying.loads.forces).max(initial=0.0)),
+        hold=_moment(lying, float(np.abs(locked.internal).max())),
         locked=State.of(model, locked, 1.0, 0.0, stable=locked.negative == 0),
         spring_back=float(off.max()),
         warnings=(),
     )
     return replace(result, warnings=tuple(erection_warnings(result)))
+
+
+def _moment(lying: Equilibrium, largest: float) -> float:
+    """On each joint, N m; 0 where it is rounding of the largest force or moment."""
+    moment = abs(lying.factor) * float(np.abs(lying.loads.forces).max(initial=0.0))
+    return moment if moment > ROUNDING_MOMENT * largest else 0.0
 
 
 def _lying(locked: Equilibrium, free: Structure, progress: Progress) -> Equilibrium:

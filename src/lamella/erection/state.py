@@ -16,6 +16,9 @@ from lamella.structure.beam.poses import Poses
 from lamella.structure.equilibrium import Equilibrium
 from lamella.structure.model.model import Model
 
+# a stress of less than this times Young's modulus is rounding
+ROUNDING_STRAIN = 1e-12
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class State(Result):
@@ -65,6 +68,7 @@ class State(Result):
         """What is told of an equilibrium."""
         section, network = model.lamellas.section, model.lamellas.network
         stresses = strip_stresses(equilibrium.state, model.lamellas.material, section.height, section.thickness)
+        least = ROUNDING_STRAIN * model.lamellas.material.youngs_modulus
         angles = designed_angles(network, model.joint_nodes) + equilibrium.poses.angles
         return cls(
             share=share,
@@ -75,13 +79,15 @@ class State(Result):
             stiffness_gap=stiffness_gap(equilibrium),
             height=fitted_plane(equilibrium.poses.points[: model.nodes]).height,
             angles=np.degrees(angles),
-            bending=_largest(stresses.bending),
-            torsion=_largest(stresses.torsion),
-            strong_axis=_largest(stresses.layer),
-            helix=_largest(stresses.helix_edge),
-            von_mises=_largest(stresses.von_mises),
+            bending=_largest(stresses.bending, least),
+            torsion=_largest(stresses.torsion, least),
+            strong_axis=_largest(stresses.layer, least),
+            helix=_largest(stresses.helix_edge, least),
+            von_mises=_largest(stresses.von_mises, least),
         )
 
 
-def _largest(values: Floats) -> float:
-    return float(np.abs(values).max(initial=0.0))
+def _largest(values: Floats, least: float) -> float:
+    """By size; 0 where it is less than that, which is rounding."""
+    largest = float(np.abs(values).max(initial=0.0))
+    return largest if largest > least else 0.0
