@@ -12,6 +12,7 @@ import pytest
 
 import lamella
 from lamella import InputError
+from lamella.stages.check import check_project
 from validation.measure_network import measure
 
 PROJECT = {
@@ -183,3 +184,12 @@ def test_segments(tmp_path: Path) -> None:
     assert figures["spring_back"] == max(one["spring_back"] for one in told.values())
     assert figures["energy_designed"] == pytest.approx(sum(one["energy_designed"] for one in told.values()))
     assert figures["spring_back_braced"] == {}
+
+
+def test_a_check_leaves_long_ones_to_the_run() -> None:
+    """Up to so many elements times states it lays the net flat, beyond that it says that it does not."""
+    short = check_project(lamella.parse_project(PROJECT))
+    assert not short.left
+    long = PROJECT | {"erection": {"states": 1000, "elements": 2}}
+    (left,) = check_project(lamella.parse_project(long)).left
+    assert "elements times states" in left
