@@ -39,6 +39,7 @@ def rows(path: Path) -> list[dict[str, str]]:
 
 
 def test_every_piece_is_in_the_lists_and_in_the_model_once(written: tuple[lamella.Results, Path]) -> None:
+    """Lists, places and model have the same pieces, each once, and the figures count them."""
     results, folder = written
     kinds = {row["id"]: int(row["quantity"]) for row in rows(folder / "fabrication" / "hardware.csv")}
     places = [(row["id"], row["place"]) for row in rows(folder / "fabrication" / "places.csv")]
@@ -100,6 +101,7 @@ def test_holes_of_the_strips_are_cut(written: tuple[lamella.Results, Path]) -> N
 
 
 def test_the_same_bytes_twice(written: tuple[lamella.Results, Path], tmp_path: Path) -> None:
+    """Lists, drawings and models of hardware are the same to the byte in a second run."""
     _, folder = written
     write(compute(parse_project(PROJECT)), tmp_path / "again")
     for name in (

@@ -57,7 +57,7 @@ def test_annulus_with_two_hexagonal_nodes() -> None:
 
 @pytest.mark.parametrize("cells", [24, 42])
 def test_annulus_of_ten_thousand_nodes(cells: int) -> None:
-    """Issue 4: DESIGN's annulus itself, its rim at 96 places, on at most 10,000 surface nodes.
+    """An annulus of 12 x 9 m, its rim given at 96 places, keeps its tolerance on at most 10,000 surface nodes.
 
     42 cells are 2,000 nodes: the rosettes around the umbilics are larger than a cell then.
     """
