@@ -127,10 +127,10 @@ ABOUT: dict[str, str] = {
     "bolted at the nodes. The edges of the skew square are straight, and lamellas meet them at right angles; along "
     "them the film's normal turns, and so does the flat bar that the lamellas end at.",
     "20_steel_interlocked": "The same square in steel: pairs of straight lamellas slotted into each other, star "
-    "washers, keys, a bolt at each node, shear blocks, cables on every second diagonal, tubes along the edges. Laid flat "
-    "and driven into shape; locked and let go of it springs back by 0.5 m, with its tubes by less than 1 mm.",
-    "21_vault_structure": "A vault over an ellipse of 7 x 4 m, inflated to H = -0.22/m, so that all lamellas are cut to "
-    "one radius of 4.5 m. As a structure: its strips' residual stress, weight, snow and wind with the combinations of "
+    "washers, keys, a bolt at each node, shear blocks, cables on every second diagonal, tubes along the edges. Laid "
+    "flat and driven into shape; locked and let go of it springs back by 0.5 m, with its tubes by less than 1 mm.",
+    "21_vault_structure": "A vault over an ellipse of 7 x 4 m, inflated to H = -0.22/m, so that all lamellas are cut "
+    "to one radius of 4.5 m. As a structure: its strips' residual stress, weight, snow and wind with the combinations of "
     "EN 1990, and how far each case is from buckling.",
 }
 
