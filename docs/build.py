@@ -130,8 +130,8 @@ ABOUT: dict[str, str] = {
     "washers, keys, a bolt at each node, shear blocks, cables on every second diagonal, tubes along the edges. Laid "
     "flat and driven into shape; locked and let go of it springs back by 0.5 m, with its tubes by less than 1 mm.",
     "21_vault_structure": "A vault over an ellipse of 7 x 4 m, inflated to H = -0.22/m, so that all lamellas are cut "
-    "to one radius of 4.5 m. As a structure: its strips' residual stress, weight, snow and wind with the combinations of "
-    "EN 1990, and how far each case is from buckling.",
+    "to one radius of 4.5 m. As a structure: its strips' residual stress, weight, snow and wind with the combinations "
+    "of EN 1990, and how far each case is from buckling.",
 }
 
 # tables inside the tables of a boundary, by their keys
