@@ -57,6 +57,7 @@ def test_energy_on_the_way() -> None:
     assert max(state.strong_axis for state in made.states) < 0.05 * made.states[-1].von_mises
 
 
+@pytest.mark.slow
 def test_work_of_the_driver() -> None:
     """On the planar part of the way the change of energy is the driver's work: Simpson's rule, 4th order."""
     gap = []
@@ -98,7 +99,8 @@ def test_lengths_on_the_way() -> None:
             assert np.ptp(points @ made.flat.plane.axes[2]) < 1e-9
 
 
-def test_spring_back_falls_with_stiffer_joints_of_none() -> None:
+@pytest.mark.slow
+def test_spring_back_of_finer_elements() -> None:
     """Locked joints and nothing else: the net springs back by decimetres, at the order of the beam elements."""
     back = [erected(elements, 2).spring_back for elements in (1, 2, 4)]
     assert 0.3 < back[-1] < 0.5
@@ -160,6 +162,7 @@ def test_arcs_lie_on_a_sphere() -> None:
     assert max(made.states[0].strong_axis, made.states[0].torsion) < 0.05 * made.states[0].bending
 
 
+@pytest.mark.slow
 def test_a_net_that_closes_around_is_named() -> None:
     made = erect(lamella.net(lamella.Catenoid(1.0, (-1.5, 1.5)), cells=6).strips(STRIP), states=3, elements=1)
     assert "not_flat" in {warning.key for warning in made.warnings}
