@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -461,6 +462,32 @@ def test_a_kill_at_any_step_loses_nothing_and_is_cleared_up(tmp_path: Path, way:
     # where it is missing for a moment, the next run gives it its place back first
     assert contents == left
     assert int(steps) > 20
+
+
+def test_a_folder_swapped_for_one_with_its_number_is_looked_at_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The number of a folder just deleted is soon another one's: what was read of both is nobody's edit."""
+    target = tmp_path / "out"
+    earlier_run(target)
+    look = folder.foreign_entries
+    looked: list[Path] = []
+
+    def swapped_once(place: Path, files: dict[str, str] | None) -> list[str]:
+        looked.append(place)
+        if len(looked) > 1:
+            return look(place, files)
+        target.rename(tmp_path / "gone")
+        time.sleep(0.05)
+        target.mkdir()
+        fill(target)
+        return ["model (edited)"]
+
+    monkeypatch.setattr(folder, "foreign_entries", swapped_once)
+    monkeypatch.setattr(os.path, "samestat", lambda one, other: True)
+    assert folder.check_target(target) == target
+    assert len(looked) == 2
+    assert is_new_run(target)
 
 
 @POSIX

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import struct
 from collections import Counter
@@ -17,6 +16,7 @@ import trimesh
 import lamella
 from lamella import compute, parse_project, write
 from lamella.solid.bodies import body_step, strip_bodies, triangle_count
+from stages.csv_rows import rows
 
 PROJECT: dict[str, Any] = {
     "name": "waist",
@@ -32,12 +32,6 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[lamella.Results, 
     folder = tmp_path_factory.mktemp("built") / "run"
     write(results, folder)
     return results, folder
-
-
-def rows(path: Path) -> list[dict[str, str]]:
-    with path.open(encoding="utf-8", newline="") as file:
-        file.readline()
-        return list(csv.DictReader(file))
 
 
 def listed(folder: Path) -> Counter[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from pathlib import Path
 
@@ -13,6 +12,7 @@ import pytest
 import lamella
 from lamella import InputError
 from lamella.stages.check import check_project
+from stages.csv_rows import rows
 from validation.measure_network import measure
 
 PROJECT = {
@@ -68,10 +68,9 @@ def test_states_are_networks(run: Path) -> None:
 def test_path(run: Path) -> None:
     """A row a node and state, the same places to 0.01 mm."""
     states = json.loads((run / "erection" / "states.json").read_text())["states"]
-    lines = (run / "erection" / "path.csv").read_text().splitlines()
-    rows = list(csv.DictReader(lines[1:]))
-    assert len(rows) == sum(len(state["nodes"]) for state in states)
-    places = np.array([[float(row[key]) for key in ("x_m", "y_m", "z_m")] for row in rows])
+    told = rows(run / "erection" / "path.csv")
+    assert len(told) == sum(len(state["nodes"]) for state in states)
+    places = np.array([[float(row[key]) for key in ("x_m", "y_m", "z_m")] for row in told])
     np.testing.assert_allclose(places, np.concatenate([state["nodes"] for state in states]), atol=5.1e-6)
 
 
@@ -193,3 +192,16 @@ def test_a_check_leaves_long_ones_to_the_run() -> None:
     long = PROJECT | {"erection": {"states": 1000, "elements": 2}}
     (left,) = check_project(lamella.parse_project(long)).left
     assert "elements times states" in left
+
+
+def test_stacked_lamellas_need_no_slots() -> None:
+    """They turn about their bolts: no width of slots is told, however thick they are."""
+    project = PROJECT | {
+        "lamella": {"height": 0.06, "thickness": 0.008, "layers": 2, "material": "C24"},
+        "joint": {"kind": "stacked"},
+        "erection": {"states": 2, "elements": 1},
+    }
+    summary = lamella.compute(lamella.parse_project(project), until="erection").summary
+    assert summary["erection"]["slot_width_needed"] is None
+    assert not [text for text in summary["warnings"] if text.key == "slots_too_narrow"]
+    assert summary["erection"]["flat"]["lies"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import tomllib
 from collections import Counter
 from pathlib import Path
@@ -14,6 +13,7 @@ import rhino3dm
 
 import lamella
 from lamella import InputError, compute, parse_project, write
+from stages.csv_rows import rows
 
 PROJECT = {
     "surface": {"kind": "enneper", "order": 3, "radius": 0.8, "scale": 3.0},
@@ -30,12 +30,6 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[lamella.Results, 
     folder = tmp_path_factory.mktemp("joint") / "run"
     write(results, folder)
     return results, folder
-
-
-def rows(path: Path) -> list[dict[str, str]]:
-    with path.open(encoding="utf-8", newline="") as file:
-        file.readline()
-        return list(csv.DictReader(file))
 
 
 def test_every_piece_is_in_the_lists_and_in_the_model_once(written: tuple[lamella.Results, Path]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import csv
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -13,6 +12,7 @@ import pytest
 
 from lamella import compute, parse_project
 from lamella.stages.structure.stage import StructureStage
+from stages.csv_rows import rows
 
 PROJECT: dict[str, Any] = {
     "name": "patch",
@@ -26,10 +26,6 @@ PROJECT: dict[str, Any] = {
     "support": [{"boundary": "rim"}],
     "load": [{"name": "snow", "kind": "area", "value": 100.0, "per": "plan"}],
 }
-
-
-def rows(path: Path) -> list[dict[str, str]]:
-    return list(csv.DictReader(path.read_text("utf-8").splitlines()[1:]))
 
 
 @pytest.fixture(scope="module")

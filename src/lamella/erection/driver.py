@@ -17,6 +17,8 @@ from lamella.structure.beam.poses import NODE_UNKNOWNS, Poses
 
 # rad: turns less than this are rounding, and no direction to drive in
 LEAST_JOINT_TURN = 1e-6
+# of a share of the way: what is beyond is rounding
+SHARE_DIGITS = 12
 
 
 @dataclass(frozen=True)
@@ -63,4 +65,5 @@ class Driver:
     def share(self, poses: Poses) -> float:
         """Of the way from flat (0) to designed (1)."""
         angles = self.weights[NODE_UNKNOWNS * len(poses.points) :]
-        return (float(angles @ poses.angles) - self.flat) / self.span
+        # minus zero is no share
+        return round((float(angles @ poses.angles) - self.flat) / self.span, SHARE_DIGITS) + 0.0

@@ -58,8 +58,10 @@ class Erection(Result):
     braced: dict[str, float | None] = field(default_factory=dict)
 
     @property
-    def slot_width_needed(self) -> float:
-        """In which the joints turn as far as they do, m."""
+    def slot_width_needed(self) -> float | None:
+        """In which the joints turn as far as they do, m; None of stacked lamellas, which have no slots."""
+        if self.model.lamellas.section.level:
+            return None
         thickness = self.model.lamellas.section.thickness
         farthest = max(float(np.abs(90 - state.angles).max()) for state in self.states)
         return float(slot_width_needed(np.radians(min(farthest, NEARLY_STRAIGHT)), thickness))

@@ -18,10 +18,9 @@ MM = 1e3
 DRAWN_PIECES = 4
 # m: letters of lamellas' ids, of joints' angles, and what is left around them
 ID_TEXT, ANGLE_TEXT, TEXT_SPACE = 0.06, 0.025, 0.02
-ORDER = (
-    "LAY THE A LAMELLAS UPRIGHT WITH THEIR SLOTS UP. PUT THE B LAMELLAS ON FROM ABOVE WITH THEIR SLOTS DOWN.",
-    "NUMBERS BESIDE JOINTS ARE THEIR ANGLES IN DEGREES FROM A TO B COUNTER-CLOCKWISE.",
-)
+SLOTTED = "LAY THE A LAMELLAS UPRIGHT WITH THEIR SLOTS UP. PUT THE B LAMELLAS ON FROM ABOVE WITH THEIR SLOTS DOWN."
+STACKED = "LAY THE A LAMELLAS UPRIGHT. STACK THE B LAMELLAS ON THEM AND BOLT THEM LOOSELY."
+ANGLES = "NUMBERS BESIDE JOINTS ARE THEIR ANGLES IN DEGREES FROM A TO B COUNTER-CLOCKWISE."
 
 
 def write_flat(path: Path, erection: Erection, *, name: str, version: str) -> None:
@@ -56,7 +55,7 @@ def _placed(erection: Erection, owner: str) -> Iterator[Placed]:
         yield from _ids(line, lamella, owner)
     yield Placed(_angles(erection, owner), 0.0, 0.0)
     low = plane.project(erection.states[0].poses.points).min(0)
-    for row, text in enumerate(ORDER):
+    for row, text in enumerate((STACKED if section.level else SLOTTED, ANGLES)):
         at = low - (0.0, (2 * row + 3) * ID_TEXT)
         yield Placed(_text(text, at, ID_TEXT / 2, "", owner), 0.0, 0.0)
 

@@ -37,5 +37,5 @@ def write_path(path: Path, erection: Erection, origin: Floats, *, name: str, ver
             told = "" if np.isnan(angle) else f"{angle:.{DEGREES}f}"
             # minus zero is no place
             place = ",".join(f"{round(c, PLACE_DECIMALS) + 0.0:.{PLACE_DECIMALS}f}" for c in (x, y, z))
-            lines.append(f"{state.share + 0.0:.4f},{node},{place},{told}")
+            lines.append(f"{state.share:.4f},{node},{place},{told}")
     write_whole(path, ("\n".join(lines) + "\n").encode())

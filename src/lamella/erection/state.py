@@ -67,7 +67,9 @@ class State(Result):
     def of(cls, model: Model, equilibrium: Equilibrium, share: float, driver: float, *, stable: bool) -> State:
         """What is told of an equilibrium."""
         section, network = model.lamellas.section, model.lamellas.network
-        stresses = strip_stresses(equilibrium.state, model.lamellas.material, section.height, section.thickness)
+        stresses = strip_stresses(
+            equilibrium.state, model.lamellas.material, section.height, section.thickness, layers=section.layers
+        )
         least = ROUNDING_STRAIN * model.lamellas.material.youngs_modulus
         angles = designed_angles(network, model.joint_nodes) + equilibrium.poses.angles
         return cls(

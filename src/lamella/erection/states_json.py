@@ -65,7 +65,7 @@ def _state(erection: Erection, state: State, origin: Floats) -> bytes:
     points, normals = np.round(points + origin, POINT_DECIMALS), np.round(normals, NORMAL_DECIMALS)
     spans = [slice(first, last) for first, last in pairwise(network.sample_offsets.tolist())]
     content: dict[str, Any] = {
-        "share": round(state.share, 12),
+        "share": state.share,
         "energy": state.energy,
         "driver": state.driver,
         "stable": state.stable,

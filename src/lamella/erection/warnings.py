@@ -76,12 +76,12 @@ def spring_back_warning(erection: Erection) -> Iterator[Message]:
         yield Message(
             "springs_back",
             f"with its joints locked and nothing else holding it the net springs back by {erection.spring_back:.3g} m: "
-            "brace it before it is moved, by [cables] or an [edge_beam]",
+            "brace it before it is moved, by diagonals or edge beams",
         )
 
 
 def slot_warning(erection: Erection, slot_width: float) -> Iterator[Message]:
-    """Of slots that are too narrow for a state.
+    """Of slots that are too narrow for a state; stacked lamellas have none.
 
     Parameters
     ----------
@@ -90,7 +90,8 @@ def slot_warning(erection: Erection, slot_width: float) -> Iterator[Message]:
         m.
     """
     thickness = erection.model.lamellas.section.thickness
-    if slot_width < thickness:
+    needed = erection.slot_width_needed
+    if needed is None or slot_width < thickness:
         return
     room = np.degrees(largest_turn(slot_width, thickness))
     for state in erection.states:
@@ -103,6 +104,6 @@ def slot_warning(erection: Erection, slot_width: float) -> Iterator[Message]:
                 f"slots {1e3 * slot_width:.3g} mm wide let a joint turn by {room:.3g} deg off square; at "
                 f"{100 * state.share:.0f} % of the way {tight} of {len(off)} joints are beyond that, the one at node "
                 f"{erection.model.joint_nodes[worst]} by {off[worst]:.3g} deg; "
-                f"{1e3 * erection.slot_width_needed:.3g} mm would do for all states",
+                f"{1e3 * needed:.3g} mm would do for all states",
             )
             return

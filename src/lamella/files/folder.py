@@ -189,9 +189,13 @@ def _check_content(place: Path) -> None:
             return
         if not foreign:
             return
-        # Another run may have swapped the folder while it was looked at, and be deleting what was listed.
-        if os.path.samestat(before, after):
-            raise _foreign(place, files, foreign)
+        # Another run may have swapped the folder while it was looked at, and be deleting what was listed. A new folder
+        # may even have got the number of one just deleted: it differs by its time then.
+        if os.path.samestat(before, after) and before.st_ctime_ns == after.st_ctime_ns:
+            break
+    else:
+        raise OSError(f"{place} changes all the time")
+    raise _foreign(place, files, foreign)
 
 
 def _foreign(place: Path, files: dict[str, str] | None, foreign: list[str]) -> InputError:

@@ -43,7 +43,7 @@ def at_rest(structure: Structure, loads: Loads) -> Equilibrium:
         pass
     try:
         return released(structure, loads)
-    except (StepError, InputError):
+    except InputError:
         return settled(own, LoadControl(0.0), LoadControl(0.0))
 
 

@@ -226,9 +226,9 @@ FIGURES: tuple[Figure[ErectionOutput], ...] = (
     Figure(
         "slot_width_needed",
         "m",
-        "width of slots in which the joints turn as far as they do",
+        "width of slots in which the joints turn as far as they do; null where lamellas are stacked",
         _worst(lambda made: made.slot_width_needed),
-        NUMBER,
+        nullable(NUMBER),
         rows=line("Slots needed on the way", "mm", scale=1e3, form=".2f"),
     ),
     Figure(
@@ -268,7 +268,7 @@ FIGURES: tuple[Figure[ErectionOutput], ...] = (
                 mass=NUMBER,
                 fault=nullable(TEXT),
                 flat=FLAT,
-                **dict.fromkeys(OF_SEGMENT, NUMBER),
+                **dict.fromkeys(OF_SEGMENT, nullable(NUMBER)),
             )
         ),
         always=False,
