@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import lamella
 from lamella import InputError
 from lamella.erection.flatness import fitted_plane, fitted_sphere
+from lamella.erection.joint_angles import twist_over_depth
 from lamella.erection.overlaps import crossings_beside_nodes
 from lamella.erection.slot_room import largest_turn, slot_width_needed
+from lamella.strip.lamellas import crossings
 
 SEED = 5
 
@@ -91,3 +94,32 @@ def test_crossings_beside_nodes() -> None:
     for (i, _), place in zip(pairs.tolist(), places, strict=True):
         along = (place - ends[i, 0]) @ (ends[i, 1] - ends[i, 0]) / np.sum((ends[i, 1] - ends[i, 0]) ** 2)
         np.testing.assert_allclose(ends[i, 0] + along * (ends[i, 1] - ends[i, 0]), place, atol=1e-12)
+
+
+def test_twist_turns_strips_at_the_foot_of_a_slot() -> None:
+    """Lines of two twisted strips at a depth, by differences of points on the helicoid's normals."""
+    network = lamella.net(lamella.Helicoid(4.0, 0.3, 1.5, 0.7), cells=6)
+    nodes, depth = np.flatnonzero(crossings(network)), 0.05
+    sample = network.sample_offsets[network.stop_owner] + network.stop_samples
+    least = np.zeros(len(nodes))
+    for z in (-depth, depth):
+        lines = {}
+        for family in "AB":
+            stops = [
+                int(np.flatnonzero((network.stop_nodes == node) & (network.families[network.stop_owner] == family))[0])
+                for node in nodes
+            ]
+            at = sample[stops]
+            frame = network.sample_tangents[at], network.sample_normals[at]
+            kn, tg = (getattr(network.sample_darboux, key)[at][:, None] for key in ("kn", "tg"))
+            # a step along c(s) + z n(s), with n' = -kn t - tg u and u = n x t
+            step = frame[0] - z * (kn * frame[0] + tg * np.cross(frame[1], frame[0]))
+            lines[family] = step / np.linalg.norm(step, axis=1)[:, None]
+        # square at the surface: what is left of the cosine is the turn
+        least = np.maximum(least, np.abs(np.arcsin((lines["A"] * lines["B"]).sum(1))))
+    turned = twist_over_depth(network, nodes, depth)
+    np.testing.assert_allclose(turned, least, rtol=1e-9, atol=1e-12)
+    # both turn by atan(z |tg|), to opposite sides
+    torsion = np.abs(network.sample_darboux.tg).max()
+    assert turned.max() <= 2 * np.arctan(depth * torsion) * (1 + 1e-9)
+    assert turned.max() > np.arctan(depth * torsion)

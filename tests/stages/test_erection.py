@@ -124,6 +124,51 @@ def test_no_stage_without_its_table() -> None:
     assert caught.value.where == "erection"
 
 
+WIDE = PROJECT | {"surface": {"kind": "enneper", "order": 2, "radius": 0.9, "scale": 3.0}, "network": {"spacing": 1.2}}
+
+
+def _slots(folder: Path) -> set[float]:
+    """Widths of the slots in the drawings, mm, by their feet."""
+    found = set()
+    for name in "AB":
+        for entity in ezdxf.readfile(folder / "fabrication" / f"{name}.dxf").modelspace():
+            if entity.dxf.layer == "CUT" and entity.dxftype() == "LWPOLYLINE":
+                corners = np.array([point[:2] for point in entity.get_points()])
+                edges = np.diff(corners, axis=0)
+                short = np.linalg.norm(edges, axis=1)
+                # a foot is square to the sides before and behind it, which are longer than it is wide
+                foot = (short[1:-1] < 10) & (short[:-2] > 40) & (short[2:] > 40)
+                found |= set(np.round(short[1:-1][foot], 3).tolist())
+    return found
+
+
+def test_slots_are_as_wide_as_the_way_needs(tmp_path: Path) -> None:
+    """Nothing says how wide they are: in the figures, the drawings and the filled in project; given ones stay."""
+    results = lamella.compute(lamella.parse_project(WIDE))
+    needed, width = results.summary["erection"]["slot_width_needed"], results.summary["fabrication"]["slot_width"]
+    assert 0.003 < needed <= width <= 1.1 * needed
+    assert results.project.fabrication.slot_width == width
+    lamella.write(results, tmp_path / "out")
+    assert _slots(tmp_path / "out") == {1000 * width}
+    assert "slots_too_narrow" not in [warning.key for warning in results.summary["warnings"]]
+    again = lamella.compute(lamella.parse_project(WIDE), until="fabrication")
+    assert again.summary["fabrication"]["slot_width"] == width
+    given = lamella.compute(lamella.parse_project(WIDE | {"fabrication": {"slot_width": 0.003}}))
+    assert given.project.fabrication.slot_width == 0.003
+    assert "slots_too_narrow" in [warning.key for warning in given.summary["warnings"]]
+
+
+def test_slots_of_segments() -> None:
+    """The widest that any of the segments needs, which are those that are erected."""
+    project = lamella.parse_project(WIDE | {"joint": {}, "segments": {"size": 6.0}, "erection": {"states": 2}})
+    results = lamella.compute(project)
+    made = results.summary["erection"]["segments"]
+    assert len(made) > 1
+    needed = max(one["slot_width_needed"] for one in made if one["fault"] is None)
+    most = project.lamella.offset / 2
+    assert results.summary["fabrication"]["slot_width"] == pytest.approx(min(max(needed, 0.003), most), rel=0.1)
+
+
 @pytest.mark.parametrize(("key", "value"), [("states", 1), ("elements", 0), ("driver", "wind")])
 def test_refused(key: str, value: object) -> None:
     with pytest.raises(InputError) as caught:

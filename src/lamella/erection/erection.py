@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
+from lamella.base.arrays import Floats
 from lamella.base.message import Message
 from lamella.base.result import Result
 from lamella.erection.driver import Driver
 from lamella.erection.flat_shape import FlatShape
+from lamella.erection.joint_angles import twist_over_depth
 from lamella.erection.slot_room import slot_width_needed
 from lamella.erection.state import State
 from lamella.structure.model.model import Model
@@ -63,8 +66,19 @@ class Erection(Result):
         if self.model.lamellas.section.level:
             return None
         thickness = self.model.lamellas.section.thickness
-        farthest = max(float(np.abs(90 - state.angles).max()) for state in self.states)
+        farthest = max(float(turned.max()) for turned in self.turned)
         return float(slot_width_needed(np.radians(min(farthest, NEARLY_STRAIGHT)), thickness))
+
+    @cached_property
+    def turned(self) -> tuple[Floats, ...]:
+        """How far strips stand off square in their slots at most, degrees, (k,) at each joint, of every state.
+
+        The angle between them, and what it changes over the depth of the slots by the strips' twist, which comes with
+        the share of the way.
+        """
+        lamellas = self.model.lamellas
+        twist = np.degrees(twist_over_depth(lamellas.network, self.model.joint_nodes, lamellas.section.height / 2))
+        return tuple(np.abs(90 - state.angles) + state.share * twist for state in self.states)
 
     def _line(self) -> str:
         lies = "planar" if self.flat.planar else f"on a sphere of {self.flat.radius:.4g} m"

@@ -94,8 +94,7 @@ def slot_warning(erection: Erection, slot_width: float) -> Iterator[Message]:
     if needed is None or slot_width < thickness:
         return
     room = np.degrees(largest_turn(slot_width, thickness))
-    for state in erection.states:
-        off = np.abs(90 - state.angles)
+    for state, off in zip(erection.states, erection.turned, strict=True):
         tight = int((off > room).sum())
         if tight:
             worst = int(off.argmax())

@@ -37,7 +37,13 @@ class FabricationTable(Table):
         examples=[0.05],
     )
     slot_width: float | None = number(
-        "Width of the slots; 2 x thickness when not given.", "m", gt=0, le=1, default=None, examples=[0.003]
+        "Width of the slots; when not given 2 x thickness, and with [erection] at least what the joints need on the "
+        "way from flat to designed.",
+        "m",
+        gt=0,
+        le=1,
+        default=None,
+        examples=[0.003],
     )
     slot_play: float = number(
         "How far the foot of a slot lies beyond the centre line: play for what cuts and strips are off.",

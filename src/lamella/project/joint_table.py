@@ -27,7 +27,8 @@ class JointTable(Table):
         examples=[0.005],
     )
     slot_width: float | None = number(
-        "Width of the slots, here or in [fabrication]; 2 x thickness when not given.",
+        "Width of the slots, here or in [fabrication]; when not given 2 x thickness, and with [erection] at least what "
+        "the joints need on the way from flat to designed.",
         "m",
         gt=0,
         le=1,

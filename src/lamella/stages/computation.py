@@ -105,6 +105,7 @@ class Computation:
         self._wanted, self._folder, self._memory, self._clock = tuple(wanted), folder, memory, clock
         self._keys: dict[str, str] = {}
         self._finer = finer
+        self._checking = checked is not None
         self._checked = self._wanted if checked is None else tuple(checked)
         for stage in self._checked:
             stage.check(project, None)
@@ -121,6 +122,7 @@ class Computation:
             self._finer,
             self._memory,
             self._keys,
+            self._checking,
         )
 
     def run_all(self, stages: Sequence[Stage[Any]], *, ends: bool = True) -> None:
@@ -174,6 +176,7 @@ class Computation:
         self._keys[stage.name], self.outputs[stage.name] = key, out
         if not stage.needs:
             self._surface_known(out.surface)
+        self._filled = stage.filled(self.upstream(), out)
         self.figures[stage.name] = evaluate(stage.figures, out)
         clock.stop(stage.name, stage.result(self.figures[stage.name], out))
         warned_key = content_key(self._given, stage.warned_by(self._given), [key, repr(self._finer)], self._folder)

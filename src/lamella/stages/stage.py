@@ -103,6 +103,8 @@ class Upstream:
     memory : Memory
     keys : mapping
         What the output of each stage is remembered by.
+    checking : bool
+        Whether this is a check, which takes seconds.
     """
 
     project: Project
@@ -113,6 +115,7 @@ class Upstream:
     finer: float
     memory: Memory
     keys: Mapping[str, str]
+    checking: bool = False
 
     @property
     def surface(self) -> Surface[Any]:
@@ -211,6 +214,10 @@ class Stage(Generic[Out]):
             What the user can mend.
         """
         raise NotImplementedError
+
+    def filled(self, up: Upstream, out: Out) -> Project:
+        """The project with those defaults filled in that follow from the output."""
+        return up.project
 
     def result(self, figures: Mapping[str, Any], out: Out) -> str:
         """What has come out, in half a line."""

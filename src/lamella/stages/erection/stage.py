@@ -20,9 +20,6 @@ from lamella.stages.stage import File, Missing, Stage, Upstream
 if TYPE_CHECKING:
     from lamella.stages.erection.output import ErectionOutput
 
-# elements times states that a check takes its seconds for
-MOST_CHECKED_STATES = 10_000
-
 
 class ErectionStage(Stage["ErectionOutput"]):
     """See `lamella.stages.stage.Stage`."""
@@ -54,10 +51,9 @@ class ErectionStage(Stage["ErectionOutput"]):
         return Missing("a table [erection]", reason, "add a line [erection] to it", "erection", unasked=True)
 
     def takes_long(self, up: Upstream) -> str:
-        table = up.project.erection
-        assert table is not None
-        work = len(up.outputs["network"].network.cell_edges) * table.elements * table.states
-        if work <= MOST_CHECKED_STATES:
+        from lamella.stages.fabrication.slot_widths import MOST_CHECKED_STATES, way_takes_long
+
+        if not way_takes_long(up):
             return ""
         return f"how the net lies flat and is erected (checked up to {MOST_CHECKED_STATES:,} elements times states)"
 

@@ -27,11 +27,6 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
     """The project with those defaults filled in that follow from its other values."""
     cut, strip, joint = project.fabrication, project.lamella, project.joint
     slot_width = cut.slot_width if joint is None or joint.slot_width is None else joint.slot_width
-    if slot_width is None:
-        slot_width = default_slot_width(strip.thickness)
-    end_distance = cut.end_distance
-    if end_distance is None:
-        end_distance = default_end_distance(slot_width, _normal_curvature(project, surface), strip.height)
     hub_radius = cut.hub_radius
     # how far apart layers on lamella curves are next to a singular node, the net decides
     if hub_radius is None and (strip.layers == 1 or strip.layer_curves != "lamella"):
@@ -39,14 +34,31 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
         hub_radius = default_hub_radius(clear_hub(rays, strip.layers, strip.offset, strip.thickness))
         if joint is not None and joint.hub and rays:
             hub_radius = max(hub_radius, joint_rules(project, joint).least_hub_radius(2 * np.pi / rays))
-    measures = {"slot_width": slot_width, "end_distance": float(end_distance), "hub_radius": hub_radius}
-    filled = cut.model_copy(update=measures)
+    filled = cut.model_copy(update={"slot_width": slot_width, "hub_radius": hub_radius})
     update: dict[str, Any] = {"fabrication": filled}
     if joint is not None:
         update["joint"] = joint.model_copy(update={"slot_width": None})
     if any(drawing_origin(surface)):
         update["surface"] = project.surface.model_copy(update={"origin": drawing_origin(surface)})
-    return project.model_copy(update=update)
+    made = project.model_copy(update=update)
+    return made if slots_by_erection(made) else filled_measures(made, surface, default_slot_width(strip.thickness))
+
+
+def slots_by_erection(project: Project) -> bool:
+    """Whether nothing but the way of its joints says how wide a project's slots are."""
+    given = project.fabrication.slot_width or (project.joint and project.joint.slot_width)
+    return project.erection is not None and not given and not section_of(project).level
+
+
+def filled_measures(project: Project, surface: Surface[Any], slot_width: float) -> Project:
+    """The project with its slots' width, m, where it has none, and what follows from it."""
+    cut = project.fabrication
+    width = slot_width if cut.slot_width is None else cut.slot_width
+    end_distance = cut.end_distance
+    if end_distance is None:
+        end_distance = default_end_distance(width, _normal_curvature(project, surface), project.lamella.height)
+    filled = cut.model_copy(update={"slot_width": width, "end_distance": float(end_distance)})
+    return project.model_copy(update={"fabrication": filled})
 
 
 def joint_rules(project: Project, joint: JointTable) -> JointRules:
@@ -187,7 +199,7 @@ def check_fabrication(project: Project, surface: Surface[Any]) -> None:
     ------
     InputError
     """
-    filled = fill_in(project, surface)
+    filled = filled_measures(fill_in(project, surface), surface, default_slot_width(project.lamella.thickness))
     strip, cut = filled.lamella, filled.fabrication
     supply_of(project, surface)
     rules = Rules(

@@ -94,6 +94,16 @@ FIGURES: tuple[Figure[FabricationOutput], ...] = (
         rows=_bow_rows,
     ),
     Figure(
+        "slot_width",
+        "m",
+        "of the slots where lamellas cross at a right angle, where `[erection]` is given and no width: what the joints "
+        "need on the way from flat to designed, at least 2 x thickness",
+        lambda out: out.slot_width if out.by_erection else ABSENT,
+        NUMBER,
+        always=False,
+        rows=line("Slots", "mm", scale=1e3),
+    ),
+    Figure(
         "parts_different",
         "",
         "kinds of lamella layers: parts that are not congruent within 0.01 mm",
@@ -135,6 +145,7 @@ REPORT = (
     "parts_different",
     "sheets",
     "bow_max",
+    "slot_width",
     "mass",
     "surface_weight",
     "hardware",

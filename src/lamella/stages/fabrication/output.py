@@ -33,6 +33,10 @@ class FabricationOutput:
         What the user should know about them.
     segments : Segments
         None where the project has no table [segments].
+    slot_width : float
+        Of its slots, m.
+    by_erection : bool
+        Whether that follows from the way of its joints.
     """
 
     parts: Parts
@@ -43,3 +47,5 @@ class FabricationOutput:
     plates: tuple[PlateSheets, ...] = ()
     notes: tuple[Message, ...] = ()
     segments: Segments = field(default_factory=Segments)
+    slot_width: float = 0.0
+    by_erection: bool = False

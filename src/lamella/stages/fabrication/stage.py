@@ -12,7 +12,14 @@ from lamella.base.progress import Progress
 from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
-from lamella.stages.fabrication.defaults import check_drawings, check_fabrication, check_joint, cut_options
+from lamella.stages.fabrication.defaults import (
+    check_drawings,
+    check_fabrication,
+    check_joint,
+    cut_options,
+    filled_measures,
+    slots_by_erection,
+)
 from lamella.stages.fabrication.figures import FIGURES, REPORT
 from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.keys import with_keys
@@ -60,7 +67,9 @@ class FabricationStage(Stage[FabricationOutput]):
         return ("files", "drawings")
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
-        return ("fabrication", "joint", "cables", "edge_beam", "stock", "segments")
+        # the way of the joints hangs on the table [erection] alone
+        way = ("erection",) if slots_by_erection(project) else ()
+        return ("fabrication", "joint", "cables", "edge_beam", "stock", "segments", *way)
 
     def check(self, project: Project, surface: Surface[Any] | None) -> None:
         check_joint(project)
@@ -73,8 +82,12 @@ class FabricationStage(Stage[FabricationOutput]):
 
     def run(self, up: Upstream, progress: Progress) -> FabricationOutput:
         from lamella.stages.fabrication.making import made
+        from lamella.stages.fabrication.slot_widths import with_slots
 
-        return made(up)
+        return with_slots(up, made, progress)
+
+    def filled(self, up: Upstream, out: FabricationOutput) -> Project:
+        return filled_measures(up.project, up.surface, out.slot_width)
 
     def result(self, figures: Mapping[str, Any], out: FabricationOutput) -> str:
         return f"{figures['parts']:,} parts, {figures['mass']:.4g} kg, {figures['sheets']} sheets"

@@ -10,6 +10,7 @@ from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report
+from lamella.fabrication.defaults import default_slot_width
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
 from lamella.stages.keys import keys
@@ -91,7 +92,7 @@ class LamellasStage(Stage[LamellasOutput]):
             up.outputs["surface"].mesh,
             network,
             out.lamellas,
-            project.fabrication.slot_width or 0.0,
+            project.fabrication.slot_width or default_slot_width(project.lamella.thickness),
             out.material,
             project.known_materials(),
             lambda other, of: largest_utilisation(network, other, of),
