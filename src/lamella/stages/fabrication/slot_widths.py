@@ -24,8 +24,7 @@ from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.keys import keys
 from lamella.stages.lamellas.stage import strips_of
 from lamella.stages.stage import Upstream
-from lamella.strip.lamellas import Lamellas
-from lamella.strip.sections import Section
+from lamella.strip.lamellas import Lamellas, Section
 
 # elements times states that a check takes its seconds for
 MOST_CHECKED_STATES = 10_000
