@@ -49,6 +49,7 @@ STAGE_NEEDS = (
     "erection",
     "project",
     *FILES,
+    "view.scene",
     "version",
 )
 
@@ -127,7 +128,18 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "segments": ("base", "network", "strip", "fabrication", "hardware", "files.write"),
     "solid": ("base", "network", "strip", "fabrication", "hardware"),
     "drawings": ("base", "network", "strip", "fabrication", "hardware", "segments", "solid"),
-    "view": ("base", *SURFACES, "surface.boundary", "network", "strip", "fabrication", *FILES, *PROJECTIONS),
+    "view.scene": ("base", "surface"),
+    "view": (
+        "base",
+        *SURFACES,
+        "surface.boundary",
+        "network",
+        "strip",
+        "fabrication",
+        *FILES,
+        *PROJECTIONS,
+        "view.scene",
+    ),
     "stages": STAGE_NEEDS,
     "stages.run": (*STAGE_NEEDS, "view", "stages", *STAGES),
     "command": (
@@ -138,6 +150,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
         *PROJECTIONS,
         *FILES,
         "view",
+        "view.scene",
         "stages",
         *STAGES,
         "stages.run",
@@ -155,7 +168,7 @@ METHODS = {
 # modules that stand above their folder: they choose among the folders below it
 ABOVE = {"lamella.network.net": "network.net"} | {
     f"lamella.stages.{module}": "stages.run"
-    for module in ("all_stages", "wanted", "computation", "results", "check", "write", "report", "schema")
+    for module in ("all_stages", "wanted", "computation", "results", "check", "write", "report", "scene", "schema")
 }
 # results whose methods lead on to a later module by lamella.base.onward: their signatures name its types
 ONWARD = {

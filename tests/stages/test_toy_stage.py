@@ -64,7 +64,7 @@ class PaintStage(Stage[Paint]):
     def files(self, out: Paint, up: Upstream) -> Iterator[File]:
         yield File("paint.txt", lambda path: path.write_text(f"{out.litres} l\n"))
 
-    def scene(self, out: Paint, up: Upstream) -> Iterator[DrawnLayer]:
+    def model(self, out: Paint, up: Upstream) -> Iterator[DrawnLayer]:
         yield DrawnLayer("paint", points=(up.outputs["network"].network.node_points[0],))
 
 

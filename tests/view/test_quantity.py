@@ -7,7 +7,7 @@ import pytest
 
 from lamella import Catenoid, Cylinder, Unduloid
 from lamella.surface.mesh import SurfaceMesh
-from lamella.view.quantity import DIVERGING, SEQUENTIAL, surface_quantities
+from lamella.view.scene.surface_quantities import DIVERGING, SEQUENTIAL, surface_quantities
 from surface.element.exact_elements import catenoid_patch
 
 

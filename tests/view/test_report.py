@@ -19,8 +19,8 @@ from lamella.surface.closed_forms.catenoid import Catenoid
 from lamella.surface.closed_forms.cylinder import Cylinder
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view import encoding, report
-from lamella.view.quantity import surface_quantities
 from lamella.view.report import CORNER_LIMIT, ReportData, report_html, write_report
+from lamella.view.scene.surface_quantities import surface_quantities
 from surface.element.exact_elements import sphere_cap
 
 FIGURES = (

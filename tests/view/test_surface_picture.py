@@ -19,7 +19,7 @@ from PIL import Image
 
 from lamella.view import surface_picture
 from lamella.view.picture import Camera
-from lamella.view.quantity import DIVERGING, surface_quantities
+from lamella.view.scene.surface_quantities import DIVERGING, surface_quantities
 from lamella.view.surface_picture import draw_surface
 
 

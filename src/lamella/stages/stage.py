@@ -18,6 +18,7 @@ from lamella.project.tables import Project
 from lamella.stages.figure import Figure
 from lamella.stages.memory import Memory, content_key
 from lamella.surface.surface import Surface
+from lamella.view.scene.scene import Shown
 
 Out = TypeVar("Out")
 Made = TypeVar("Made")
@@ -231,6 +232,18 @@ class Stage(Generic[Out]):
         """Files, in the order they are written."""
         return iter(())
 
-    def scene(self, out: Out, up: Upstream) -> Iterator[DrawnLayer]:
-        """Layers that the stage adds to the model."""
+    def model(self, out: Out, up: Upstream) -> Iterator[DrawnLayer]:
+        """Layers that the stage adds to the files of the model: model.3dm, model.glb."""
+        return iter(())
+
+    def scene(self, out: Out, up: Upstream) -> Iterator[Shown]:
+        """What the stage adds to the view: layers, frames of sliders, labels, marks, curves, remarks.
+
+        Parameters
+        ----------
+        out
+            The stage's output.
+        up : Upstream
+            With the outputs of all stages that were run, those after it too.
+        """
         return iter(())

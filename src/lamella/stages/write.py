@@ -190,8 +190,8 @@ def _write_project(results: Results, path: Path) -> None:
 def _model(results: Results, network: Network) -> bytes:
     """The model of all stages for Rhino."""
     content: Any = {"surface": results.mesh, "network": network, "lamellas": results.lamellas}
-    scenes = (stage.scene(results.outputs[stage.name], results.upstream) for stage in _run_stages(results))
-    further = [layer for scene in scenes for layer in scene]
+    models = (stage.model(results.outputs[stage.name], results.upstream) for stage in _run_stages(results))
+    further = [layer for model in models for layer in model]
     frame = Frame(results.project.files.unit, results.origin)
     # rhino3dm's own Write says nothing of a full disk
     return model_bytes(**content, further=further, frame=frame, name=results.project.name, version=__version__)

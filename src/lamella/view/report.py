@@ -22,7 +22,8 @@ from lamella.strip.lamellas import Lamellas
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.built_payload import built_payload
 from lamella.view.encoding import direction16, float32, integers, quantised
-from lamella.view.quantity import Quantity, surface_quantities
+from lamella.view.scene.quantity import Quantity
+from lamella.view.scene.surface_quantities import surface_quantities
 
 Spec = dict[str, Any]
 

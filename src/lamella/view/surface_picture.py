@@ -19,7 +19,8 @@ from lamella.surface.element.surface import EDGE_PARTS_DRAWN_MAX, ElementSurface
 from lamella.surface.mesh import SurfaceMesh
 from lamella.view.camera import Camera
 from lamella.view.figure import INK, new_figure, require_matplotlib, save
-from lamella.view.quantity import Quantity, surface_quantities
+from lamella.view.scene.quantity import Quantity
+from lamella.view.scene.surface_quantities import surface_quantities
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -25,6 +25,7 @@ from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.keys import with_keys
 from lamella.stages.stage import File, Stage, Upstream
 from lamella.surface.surface import Surface
+from lamella.view.scene.scene import Shown
 
 
 class FabricationStage(Stage[FabricationOutput]):
@@ -166,12 +167,17 @@ class FabricationStage(Stage[FabricationOutput]):
             yield File(
                 "fabrication/plate_sheets.dxf", lambda path: write_plate_sheets(path, out.plates, options, **signed)
             )
-        yield from further_files(out, up, lambda: self.scene(out, up))
+        yield from further_files(out, up, lambda: self.model(out, up))
 
-    def scene(self, out: FabricationOutput, up: Upstream) -> Iterator[DrawnLayer]:
+    def model(self, out: FabricationOutput, up: Upstream) -> Iterator[DrawnLayer]:
         from lamella.stages.fabrication.scene import hardware_layers, shows_solids, strip_layers
 
         lamellas = up.outputs["lamellas"].lamellas
         if shows_solids(up.project, out, lamellas):
             yield from strip_layers(out, lamellas, up.project.lamella.material)
         yield from hardware_layers(out.hardware.items)
+
+    def scene(self, out: FabricationOutput, up: Upstream) -> Iterator[Shown]:
+        from lamella.stages.fabrication.view_layers import fabrication_scene
+
+        yield from fabrication_scene(up.project, out, up.outputs["lamellas"].lamellas)

@@ -27,6 +27,7 @@ from lamella.strip.lamellas import Lamellas, largest_utilisation, make_lamellas
 from lamella.strip.layer_curves import check_layer_curves
 from lamella.strip.sizing import largest_measures
 from lamella.surface.surface import Surface
+from lamella.view.scene.scene import Shown
 
 
 class LamellasStage(Stage[LamellasOutput]):
@@ -117,6 +118,11 @@ class LamellasStage(Stage[LamellasOutput]):
 
             sizing = out.sizing
             yield File("sizing.csv", lambda path: write_sizing(path, sizing, network, out.lamellas, **signed))
+
+    def scene(self, out: LamellasOutput, up: Upstream) -> Iterator[Shown]:
+        from lamella.stages.lamellas.scene import lamellas_scene
+
+        yield from lamellas_scene(out.lamellas)
 
 
 def strips_of(project: Project, surface: Surface[Any]) -> partial[Lamellas]:

@@ -29,6 +29,7 @@ from lamella.stages.unit_first import unit_first
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
+from lamella.view.scene.scene import Shown
 
 if TYPE_CHECKING:
     from lamella.network.elements.element_network import ElementNetwork, NetPlan
@@ -130,6 +131,11 @@ class NetworkStage(Stage[NetworkOutput]):
         yield File("network.json", lambda path: write_network(path, network, **signed))
         yield File("network.obj", lambda path: write_network_obj(path, network, **signed))
         yield File("nodes.csv", lambda path: write_nodes_csv(path, network, **signed))
+
+    def scene(self, out: NetworkOutput, up: Upstream) -> Iterator[Shown]:
+        from lamella.stages.network.scene import network_scene
+
+        yield from network_scene(out.network)
 
 
 @keys("network", surface="surface")

@@ -19,6 +19,7 @@ from lamella.stages.stage import File, Missing, Stage, Upstream
 from lamella.stages.structure.figures import FIGURES, REPORT
 from lamella.stages.structure.output import StructureOutput
 from lamella.surface.surface import Surface
+from lamella.view.scene.scene import Shown
 
 if TYPE_CHECKING:
     from lamella.structure.analysis.analyse import Analysis
@@ -117,6 +118,11 @@ class StructureStage(Stage[StructureOutput]):
         signed: Any = {"name": up.project.name, "version": __version__}
         yield File("structure/results.json", lambda path: write_results(path, out.analysis, **signed))
         yield from _exports(out.analysis, signed | {"origin": drawing_origin(up.surface)})
+
+    def scene(self, out: StructureOutput, up: Upstream) -> Iterator[Shown]:
+        from lamella.stages.structure.scene import supports_scene
+
+        yield from supports_scene(out.analysis.model)
 
 
 def _exports(analysis: Analysis, signed: Any) -> Iterator[File]:

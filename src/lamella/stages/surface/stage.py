@@ -23,6 +23,7 @@ from lamella.stages.surface.surface_of_table import make_surface
 from lamella.stages.surface.warnings import size_warnings, surface_file_warnings
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.surface import Surface
+from lamella.view.scene.scene import Shown
 
 if TYPE_CHECKING:
     from lamella.stages.surface.adjusted_table import AdjustedTable
@@ -95,6 +96,11 @@ class SurfaceStage(Stage[SurfaceOutput]):
             frame = Frame(project.files.unit, origin)
             if is_written(surface, project.files.surface_3dm):
                 yield File("surface.3dm", lambda path: write_surface_3dm(path, surface, frame, **signed))
+
+    def scene(self, out: SurfaceOutput, up: Upstream) -> Iterator[Shown]:
+        from lamella.stages.surface.scene import surface_scene
+
+        yield from surface_scene(out, alone="network" not in up.outputs)
 
 
 def _adjusts(project: Project, wanted: tuple[str, ...]) -> bool:

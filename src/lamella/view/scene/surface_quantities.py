@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.vectors import diagonal
 from lamella.surface.mesh import SurfaceMesh
+from lamella.view.scene.quantity import Quantity
 
 # dark where the surface is curved most
 SEQUENTIAL = ("#26456e", "#3f7fa0", "#7fb5a5", "#d5d49a", "#f3efd0")
@@ -28,43 +27,6 @@ OUTLYING = 1.5
 """How far beyond those values the largest has to be for the colours to leave it out."""
 ONE_SIGN = 0.02
 """A quantity whose values of one sign are all below this share of the largest of the other has one sign."""
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A quantity at the vertices of a mesh, with its colours.
-
-    Attributes
-    ----------
-    key : str
-        "deviation", "K", "ratio", "k1" or "k2".
-    label, unit, remark : str
-        For a legend; the remark may be empty, and follows the value of a constant.
-    values : (n,)
-        In `unit`; NaN where it is not known.
-    low, high : float
-        Values of the first and the last colour; equal for a constant.
-    least, most : float
-        Smallest and largest value, which may lie beyond the colours.
-    stops : tuple of str
-        Colours at equal steps from `low` to `high`, as #rrggbb.
-    """
-
-    key: str
-    label: str
-    unit: str
-    remark: str
-    values: Floats
-    low: float
-    high: float
-    least: float
-    most: float
-    stops: tuple[str, ...]
-
-    @property
-    def is_constant(self) -> bool:
-        """Whether there is but one colour."""
-        return not self.low < self.high
 
 
 def surface_quantities(mesh: SurfaceMesh, mean_curvature: float) -> dict[str, Quantity]:

@@ -1,0 +1,150 @@
+"""What tells the size of a structure: the ground it stands on and a person, 1.75 m tall, beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from lamella.base.arrays import Floats, Integers
+from lamella.view.scene.layer import MeshLayer
+
+TALL = 1.75
+"""Height of the person, m."""
+
+LEAST_BESIDE, LARGEST_BESIDE = 1.0, 60.0
+"""m: beside smaller things a person hides them, beside larger ones nobody sees one; both can still be switched on."""
+
+GROUND = 2.5
+"""Radius of the ground over half the diagonal of what stands on it."""
+
+GROUP = "Ground and person"
+
+# a body as rings about its axis: height, half width, half depth, shares of TALL
+_TRUNK = (
+    (0.47, 0.000, 0.000),
+    (0.47, 0.085, 0.060),
+    (0.53, 0.098, 0.066),
+    (0.62, 0.080, 0.055),
+    (0.74, 0.105, 0.066),
+    (0.805, 0.118, 0.060),
+    (0.835, 0.070, 0.045),
+    (0.85, 0.032, 0.032),
+    (0.87, 0.030, 0.032),
+    (0.885, 0.040, 0.048),
+    (0.93, 0.048, 0.058),
+    (0.97, 0.042, 0.052),
+    (0.993, 0.022, 0.028),
+    (1.0, 0.000, 0.000),
+)
+_LEG = (
+    (0.0, 0.000, 0.000),
+    (0.0, 0.030, 0.055),
+    (0.035, 0.028, 0.040),
+    (0.06, 0.023, 0.026),
+    (0.20, 0.034, 0.036),
+    (0.28, 0.032, 0.034),
+    (0.42, 0.047, 0.050),
+    (0.50, 0.052, 0.056),
+    (0.51, 0.000, 0.000),
+)
+_ARM = (
+    (0.41, 0.000, 0.000),
+    (0.41, 0.014, 0.018),
+    (0.47, 0.019, 0.024),
+    (0.60, 0.021, 0.024),
+    (0.66, 0.024, 0.026),
+    (0.79, 0.030, 0.032),
+    (0.825, 0.020, 0.022),
+    (0.83, 0.000, 0.000),
+)
+# of the legs from the middle, of an arm's hand and shoulder
+_HIP, _HAND, _SHOULDER = 0.052, 0.165, 0.125
+_AROUND = 16
+
+
+def surroundings(low: Floats, high: Floats) -> Iterator[MeshLayer]:
+    """Ground and person for what lies between two corners of a box, m; nothing where the box has no size."""
+    diagonal = float(np.linalg.norm(high - low))
+    if not diagonal > 0:
+        return
+    middle, ground = (low + high) / 2, float(low[2])
+    shown = LEAST_BESIDE <= diagonal <= LARGEST_BESIDE
+    disc = _disc(np.array([middle[0], middle[1], ground]), GROUND * diagonal / 2)
+    yield MeshLayer(
+        name="ground",
+        label="Ground",
+        groups=(GROUP,),
+        visible=shown,
+        material="ground",
+        positions=disc[0],
+        normals=np.tile([0.0, 0.0, 1.0], (len(disc[0]), 1)),
+        faces=disc[1],
+    )
+    vertices, faces = person()
+    # in front of the structure, to the side where a view from the front-right shows it before nothing else
+    place = np.array([high[0] + 0.35 * TALL, low[1] - 0.35 * TALL, ground])
+    yield MeshLayer(
+        name="person",
+        label="Person, 1.75 m",
+        groups=(GROUP,),
+        visible=shown,
+        material="person",
+        positions=vertices + place,
+        faces=faces,
+        normals=_normals(vertices, faces),
+    )
+
+
+def person() -> tuple[Floats, Integers]:
+    """A person standing on the origin, who looks against y: vertices (v, 3), m, and triangles (f, 3)."""
+    pieces = [_rings(_TRUNK, 0.0, 0.0)]
+    for side in (-1, 1):
+        pieces.append(_rings(_LEG, side * _HIP, side * _HIP))
+        pieces.append(_rings(_ARM, side * _HAND, side * _SHOULDER))
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in pieces)])
+    return (
+        TALL * np.concatenate([vertices for vertices, _ in pieces]),
+        np.concatenate([faces + start for (_, faces), start in zip(pieces, starts[:-1], strict=True)]),
+    )
+
+
+def _rings(rings: tuple[tuple[float, float, float], ...], foot: float, top: float) -> tuple[Floats, Integers]:
+    """Ellipses about an axis that leans from `foot` to `top` in x, joined by triangles."""
+    z, wide, deep = (np.array(column) for column in zip(*rings, strict=True))
+    angle = 2 * np.pi * np.arange(_AROUND) / _AROUND
+    lean = foot + (top - foot) * (z - z[0]) / (z[-1] - z[0])
+    points = np.stack(
+        [
+            lean[:, None] + wide[:, None] * np.cos(angle),
+            deep[:, None] * np.sin(angle),
+            np.broadcast_to(z[:, None], (len(z), _AROUND)),
+        ],
+        axis=-1,
+    ).reshape(-1, 3)
+    row, column = np.meshgrid(np.arange(len(z) - 1), np.arange(_AROUND), indexing="ij")
+    a, b = row * _AROUND + column, row * _AROUND + (column + 1) % _AROUND
+    quads = np.stack([a, b, b + _AROUND, a + _AROUND], -1).reshape(-1, 4)
+    return points, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+
+
+def _normals(vertices: Floats, faces: Integers) -> Floats:
+    """Unit normals of vertices, means of their faces' by area; vertices in one place have one."""
+    _, same = np.unique(np.round(vertices, 6), axis=0, return_inverse=True)
+    same = same.reshape(-1)
+    corners = vertices[faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    total = np.zeros((int(same.max()) + 1, 3))
+    for k in range(3):
+        np.add.at(total, same[faces[:, k]], across)
+    length = np.linalg.norm(total, axis=1)
+    return np.asarray((total / np.maximum(length, np.finfo(float).tiny)[:, None])[same])
+
+
+def _disc(centre: Floats, radius: float, parts: int = 64) -> tuple[Floats, Integers]:
+    """Vertices and triangles of a level disc."""
+    angle = 2 * np.pi * np.arange(parts) / parts
+    rim = centre + radius * np.stack([np.cos(angle), np.sin(angle), np.zeros(parts)], 1)
+    around = np.arange(parts)
+    faces = np.stack([np.zeros(parts, np.int64), around + 1, (around + 1) % parts + 1], 1)
+    return np.vstack([centre, rim]), faces
