@@ -24,6 +24,7 @@ from lamella.files.write.sizing_csv import COLUMNS as SIZING_LIST
 from lamella.hardware.lists import COLUMNS as HARDWARE_LIST
 from lamella.project.list_tables import LIST_TABLES
 from lamella.project.load_tables import RegionTable
+from lamella.project.structure_analyses_tables import DisplacementTable, FailureTable, SensitivityTable, VariantTable
 from lamella.project.structure_tables import PartialFactorsTable, SpringTable
 from lamella.project.tables import (
     FURTHER_TABLES,
@@ -147,7 +148,13 @@ INNER_TABLES: dict[str, type[Table]] = {
 
 # tables inside the others, by the tables they are in and their keys
 FURTHER_INNER: dict[str, dict[str, type[Table]]] = {
-    "structure": {"factors = {...}": PartialFactorsTable},
+    "structure": {
+        "factors = {...}": PartialFactorsTable,
+        "[structure.failure]": FailureTable,
+        "[structure.displacement]": DisplacementTable,
+        "[structure.sensitivity]": SensitivityTable,
+        "[[structure.variant]]": VariantTable,
+    },
     "support": {"spring = {...}": SpringTable},
     "load": {"[[load.region]]": RegionTable},
 }
@@ -240,6 +247,8 @@ def _type_of(schema: dict[str, Any]) -> str:
         items = schema["items"]
         if items.get("type") == "string":
             return f"list of {_type_of(items)}"
+        if items.get("type") == "number":
+            return "list of numbers"
         return "list of points" if items.get("type") == "array" else "list of tables"
     return names.get(schema.get("type", ""), "")
 

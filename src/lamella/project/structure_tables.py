@@ -9,6 +9,16 @@ from pydantic import Field, field_validator, model_validator
 from lamella.base.limits import LEAST_STIFFNESS, MOST_STIFFNESS
 from lamella.base.number_lists import Refusal
 from lamella.base.wording import shown
+from lamella.project.structure_analyses_tables import (
+    MOST_VARIANTS,
+    ConstructionStage,
+    DisplacementTable,
+    FailureTable,
+    SensitivityTable,
+    VariantTable,
+    check_stages,
+    check_variants,
+)
 from lamella.project.values import Name, Point, Table, length, list_of_tables, number
 
 MOST_TABLES = 200
@@ -95,6 +105,62 @@ class StructureTable(Table):
     factors: PartialFactorsTable = Field(
         default=PartialFactorsTable(), description="Partial factors {permanent, favourable, variable, ...}."
     )
+    steps: int | None = number(
+        "Load steps of each case, which results show one by one; 1 when not given.", "", ge=1, le=100, default=None
+    )
+    construction: Annotated[tuple[ConstructionStage, ...], Field(strict=False)] | None = Field(
+        default=None,
+        description='How it is put up: "bent" on props, "joints locked", "cables on", "props away", "loads on", in the '
+        "order of the site. Not given: all is in place when the designed shape is let go.",
+        examples=[["bent", "joints locked", "cables on", "props away", "loads on"]],
+    )
+    failure: FailureTable | None = Field(default=None, description=(FailureTable.__doc__ or "").strip())
+    displacement: DisplacementTable | None = Field(default=None, description=(DisplacementTable.__doc__ or "").strip())
+    sensitivity: SensitivityTable | None = Field(default=None, description=(SensitivityTable.__doc__ or "").strip())
+    variant: Annotated[tuple[VariantTable, ...], Field(strict=False)] | None = Field(
+        default=None,
+        description=(VariantTable.__doc__ or "").strip(),
+        json_schema_extra={"minItems": 1, "maxItems": MOST_VARIANTS},
+    )
+
+    @field_validator("construction", mode="before")
+    @classmethod
+    def _stages(cls, value: Any) -> Any:
+        return None if value is None else check_stages(value)
+
+    @field_validator("variant", mode="before")
+    @classmethod
+    def _variants(cls, value: Any) -> Any:
+        return None if value is None else check_variants(value)
+
+    @model_validator(mode="after")
+    def _order(self) -> StructureTable:
+        if self.construction is None:
+            return self
+        if self.cables != "designed":
+            raise Refusal("construction says when the cables come", 'leave cables = "let go" out', "cables")
+        if "joints locked" in self.construction and self.joints != "locked":
+            raise Refusal(
+                'joints are not locked, and the construction has the stage "joints locked"',
+                'write joints = "locked", or leave the stage out',
+                "construction",
+            )
+        if "joints locked" not in self.construction and self.joints == "locked":
+            raise Refusal(
+                "joints are locked, and the construction says not when",
+                'add the stage "joints locked", or write joints = "hinged"',
+                "construction",
+            )
+        return self
+
+    @field_validator("variant")
+    @classmethod
+    def _names(cls, value: tuple[VariantTable, ...] | None) -> tuple[VariantTable, ...] | None:
+        names = [one.name for one in value or ()]
+        for name in names:
+            if names.count(name) > 1:
+                raise Refusal(f"two variants are called {shown(name)}", "give each a name of its own")
+        return value
 
     @field_validator("joints", mode="before")
     @classmethod

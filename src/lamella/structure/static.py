@@ -129,14 +129,16 @@ def displacement_path(start: Equilibrium, weights: Floats, by: float, *, steps: 
             length *= 2
 
 
-def arc_length_path(start: Equilibrium, length: float) -> Iterator[Equilibrium]:
+def arc_length_path(start: Equilibrium, length: float, *, longest: float | None = None) -> Iterator[Equilibrium]:
     """Equilibria along the path without an end, past limit points; the first step raises the load factor.
 
     Parameters
     ----------
     start : Equilibrium
     length : float
-        Of a step, m, see `ArcLengthControl`.
+        Of the first step, m, see `ArcLengthControl`.
+    longest : float, optional
+        Up to which steps get longer after easy ones; default: as the first one.
 
     Raises
     ------
@@ -144,18 +146,18 @@ def arc_length_path(start: Equilibrium, length: float) -> Iterator[Equilibrium]:
         No equilibrium is found beyond some load factor; loads that change natural curvatures.
     """
     _refuse_natural(start.loads)
-    here, longest, before = start, length, np.zeros(start.poses.unknowns)
+    here, first, most, before = start, length, longest or length, np.zeros(start.poses.unknowns)
     while True:
         try:
             after = step(here, ArcLengthControl(length, before))
         except StepError as error:
-            length = _shorter(here, length, longest, error)
+            length = _shorter(here, length, first, error)
             continue
         before = _shifts(here.poses, after.poses)
         here = after
         yield here
-        if here.iterations <= EASY_ITERATIONS and length < longest:
-            length *= 2
+        if here.iterations <= EASY_ITERATIONS and length < most:
+            length = min(2 * length, most)
 
 
 def released(structure: Structure, loads: Loads) -> Equilibrium:

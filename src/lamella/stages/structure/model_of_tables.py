@@ -17,6 +17,7 @@ from lamella.stages.fabrication.making import edge_beams_of
 from lamella.stages.stage import Upstream
 from lamella.structure.actions.hardware_masses import hardware_masses
 from lamella.structure.actions.load_case import LoadCase, combined
+from lamella.structure.analysis.construction_order import CABLES, LOCKED
 from lamella.structure.model.model import Model, make_model
 from lamella.structure.model.rules import ModelRules
 
@@ -36,13 +37,16 @@ class Modelled:
     node_masses : (n,)
         Of the hardware, kg.
     cables_later : CableRules or None
-        Cables that are put on once the net has been let go.
+        Cables that are put on once the net has been let go, or in their stage of construction.
+    construction : tuple of str
+        Stages before the loads come; none: all is in place when the net is let go.
     """
 
     model: Model
     cases: tuple[LoadCase, ...]
     node_masses: Floats
     cables_later: CableRules | None
+    construction: tuple[str, ...]
 
 
 def model_of(up: Upstream, actions: Actions) -> Modelled:
@@ -50,7 +54,8 @@ def model_of(up: Upstream, actions: Actions) -> Modelled:
     project, lamellas = up.project, up.outputs["lamellas"].lamellas
     table = project.structure or StructureTable()
     cables = cable_rules(project)
-    later = table.cables == "let go"
+    stages = stages_of(project, table)
+    later = table.cables == "let go" or bool(stages)
     model = make_model(
         lamellas,
         actions.supports,
@@ -61,7 +66,17 @@ def model_of(up: Upstream, actions: Actions) -> Modelled:
     )
     combinations = tuple(combined(one.name, actions.loads, one.factors) for one in actions.combinations)
     masses = hardware_masses(lamellas.network, up.outputs["fabrication"].hardware, MODELLED)
-    return Modelled(model, actions.loads + combinations, np.asarray(masses), cables if later else None)
+    return Modelled(model, actions.loads + combinations, np.asarray(masses), cables if later else None, stages)
+
+
+def stages_of(project: Project, table: StructureTable) -> tuple[str, ...]:
+    """Stages of construction before the loads, without those that have nothing to do."""
+    idle = {"loads on"}
+    if table.joints != "locked":
+        idle.add(LOCKED)
+    if project.cables is None:
+        idle.add(CABLES)
+    return tuple(stage for stage in table.construction or () if stage not in idle)
 
 
 def model_rules(project: Project, table: StructureTable) -> ModelRules:
@@ -69,6 +84,9 @@ def model_rules(project: Project, table: StructureTable) -> ModelRules:
     joints, stiffness, gap = str(table.joints), 0.0, 0.0
     if isinstance(table.joints, JointStiffnessTable):
         joints, stiffness, gap = "springs", table.joints.stiffness, math.radians(table.joints.gap)
+    if LOCKED in stages_of(project, table):
+        # free until they are locked
+        joints = "hinged"
     return ModelRules(
         elements=table.elements,
         layers=table.layers,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
@@ -20,9 +20,6 @@ from lamella.stages.structure.figures import FIGURES, REPORT
 from lamella.stages.structure.output import StructureOutput
 from lamella.surface.surface import Surface
 from lamella.view.scene.scene import Shown
-
-if TYPE_CHECKING:
-    from lamella.structure.analysis.analyse import Analysis
 
 MOST_CHECKED = 20_000
 """Elements of lamellas times cases that are analysed in a few seconds."""
@@ -42,6 +39,18 @@ class StructureStage(Stage[StructureOutput]):
             "structure/nodes.csv, structure/elements.csv, structure/supports.csv, structure/cables.csv, "
             "structure/results.xlsx",
             "displacements, forces and stresses of all cases, and a workbook of the largest",
+        ),
+        ("structure/envelope.csv", "the smallest and the largest of all cases at every place of the strips"),
+        (
+            "structure/paths.csv, structure/failure.csv",
+            "where `[structure.failure]` or `[structure.displacement]` is given: load factor and shift on the way, and "
+            "the factors of yield, branch and limit point",
+        ),
+        ("structure/construction.csv", "where `structure.construction` is given: a row a stage"),
+        (
+            "structure/sensitivity.csv, structure/variants.csv",
+            "where `[structure.sensitivity]` or `[[structure.variant]]` is given: the structure with other joints, "
+            "supports or strips, or without some parts, beside the designed one",
         ),
         ("structure/curvatures.csv", "what the strips of each element were bent and twisted by"),
         ("structure/opensees.py", "the model as a script for OpenSees"),
@@ -65,6 +74,10 @@ class StructureStage(Stage[StructureOutput]):
                 'add a table [[support]] with boundary = "rim", ground = 0.0 or near = [x, y, z]',
                 "support",
             )
+        if project.structure is not None:
+            from lamella.stages.structure.asked_cases import check_asked_cases
+
+            check_asked_cases(project)
 
     def takes_long(self, up: Upstream) -> str:
         from lamella.stages.actions_of_tables import combinations_of
@@ -82,24 +95,27 @@ class StructureStage(Stage[StructureOutput]):
 
     def run(self, up: Upstream, progress: Progress) -> StructureOutput:
         from lamella.stages.actions_of_tables import actions_of
+        from lamella.stages.structure.further_analyses import further_analyses
         from lamella.stages.structure.model_of_tables import model_of
         from lamella.structure.analysis.analyse import analyse
 
         project, network = up.project, up.outputs["network"].network
         actions = actions_of(project, network, up.surface)
         modelled = model_of(up, actions)
-        modes = (project.structure or StructureTable()).modes
+        table = project.structure or StructureTable()
         with keys("structure", supports="support", loads="load", prestress="cables.prestress"):
             analysis = analyse(
                 modelled.model,
                 modelled.cases,
                 node_masses=modelled.node_masses,
                 cables_later=modelled.cables_later,
-                buckling=modes,
-                frequencies=modes,
+                construction=modelled.construction,
+                buckling=table.modes,
+                frequencies=table.modes,
+                steps=table.steps or 1,
                 progress=progress,
             )
-        return StructureOutput(analysis)
+        return further_analyses(up, actions, analysis, progress)
 
     def result(self, figures: Mapping[str, Any], out: StructureOutput) -> str:
         return (
@@ -117,7 +133,7 @@ class StructureStage(Stage[StructureOutput]):
 
         signed: Any = {"name": up.project.name, "version": __version__}
         yield File("structure/results.json", lambda path: write_results(path, out.analysis, **signed))
-        yield from _exports(out.analysis, signed | {"origin": drawing_origin(up.surface)})
+        yield from _exports(out, signed | {"origin": drawing_origin(up.surface)})
 
     def scene(self, out: StructureOutput, up: Upstream) -> Iterator[Shown]:
         from lamella.stages.structure.scene import supports_scene
@@ -125,16 +141,21 @@ class StructureStage(Stage[StructureOutput]):
         yield from supports_scene(out.analysis.model)
 
 
-def _exports(analysis: Analysis, signed: Any) -> Iterator[File]:
+def _exports(out: StructureOutput, signed: Any) -> Iterator[File]:
     """Tables, and the model in the formats of other programs."""
+    from lamella.structure.export.further_tables import FurtherTables, write_page
     from lamella.structure.export.imposed_curvatures import write_imposed_curvatures
     from lamella.structure.export.opensees import write_opensees
     from lamella.structure.export.result_tables import CSV_TABLES, write_result_book, write_result_table
 
-    model, cases = analysis.model, analysis.cases
+    model, cases = out.analysis.model, out.analysis.cases
+    further = FurtherTables(out.analysis, out.failures, out.driven, out.sensitivity, out.variants)
+    plain = {key: value for key, value in signed.items() if key != "origin"}
     for table in CSV_TABLES:
         yield File(f"structure/{table}.csv", partial(write_result_table, table=table, cases=cases, **signed))
-    yield File("structure/results.xlsx", lambda path: write_result_book(path, cases, **signed))
+    for page in further.files():
+        yield File(f"structure/{page[0]}.csv", partial(write_page, page=page, **plain))
+    yield File("structure/results.xlsx", lambda path: write_result_book(path, cases, further.pages(), **signed))
     yield File("structure/curvatures.csv", lambda path: write_imposed_curvatures(path, model, **signed))
     loads = {case.name: case.equilibrium.loads for case in cases[1:]}
     yield File(

@@ -16,6 +16,7 @@ from lamella.hardware.rules import CableRules
 from lamella.structure.actions.load_case import LoadCase
 from lamella.structure.actions.node_supports import NodeSupports
 from lamella.structure.analysis.case_result import CaseResult
+from lamella.structure.analysis.construction_order import put_up
 from lamella.structure.analysis.named_mechanism import named_mechanism
 from lamella.structure.buckling import linear_buckling
 from lamella.structure.equilibrium import Equilibrium
@@ -40,6 +41,8 @@ class Analysis(Result):
     model : Model
     cases : tuple of CaseResult
         The first is the residual state.
+    stages : tuple of CaseResult
+        The end of every stage of construction, by their names; none where all is in place from the first.
     frequencies : (f,)
         Of the residual state, Hz.
     free_body : bool
@@ -50,6 +53,7 @@ class Analysis(Result):
     cases: tuple[CaseResult, ...]
     frequencies: Floats
     free_body: bool
+    stages: tuple[CaseResult, ...] = ()
 
     def _line(self) -> str:
         return ", ".join(f"{case.name} {case.utilisation_max:.2f}" for case in self.cases)
@@ -75,6 +79,7 @@ def analyse(
     *,
     node_masses: Floats | None = None,
     cables_later: CableRules | None = None,
+    construction: Sequence[str] = (),
     buckling: int = 3,
     frequencies: int = 3,
     steps: int = 1,
@@ -89,7 +94,11 @@ def analyse(
     node_masses : (n,), optional
         See `lamella.structure.model.case_loads.case_loads`.
     cables_later : CableRules, optional
-        Cables that are put on once the net has been let go, with their prestress there; the model has none then.
+        Cables that are put on once the net has been let go, with their prestress there, or in their stage of
+        construction; the model has none then.
+    construction : sequence of str
+        Stages in the order of the site, see `lamella.structure.analysis.construction_order.put_up`; default: the
+        designed shape is let go with all that is in the model.
     buckling, frequencies : int
         How many.
     steps : int
@@ -108,10 +117,16 @@ def analyse(
         model = _held_in_the_middle(model)
     with named_mechanism(model):
         refuse_loose_parts(model.structure)
-        progress(Report.step("residual state"))
-        rest = at_rest(model.structure, no_loads(model.structure))
-        if cables_later is not None:
-            rest, model = _braced(rest, model, cables_later)
+        stages: tuple[CaseResult, ...] = ()
+        if construction:
+            ends, model = put_up(model, construction, cables_later, progress=progress)
+            rest = ends[-1]
+            stages = tuple(_end_of(stage, model, end) for stage, end in zip(construction, ends, strict=True))
+        else:
+            progress(Report.step("residual state"))
+            rest = at_rest(model.structure, no_loads(model.structure))
+            if cables_later is not None:
+                rest, model = _braced(rest, model, cables_later)
         found = [CaseResult(RESIDUAL, model, rest, rest, "", np.zeros(0))]
         swings = np.zeros(0)
         if frequencies and rest.negative == 0:
@@ -120,7 +135,12 @@ def analyse(
             progress(Report.step(f"load case {case.name}", k / len(cases)))
             loads = case_loads(model, case, node_masses)
             found.append(_case(model, case.name, rest, loads, buckling, steps))
-    return Analysis(model, tuple(found), swings, not supported)
+    return Analysis(model, tuple(found), swings, not supported, stages)
+
+
+def _end_of(stage: str, model: Model, end: Equilibrium) -> CaseResult:
+    """What is known at the end of a stage of construction."""
+    return CaseResult(stage, replace(model, structure=end.structure), end, end, "", np.zeros(0))
 
 
 def _held_in_the_middle(model: Model) -> Model:
@@ -143,9 +163,10 @@ def _braced(rest: Equilibrium, model: Model, rules: CableRules) -> tuple[Equilib
 
 def _case(model: Model, name: str, rest: Equilibrium, loads: Loads, buckling: int, steps: int) -> CaseResult:
     start = stable = last = replace(rest, loads=loads)
-    reason = ""
+    reason, states = "", []
     try:
         for last in load_path(start, steps=steps):
+            states.append(replace(last))
             if last.negative == 0:
                 stable = last
     except InputError as error:
@@ -155,4 +176,4 @@ def _case(model: Model, name: str, rest: Equilibrium, loads: Loads, buckling: in
         # nothing may be there that these loads would make buckle
         with suppress(InputError):
             factors = linear_buckling(stable, buckling).factors
-    return CaseResult(name, model, last, rest, reason, factors)
+    return CaseResult(name, model, last, rest, reason, factors, tuple(states[:-1]))

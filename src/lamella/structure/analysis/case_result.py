@@ -31,6 +31,8 @@ class CaseResult(Result):
     buckling : (b,)
         Load factors at which it buckles, by linear buckling about this state, or about the last stable one on the way
         to it.
+    before : tuple of Equilibrium
+        States on the way to `equilibrium`, at smaller load factors.
     """
 
     name: str
@@ -39,6 +41,7 @@ class CaseResult(Result):
     rest: Equilibrium
     reason: str
     buckling: Floats
+    before: tuple[Equilibrium, ...] = ()
 
     def _line(self) -> str:
         how = f"load factor {self.load_factor:.4g} of 1" if self.reason else "reached"

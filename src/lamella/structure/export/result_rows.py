@@ -69,7 +69,7 @@ def node_rows(case: CaseResult) -> Iterator[Row]:
     shifts = case.displacements
     away = np.linalg.norm(shifts - case.rest.displacements[: case.model.nodes], axis=1)
     columns = np.column_stack((shifts, np.linalg.norm(shifts, axis=1), away))
-    for node, row in enumerate(_texts(MM * columns, 6)):
+    for node, row in enumerate(texts(MM * columns, 6)):
         yield (case.name, node, *row)
 
 
@@ -79,15 +79,15 @@ def element_rows(case: CaseResult) -> Iterator[Row]:
     Elements of edge beams come last, with forces and utilisation alone.
     """
     lines, ids = case.model.lines, case.model.lamellas.network.ids
-    forces = _texts(EndForces.of(case).values.reshape(-1, 6), 4)
+    forces = texts(EndForces.of(case).values.reshape(-1, 6), 4)
     count = 2 * len(lines.length)
-    stresses = _texts(MPA * _stresses(case), 5)
-    uses = _texts(case.use.utilisation.reshape(-1, 1), 6)
+    stresses = texts(MPA * _stresses(case), 5)
+    uses = texts(case.use.utilisation.reshape(-1, 1), 6)
     for k, (force, stress, use) in enumerate(zip(forces[:count], stresses, uses, strict=True)):
         element, end = divmod(k, 2)
-        name, layer = ids[int(lines.lamella[element])], _layer(int(lines.layer[element]))
+        name, layer = ids[int(lines.lamella[element])], layer_number(int(lines.layer[element]))
         yield (case.name, name, layer, element, end, f"{lines.arclengths[element, end]:.6f}", *force, *stress, *use)
-    for k, use in enumerate(_texts(edge_use(case.model, case.equilibrium).reshape(-1, 1), 6), count):
+    for k, use in enumerate(texts(edge_use(case.model, case.equilibrium).reshape(-1, 1), 6), count):
         element, end = divmod(k, 2)
         yield (case.name, EDGE_BEAM, "", element, end, "", *forces[k], *[""] * STRESSES, *use)
 
@@ -116,7 +116,7 @@ def support_rows(case: CaseResult, origin: Origin = NOWHERE) -> Iterator[Row]:
     nodes = np.flatnonzero(case.model.supports.supported)
     points = case.model.lamellas.network.node_points[nodes] + origin
     reactions = case.equilibrium.reactions[:count][nodes]
-    for node, point, force in zip(nodes.tolist(), _texts(points, 6), _texts(reactions, 4), strict=True):
+    for node, point, force in zip(nodes.tolist(), texts(points, 6), texts(reactions, 4), strict=True):
         yield (case.name, node, *point, *force)
 
 
@@ -125,7 +125,7 @@ def cable_rows(case: CaseResult) -> Iterator[Row]:
     state = case.equilibrium.whole.cables
     slack = ~state.tight(state.force)
     ends = state.cables.attachment.nodes.tolist()
-    values = _texts(np.column_stack((state.cables.length, state.tension)), 4)
+    values = texts(np.column_stack((state.cables.length, state.tension)), 4)
     for k, ((one, other), row) in enumerate(zip(ends, values, strict=True)):
         yield (case.name, k, one, other, *row, "slack" if slack[k] else "")
 
@@ -143,7 +143,7 @@ def lamella_rows(case: CaseResult) -> Iterator[Row]:
     np.maximum.at(use, lines.lamella, case.use.utilisation.max(1))
     there = np.flatnonzero(np.isfinite(low))
     columns = np.column_stack((low, high, MPA * stress, use))[there]
-    for k, row in zip(there.tolist(), _texts(columns, 5), strict=True):
+    for k, row in zip(there.tolist(), texts(columns, 5), strict=True):
         yield (case.name, ids[k], *row)
 
 
@@ -168,15 +168,15 @@ def stressed_rows(cases: Sequence[CaseResult], count: int = PLACES, origin: Orig
         places.append(place)
         case = cases[int(worst[k])]
         stress = MPA * float(case.use.von_mises[element, end])
-        numbers = _texts(np.array([[*(points[element, end] + origin), stress, use[worst[k], k]]]), 6)[0]
-        yield (len(places), case.name, ids[place[0]], _layer(place[1]), f"{place[2]:.6f}", *numbers)
+        numbers = texts(np.array([[*(points[element, end] + origin), stress, use[worst[k], k]]]), 6)[0]
+        yield (len(places), case.name, ids[place[0]], layer_number(place[1]), f"{place[2]:.6f}", *numbers)
 
 
-def _layer(layer: int) -> object:
+def layer_number(layer: int) -> object:
     """As drawings number layers, from 1; nothing where all are one line of beams."""
     return layer + 1 if layer >= 0 else ""
 
 
-def _texts(values: Floats, digits: int) -> list[list[str]]:
+def texts(values: Floats, digits: int) -> list[list[str]]:
     """Numbers (r, c) with so many decimals and no negative zeros."""
     return [[f"{value:.{digits}f}" for value in row] for row in (np.round(values, digits) + 0.0).tolist()]

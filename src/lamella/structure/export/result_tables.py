@@ -11,6 +11,7 @@ from lamella.files.write.table import write_table
 from lamella.files.write.xlsx_pages import add_page, new_book
 from lamella.structure.analysis.case_result import CaseResult
 from lamella.structure.export import result_rows as rows
+from lamella.structure.export.further_tables import Page
 
 CSV_TABLES: dict[str, tuple[tuple[str, ...], Callable[[CaseResult, Origin], Iterable[rows.Row]]]] = {
     "nodes": (rows.NODES, lambda case, origin: rows.node_rows(case)),
@@ -41,9 +42,24 @@ def write_result_table(
 
 
 def write_result_book(
-    path: Path, cases: Sequence[CaseResult], *, name: str, version: str, origin: Origin = NOWHERE
+    path: Path,
+    cases: Sequence[CaseResult],
+    pages: Iterable[Page] = (),
+    *,
+    name: str,
+    version: str,
+    origin: Origin = NOWHERE,
 ) -> None:
     """Write the workbook: cases, the most stressed places, lamellas, supports, cables; see `write_result_table`.
+
+    Parameters
+    ----------
+    path : Path
+    cases : sequence of CaseResult
+    pages : iterable of Page
+        Further ones, after these.
+    name, version, origin
+        Of the run.
 
     Raises
     ------
@@ -57,6 +73,8 @@ def write_result_book(
     for title in ("supports", "cables"):
         header, of = CSV_TABLES[title]
         add_page(book, title, header, (row for case in cases for row in of(case, origin)))
+    for page in pages:
+        add_page(book, *page)
     book.close()
     write_whole(path, content.getvalue())
 
