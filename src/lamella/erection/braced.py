@@ -9,7 +9,7 @@ from lamella.base.material import MATERIALS, Material
 from lamella.base.progress import Progress, Report, silent
 from lamella.erection.free_body import free_body
 from lamella.erection.rigid_motion import moved_onto
-from lamella.hardware.beam_axes import EdgeBeamAxes
+from lamella.hardware.axis_ends import EdgeBeamAxes
 from lamella.hardware.rules import CableRules
 from lamella.strip.lamellas import Lamellas
 from lamella.structure.loads import no_loads

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
-from lamella.hardware.beam_axes import BeamAxis
+from lamella.hardware.axis_ends import BeamAxis
 from lamella.hardware.end_plates import CONTACT
 from lamella.hardware.item import Item, Places
 from lamella.hardware.rules import MM

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.wording import rounded
+from lamella.fabrication.defaults import END_DISTANCE_MIN
 from lamella.fabrication.trims import Trims
-from lamella.hardware.edge_rules import END_EDGE, END_PITCH, FOLD_BEND, BeamSection, EdgeBeamRules
+from lamella.hardware.axis_ends import ROOM, BeamAxis, BeamEnds, EdgeBeamAxes, end_lengths
+from lamella.hardware.classes import classes
+from lamella.hardware.edge_rules import EdgeBeamRules
+from lamella.hardware.end_room import plated
 from lamella.hardware.rims import RimPiece, rim_pieces
 from lamella.hardware.rules import MM, JointRules
 from lamella.network.network import BOUNDARY, Network
@@ -24,111 +28,11 @@ LEAST_ANGLE = np.radians(20.0)
 ROUNDS = 6
 """Steps for the place where a strip meets a beam, and for the nearest place of a rim, which converge quadratically."""
 
+FOLD_STEP = 0.5
+"""deg; folds of end plates that differ by less are made alike."""
+
 SLOTS = 4.0
 """Thicknesses of a strip that a slot takes beyond the outermost layer that goes through it."""
-
-ROOM = 1e-3
-"""m; between parts of a lamella's end and the joint next to it, and beyond computed edge distances."""
-
-
-@dataclass(frozen=True, eq=False)
-class BeamAxis:
-    """The beam along one smooth piece of a rim.
-
-    Attributes
-    ----------
-    piece : RimPiece
-    rules : EdgeBeamRules
-    beam : BeamSection
-    distance : float
-        From the rim to its axis, outwards, m.
-    """
-
-    piece: RimPiece
-    rules: EdgeBeamRules
-    beam: BeamSection
-    distance: float
-
-    @property
-    def label(self) -> str:
-        """Where it is, in words of the lists."""
-        return f"side {self.piece.number + 1} of boundary {self.piece.loop + 1}"
-
-    @property
-    def face(self) -> float:
-        """From the rim to where end plates touch the beam, m."""
-        return self.distance - self.beam.reach
-
-    @property
-    def middle(self) -> float:
-        """From the rim to the middle of the end plates' legs on the beam, m."""
-        return self.face - self.rules.end_plate / 2
-
-    @property
-    def trim(self) -> float:
-        """From the rim to the lamellas' ends, m."""
-        return self.face - self.rules.end_plate - self.rules.end_gap
-
-
-@dataclass(frozen=True, eq=False)
-class BeamEnds:
-    """Ends of lamellas at beams, (e,) each.
-
-    Attributes
-    ----------
-    lamellas : int
-    last : bool
-        Whether it is the lamella's end, and not its start.
-    axes : int
-        Index of the beam's axis.
-    along : float
-        Where on its piece of the rim, m.
-    arclengths : float
-        Of the centre line where it meets the middle of an end plate's leg on the beam, m.
-    folds : float
-        Angle between the lamella's direction and the beam's, rad, at most a right one.
-    inner : float
-        Arc length from the rim's node back to the next joint, m; infinite if there is none.
-    """
-
-    lamellas: Integers
-    last: Booleans
-    axes: Integers
-    along: Floats
-    arclengths: Floats
-    folds: Floats
-    inner: Floats
-
-    def __len__(self) -> int:
-        return len(self.lamellas)
-
-    @property
-    def senses(self) -> Floats:
-        """1 where arc length grows outwards, else -1."""
-        return np.where(self.last, 1.0, -1.0)
-
-    def chosen(self, some: Booleans | Integers) -> BeamEnds:
-        """Those of some indices, or where a mask is true."""
-        return BeamEnds(*(getattr(self, name)[some] for name in self.__dataclass_fields__))
-
-
-@dataclass(frozen=True, eq=False)
-class EdgeBeamAxes:
-    """All axes, the lamellas' ends at them, and how the strips end there.
-
-    Attributes
-    ----------
-    axes : tuple of BeamAxis
-    ends : BeamEnds
-    trims : Trims
-    askew : int
-        Ends on rims with beams that are left as they are, because they meet the rim at less than `LEAST_ANGLE`.
-    """
-
-    axes: tuple[BeamAxis, ...]
-    ends: BeamEnds
-    trims: Trims
-    askew: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,19 +45,6 @@ class _RimEnds:
     pieces: Integers
     along: Floats
     inner: Floats
-
-
-def end_lengths(fold: Floats, rules: EdgeBeamRules, section: Section, joints: JointRules) -> tuple[Floats, float]:
-    """From an end plate's corner to its first screw (of folds (q,), rad), and from there to its inner end, m.
-
-    The layer that ends first, on the side where the beam leads inwards, has `END_EDGE` hole diameters beyond the screw.
-    """
-    hole = joints.block_size.hole
-    outer = (section.layers - 1) / 2 * section.offset + section.thickness / 2
-    before = (rules.end_plate / 2 + rules.end_gap + outer * np.cos(fold)) / np.sin(fold)
-    arc = (FOLD_BEND + 0.5) * rules.end_plate * np.tan(fold / 2)
-    first = np.maximum(before, arc) + ROOM + END_EDGE * hole
-    return np.ceil(first * MM * 2) / MM / 2, (END_PITCH + END_EDGE) * hole
 
 
 def edge_beam_axes(
@@ -198,7 +89,50 @@ def edge_beam_axes(
     of_axis = which[found.pieces[steep]] if len(pieces) else np.zeros(0, np.int64)
     axes = _placed(axes, of_axis, folds[steep], found.inner[steep], section, joints, half_joint)
     ends, trims = _met(lamellas, axes, found, np.flatnonzero(steep), of_axis)
-    return EdgeBeamAxes(tuple(axes), ends, trims, int((joined & ~steep).sum()))
+    ends = _with_plates(lamellas, axes, ends, joints, half_joint)
+    without = ends.legs == 0
+    held = without & np.isfinite(ends.inner)
+    return EdgeBeamAxes(
+        tuple(axes),
+        ends.chosen(~without),
+        ends.chosen(held),
+        int((without & ~held).sum()),
+        _shortened(lamellas, trims, ends.chosen(held), half_joint),
+        int((joined & ~steep).sum()),
+    )
+
+
+def _with_plates(
+    lamellas: Lamellas, axes: list[BeamAxis], ends: BeamEnds, joints: JointRules, half_joint: float
+) -> BeamEnds:
+    """The ends with those plates for which there is room; folds that differ little are made alike."""
+    kind, sizes = classes(np.degrees(ends.folds), FOLD_STEP)
+    towards, legs, bends = np.zeros((3, len(ends)))
+    for number, axis in enumerate(axes):
+        mine = np.flatnonzero(ends.axes == number)
+        if not len(mine):
+            continue
+        made = plated(lamellas, axes, axis, ends.chosen(mine), np.radians(sizes)[kind[mine]], joints, half_joint)
+        some = mine[made.ends]
+        towards[some], legs[some], bends[some] = made.towards, made.legs, made.folds
+    return replace(ends, towards=towards, legs=legs, bends=bends)
+
+
+def _shortened(lamellas: Lamellas, trims: Trims, ends: BeamEnds, half_joint: float) -> Trims:
+    """Trims with some ends square behind their last joint instead of at the beam."""
+    section, network = lamellas.section, lamellas.network
+    reach = max(half_joint, (section.layers - 1) / 2 * section.offset + END_DISTANCE_MIN)
+    stations = trims.stations.copy()
+    crossing = crossings(network)[network.stop_nodes]
+    for lamella, last in zip(ends.lamellas.tolist(), ends.last.tolist(), strict=True):
+        own = np.arange(network.stop_offsets[lamella], network.stop_offsets[lamella + 1])
+        own = own[crossing[own]]
+        joint, sense = (own[-1], 1.0) if last else (own[0], -1.0)
+        square = lamellas.layers.stop_stations[:, joint] + sense * reach
+        at_beam = stations[lamella, :, int(last)]
+        # a joint next to the rim keeps the end at the beam
+        stations[lamella, :, int(last)] = sense * np.minimum(sense * square[:, None], sense * at_beam)
+    return Trims(stations)
 
 
 def _rim_ends(network: Network, pieces: tuple[RimPiece, ...]) -> _RimEnds:
@@ -308,7 +242,20 @@ def _met(
             stations, _ = _meets(one, axis.piece, np.full(2, first), np.repeat(begin, 2), heights, axis.trim)
             trims[lamella, row, int(last)] = stations
             beyond[k] = min(beyond[k], float(((stations - first) * (1 if last else -1)).min()))
-    ends = BeamEnds(found.lamellas[some], found.last[some], of_axis, along, arclengths, folds, found.inner[some])
+    none = np.zeros(len(some))
+    ends = BeamEnds(
+        found.lamellas[some],
+        found.last[some],
+        of_axis,
+        found.along[some],
+        along,
+        arclengths,
+        folds,
+        found.inner[some],
+        none,
+        none,
+        none,
+    )
     _check_slots(lamellas, axes, ends, beyond)
     return ends, Trims(trims)
 

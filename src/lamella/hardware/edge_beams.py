@@ -14,12 +14,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lamella.base.arrays import Floats
+from lamella.base.arrays import Floats, Integers
 from lamella.base.message import Message
 from lamella.base.wording import counted
 from lamella.fabrication.flat import outline_points
+from lamella.hardware.axis_ends import BeamAxis, BeamEnds, EdgeBeamAxes, beside, extent
 from lamella.hardware.base_plates import base_plates
-from lamella.hardware.beam_axes import LEAST_ANGLE, BeamAxis, EdgeBeamAxes
+from lamella.hardware.beam_axes import LEAST_ANGLE
 from lamella.hardware.bores import Bores
 from lamella.hardware.end_plates import end_plates
 from lamella.hardware.item import Item, Places
@@ -66,7 +67,7 @@ class EdgeBeams:
     warnings: tuple[Message, ...]
 
 
-def edge_beams(lamellas: Lamellas, found: EdgeBeamAxes, joints: JointRules, half_joint: float) -> EdgeBeams:
+def edge_beams(lamellas: Lamellas, found: EdgeBeamAxes, joints: JointRules) -> EdgeBeams:
     """Beams, end plates and base plates.
 
     Parameters
@@ -74,34 +75,49 @@ def edge_beams(lamellas: Lamellas, found: EdgeBeamAxes, joints: JointRules, half
     lamellas : Lamellas
     found : EdgeBeamAxes
     joints : JointRules
-    half_joint : float
-        From a node to where its joint ends along its lamellas, m.
     """
     network = lamellas.network
-    plates = end_plates(lamellas, found, joints, half_joint)
+    plates = end_plates(lamellas, found, joints)
     segments: list[Item] = []
     for number, axis in enumerate(found.axes):
-        places = np.sort(plates.ends.along[plates.ends.axes == number])
+        places = np.sort(found.ends.along[found.ends.axes == number])
         segments += _segments(axis, places, found.axes)
     items = _alike(segments)
     items += plates.items
     items += base_plates(found.axes)
     keep_clear = np.zeros(len(network.stop_nodes))
-    ends = plates.ends
-    stops = np.where(ends.last, network.stop_offsets[ends.lamellas + 1] - 1, network.stop_offsets[ends.lamellas])
-    keep_clear[stops] = plates.reach
-    return EdgeBeams(tuple(items), plates.bores, keep_clear, tuple(_notes(found, plates.without)))
+    keep_clear[_stops(lamellas, found.ends)] = plates.reach
+    # no block beyond the joint at which a lamella ends
+    keep_clear[_stops(lamellas, found.left_out)] = found.left_out.inner
+    return EdgeBeams(tuple(items), plates.bores, keep_clear, tuple(_notes(found, network.ids)))
 
 
-def _notes(found: EdgeBeamAxes, without: int) -> list[Message]:
+def _stops(lamellas: Lamellas, ends: BeamEnds) -> Integers:
+    """Of the network, at some ends."""
+    offsets = lamellas.network.stop_offsets
+    return np.where(ends.last, offsets[ends.lamellas + 1] - 1, offsets[ends.lamellas])
+
+
+def _notes(found: EdgeBeamAxes, ids: tuple[str, ...]) -> list[Message]:
     notes = []
-    every = counted(len(found.ends) + found.askew, "lamella end")
-    if without:
+    left_out = [ids[k] for k in found.left_out.lamellas.tolist()]
+    every = counted(len(found.ends) + len(left_out) + found.loose + found.askew, "lamella end")
+    if left_out:
+        some = ", ".join(left_out[:5]) + (", ..." if len(left_out) > 5 else "")
+        notes.append(
+            Message(
+                "ends_at_their_joint",
+                f"{len(left_out)} of {every} at edge beams ({some}) are in the way of a steeper one or of a corner of "
+                "the rim: these lamellas end at their last joint instead of at the beam; another number of cells moves "
+                "them",
+            )
+        )
+    if found.loose:
         notes.append(
             Message(
                 "ends_without_plate",
-                f"{without} of {every} at edge beams have no end plate: the next joint, a neighbour's plate or a "
-                "corner of the rim is in the way; a smaller end_plate_leg or another number of cells helps",
+                f"{found.loose} of {every} at edge beams have no room for an end plate, and no joint holds them: leave "
+                "these short lamellas out by a larger network.minimum_length, or choose another number of cells",
             )
         )
     if found.askew:
@@ -117,7 +133,7 @@ def _notes(found: EdgeBeamAxes, without: int) -> list[Message]:
 
 def _segments(axis: BeamAxis, places: Floats, axes: tuple[BeamAxis, ...]) -> list[Item]:
     """The segments along one piece of the rim, with lamella ends at places, m."""
-    begin, end = _extent(axis, axes)
+    begin, end = extent(axis, axes, axis.distance)
     bounds = _bounds(axis, places, begin, end)
     items = []
     for number, (low, high) in enumerate(zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)):
@@ -161,33 +177,6 @@ def _congruent(one: Item, other: Item) -> bool:
         turned = max(turned, np.abs(a.cuts - b.cuts).max())
     # over a cross section
     return bool(turned * np.abs(outline_points(a.outline)).max() < CONGRUENT_SEGMENTS)
-
-
-def _extent(axis: BeamAxis, axes: tuple[BeamAxis, ...]) -> tuple[float, float]:
-    """Parameters at which the beam begins and ends, m: where it meets its neighbours in the corners of the rim."""
-    piece = axis.piece
-    if piece.closed:
-        return 0.0, piece.length
-    reach = []
-    for other, at_end in ((_beside(axis, axes, -1), False), (_beside(axis, axes, 1), True)):
-        mine = piece.frames(np.array([piece.length if at_end else 0.0]))
-        if other is None:
-            reach.append(0.0)
-            continue
-        there = other.piece.frames(np.array([0.0 if at_end else other.piece.length]))
-        turn = np.arctan2(
-            float(np.cross(mine.ahead, there.ahead)[0] @ mine.up[0]), float(mine.ahead[0] @ there.ahead[0])
-        )
-        # outwards of a corner that turns to the left the beams go on
-        reach.append(axis.distance * np.tan((turn if at_end else -turn) / 2))
-    return -reach[0], piece.length + reach[1]
-
-
-def _beside(axis: BeamAxis, axes: tuple[BeamAxis, ...], step: int) -> BeamAxis | None:
-    """The beam along the piece of the rim before or after this one."""
-    mine = [one for one in axes if one.piece.loop == axis.piece.loop]
-    index = next(k for k, one in enumerate(mine) if one is axis)
-    return mine[(index + step) % len(mine)] if len(mine) > 1 else None
 
 
 def _bounds(axis: BeamAxis, places: Floats, begin: float, end: float) -> Floats:
@@ -294,7 +283,7 @@ def _cuts(axis: BeamAxis, ahead: Floats, mitred: tuple[bool, bool], axes: tuple[
         return None
     cuts = ahead[[0, -1]].copy()
     for side, (here, step) in enumerate(zip(mitred, (-1, 1), strict=True)):
-        other = _beside(axis, axes, step) if here else None
+        other = beside(axis, axes, step) if here else None
         if other is None:
             continue
         at = np.array([other.piece.length if step < 0 else 0.0])

@@ -3,7 +3,7 @@
 An end plate is a flat plate that is folded once, along the surface normal, by the angle between the lamella and the
 beam. One leg lies on the beam and is welded to it; the other one stands between the two innermost layers, which are
 bolted to it with packers on either side. It may be turned over, so that ends that lean to the left and to the right
-have the same one; folds that differ by less than `FOLD_STEP` are made alike.
+have the same one; folds that differ by less than half a degree are made alike.
 
 The flat length of the fold is that of its middle surface.
 """
@@ -16,11 +16,9 @@ import numpy as np
 
 from lamella.base.arrays import Floats, Integers
 from lamella.fabrication.flat import outline_points
-from lamella.hardware.beam_axes import BeamAxis, BeamEnds, EdgeBeamAxes, end_lengths
+from lamella.hardware.axis_ends import BeamAxis, BeamEnds, EdgeBeamAxes, end_lengths
 from lamella.hardware.bores import Bores
-from lamella.hardware.classes import classes
 from lamella.hardware.edge_rules import END_EDGE, END_PITCH, FOLD_BEND
-from lamella.hardware.end_room import no_room, towards_of, with_room
 from lamella.hardware.folded_plate import FoldedPlate, folded_plates
 from lamella.hardware.item import Item, Places
 from lamella.hardware.layer_faces import LayerFaces, ahead, area
@@ -29,9 +27,6 @@ from lamella.hardware.screws import screws
 from lamella.hardware.shear_blocks import filling
 from lamella.strip.lamellas import Lamellas
 from lamella.strip.levels import level_heights
-
-FOLD_STEP = 0.5
-"""deg; folds that differ by less are made alike."""
 
 CONTACT = 5e-5
 """m; between a beam and a plate on it as they are drawn: straight pieces of a bent beam leave it by about as much."""
@@ -48,70 +43,48 @@ class EndPlates:
     ----------
     items : tuple of Item
     bores : Bores
-    ends : BeamEnds
-        Those that have a plate.
     reach : (e,)
         From the rim's nodes back to where their plates end, m.
-    without : int
-        Ends that have none, because the next joint or a neighbour's plate is in the way.
     """
 
     items: tuple[Item, ...]
     bores: Bores
-    ends: BeamEnds
     reach: Floats
-    without: int
 
 
-def end_plates(lamellas: Lamellas, found: EdgeBeamAxes, joints: JointRules, half_joint: float) -> EndPlates:
-    """End plates of all lamella ends that have room for one.
+def end_plates(lamellas: Lamellas, found: EdgeBeamAxes, joints: JointRules) -> EndPlates:
+    """End plates of all lamella ends that have one.
 
     Parameters
     ----------
     lamellas : Lamellas
     found : EdgeBeamAxes
     joints : JointRules
-    half_joint : float
-        From a node to where its joint ends along its lamellas, m.
-
-    Raises
-    ------
-    InputError
-        A beam on which no end plate has room.
     """
     made: list[Item] = []
-    kept, bores, gaps, reach = [], [], [], []
+    bores, gaps = [], []
+    reach = np.zeros(len(found.ends))
     labels: tuple[str, ...] = ()
-    every, sizes = classes(np.degrees(found.ends.folds), FOLD_STEP)
     for number, axis in enumerate(found.axes):
         mine = np.flatnonzero(found.ends.axes == number)
-        ends, kind = found.ends.chosen(mine), every[mine]
-        folds = np.radians(sizes)[kind] if len(mine) else np.empty(0)
-        room = with_room(lamellas, axis, ends, folds, joints, half_joint)
-        if len(mine) and not len(room):
-            raise no_room(axis, ends, folds, lamellas, joints)
-        ends, kind, folds = ends.chosen(room), kind[room], folds[room]
-        if not len(ends):
+        if not len(mine):
             continue
-        of_axis = _OnAxis.of(lamellas, axis, ends, folds, joints)
-        for fold in np.unique(kind).tolist():
-            made.append(of_axis.item(np.flatnonzero(kind == fold), joints))
+        ends = found.ends.chosen(mine)
+        of_axis = _OnAxis.of(lamellas, axis, ends, joints)
+        kinds = np.unique(np.round(np.column_stack([ends.bends, ends.legs]), 9), axis=0, return_inverse=True)[1].ravel()
+        for kind in range(int(kinds.max()) + 1):
+            made.append(of_axis.item(np.flatnonzero(kinds == kind), joints))
         gaps.append(of_axis.packers(joints))
         bores.append(of_axis.bores(joints))
         labels += tuple(f"{label} {which}" for which in ("outer", "inner") for label in of_axis.labels)
-        reach.append(_reach(lamellas, ends, of_axis.inner_ends))
-        kept.append(mine[room])
-    if not kept:
-        none = np.zeros(0, np.int64)
-        return EndPlates((), Bores.of([]), found.ends.chosen(none), np.empty(0), len(found.ends))
+        reach[mine] = _reach(lamellas, ends, of_axis.inner_ends)
+    if not made:
+        return EndPlates((), Bores.of([]), reach)
     drilled = Bores.of(bores)
     made = _alike(made)
     made += _packers(lamellas, joints, gaps)
     made += screws(lamellas, drilled.lamellas, drilled.arclengths, joints, labels, "end")
-    chosen = np.concatenate(kept)
-    return EndPlates(
-        tuple(made), drilled, found.ends.chosen(chosen), np.concatenate(reach), len(found.ends) - len(chosen)
-    )
+    return EndPlates(tuple(made), drilled, reach)
 
 
 def _alike(items: list[Item]) -> list[Item]:
@@ -146,7 +119,6 @@ class _OnAxis:
     lamellas: Lamellas
     axis: BeamAxis
     ends: BeamEnds
-    folds: Floats
     first: Floats
     rest: float
     height: float
@@ -155,11 +127,10 @@ class _OnAxis:
     corners: Floats
 
     @classmethod
-    def of(cls, lamellas: Lamellas, axis: BeamAxis, ends: BeamEnds, folds: Floats, joints: JointRules) -> _OnAxis:
-        section, senses = lamellas.section, ends.senses
+    def of(cls, lamellas: Lamellas, axis: BeamAxis, ends: BeamEnds, joints: JointRules) -> _OnAxis:
+        section, senses, folds, towards = lamellas.section, ends.senses, ends.bends, ends.towards
         first, rest = end_lengths(folds, axis.rules, section, joints)
         pitch, height = END_PITCH * joints.block_size.hole, axis.rules.plate_height(section, joints)
-        towards = towards_of(axis, ends, lamellas)
         levels = level_heights(lamellas.network, section.level)[ends.lamellas]
         screw = ends.arclengths - senses * first
         for _ in range(SCREW_ROUNDS):
@@ -171,11 +142,11 @@ class _OnAxis:
             over = np.einsum("ij,ij->i", beam, z) < 0
             y[over], z[over] = -y[over], -z[over]
             away = np.sin(folds)[:, None] * x - np.cos(folds)[:, None] * z
-            face = _touching(axis, ends, towards, away, height, levels)
+            face = _touching(axis, ends, away, height, levels)
             ahead_of = (face - axis.rules.end_plate / 2 - np.einsum("ij,ij->i", near, away)) / np.sin(folds)
             screw = screw + senses * (ahead_of - first)
         corners = near + first[:, None] * x
-        return cls(lamellas, axis, ends, folds, first, rest, height, screw, np.stack([x, y, z], axis=1), corners)
+        return cls(lamellas, axis, ends, first, rest, height, screw, np.stack([x, y, z], axis=1), corners)
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -195,10 +166,10 @@ class _OnAxis:
         """The plates of one fold."""
         rules = self.axis.rules
         plates = FoldedPlate(
-            float(self.folds[some[0]]),
+            float(self.ends.bends[some[0]]),
             rules.end_plate,
             self.height,
-            rules.end_plate_leg,
+            float(self.ends.legs[some[0]]),
             float(self.first[some[0]]),
             self.rest,
             joints.block_size.hole,
@@ -284,11 +255,11 @@ def _screw_places(lamellas: Lamellas, owner: Integers, outer: Floats, inner: Flo
     return middles[: len(owner)], middles[len(owner) :], faces.normals[: len(owner)]
 
 
-def _touching(axis: BeamAxis, ends: BeamEnds, towards: Floats, away: Floats, height: float, levels: Floats) -> Floats:
+def _touching(axis: BeamAxis, ends: BeamEnds, away: Floats, height: float, levels: Floats) -> Floats:
     """How far along `away` (e, 3) a plane touches the beam under a leg that is at heights `levels` (e,), m, (e,)."""
     least = np.full(len(ends), np.inf)
     for share in np.linspace(-0.5, 1.0, 7).tolist():
-        frames = axis.piece.frames(ends.along + share * towards * axis.rules.end_plate_leg)
+        frames = axis.piece.frames(ends.along + share * ends.towards * ends.legs)
         middle = frames.beside(axis.distance)
         if axis.beam.round:
             least = np.minimum(least, np.einsum("ij,ij->i", middle, away) - axis.beam.reach)

@@ -12,7 +12,7 @@ from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.wording import counted
 from lamella.fabrication.part import Parts
-from lamella.hardware.beam_axes import EdgeBeamAxes
+from lamella.hardware.axis_ends import EdgeBeamAxes
 from lamella.hardware.bores import Bores, drilled
 from lamella.hardware.cables import cables
 from lamella.hardware.edge_beams import edge_beams
@@ -24,7 +24,7 @@ from lamella.hardware.rules import MM, CableRules, JointRules
 from lamella.hardware.shear_blocks import shear_blocks
 from lamella.hardware.splices import cuts, splice_length, splices
 from lamella.hardware.stacked_joint import joint_length, stacked_joints, stacked_upper
-from lamella.network.network import SINGULAR
+from lamella.network.network import SINGULAR, Network
 from lamella.strip.lamellas import Lamellas
 
 # deg: keys that let a joint turn farther do not fix it
@@ -91,7 +91,7 @@ def make_hardware(
         joints = make(frames, lamellas, rules, clamp=above)
         items += joints.items
         notes += _loose(joints.angle_play)
-    hub_radius = _hub_radius(parts)
+    hub_radius = _hub_radius(parts, network)
     if rules.hub and (network.node_kinds == SINGULAR).any():
         made = hubs(lamellas, rules, hub_radius, _room(lamellas, half_joint))
         items += made.items
@@ -103,7 +103,7 @@ def make_hardware(
         network.node_kinds[network.stop_nodes] == SINGULAR, np.maximum(keep_clear, hub_radius), keep_clear
     )
     if beams is not None:
-        edge = edge_beams(lamellas, beams, rules, half_joint)
+        edge = edge_beams(lamellas, beams, rules)
         items += edge.items
         bores.append(edge.bores)
         keep_clear = np.maximum(keep_clear, edge.keep_clear)
@@ -112,7 +112,8 @@ def make_hardware(
         blocks = shear_blocks(lamellas, rules, keep_clear, _spliced(parts, lamellas, rules))
         items += blocks.items
         bores.append(blocks.bores)
-        notes += _without(blocks.cells_without, len(network.cell_edges), rules)
+        left_out = 0 if beams is None else len(beams.left_out)
+        notes += _without(blocks.cells_without - left_out, len(network.cell_edges), rules)
     drilled_parts = drilled(parts, lamellas, Bores.of(bores))
     if rules.splice:
         joined = splices(drilled_parts, lamellas, rules)
@@ -139,12 +140,18 @@ def _upper(frames: NodeFrames, lamellas: Lamellas, rules: JointRules) -> Floats:
     return lamellas.section.height / 2 + seats(frames, lamellas, reach)[0]
 
 
-def _hub_radius(parts: Parts) -> float:
-    """From singular nodes to the strips' ends, m: only there a part's node lies beyond its end."""
+def _hub_radius(parts: Parts, network: Network) -> float:
+    """From singular nodes to the strips' ends, m."""
+    singular = network.node_kinds[network.stop_nodes] == SINGULAR
     ends = [0.0]
     for part in parts.parts:
-        if len(part.nodes):
-            ends += [part.start - float(part.nodes[0]), float(part.nodes[-1]) - part.end]
+        if not len(part.nodes):
+            continue
+        first = int(network.stop_offsets[part.lamella]) + part.first_node
+        if singular[first]:
+            ends.append(part.start - float(part.nodes[0]))
+        if singular[first + len(part.nodes) - 1]:
+            ends.append(float(part.nodes[-1]) - part.end)
     return max(ends)
 
 

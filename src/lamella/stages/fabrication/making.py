@@ -34,7 +34,7 @@ from lamella.stages.stage import Upstream
 from lamella.strip.lamellas import Lamellas
 
 if TYPE_CHECKING:
-    from lamella.hardware.beam_axes import EdgeBeamAxes
+    from lamella.hardware.axis_ends import EdgeBeamAxes
 
 
 def made_parts(up: Upstream, borders: Sequence[Integers] | None = None) -> tuple[Parts, Hardware]:

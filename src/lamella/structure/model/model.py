@@ -11,7 +11,7 @@ from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.material import MATERIALS, Material
 from lamella.base.result import Result
 from lamella.base.wording import counted
-from lamella.hardware.beam_axes import EdgeBeamAxes
+from lamella.hardware.axis_ends import EdgeBeamAxes
 from lamella.hardware.rules import CableRules
 from lamella.strip.lamellas import Lamellas
 from lamella.structure.actions.node_supports import NodeSupports

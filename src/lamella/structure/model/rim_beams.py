@@ -14,7 +14,7 @@ import numpy as np
 
 from lamella.base.arrays import Floats, Integers
 from lamella.base.material import Material, find_material
-from lamella.hardware.beam_axes import BeamAxis, EdgeBeamAxes
+from lamella.hardware.axis_ends import BeamAxis, EdgeBeamAxes
 from lamella.network.network import Network
 from lamella.structure.beam.poses import Poses
 from lamella.structure.model.beam_sections import EdgeSection, edge_section
