@@ -8,19 +8,11 @@ from typing import Any
 import numpy as np
 
 from lamella import __version__
-from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.stages import all_stages
 from lamella.stages.figure import Row, report_rows
 from lamella.stages.results import Results
-from lamella.surface.element.surface import ElementSurface
-from lamella.surface.mesh import SurfaceMesh
+from lamella.stages.scene import scene_of
 from lamella.view.report import ReportData
-
-COARSE_MESH_POINTS = 7_500
-"""Vertices below which the report's mesh of a surface of curved elements is made anew, with `REPORT_SAG`."""
-
-REPORT_SAG = 2.5e-4
-"""A quarter of what the files' mesh has, over the diagonal of the bounding box: four times the vertices."""
 
 
 def report_data(results: Results) -> ReportData:
@@ -28,33 +20,23 @@ def report_data(results: Results) -> ReportData:
     return ReportData(
         name=results.project.name,
         version=__version__,
-        kind=results.surface.kind,
+        subtitle=_subtitle(results),
         figures=tuple(_figures(results.summary)),
         corners=tuple(_corners(results.summary)),
         warnings=tuple(results.summary["warnings"]),
-        surface=_report_mesh(results),
-        mean_curvature=results.surface.mean_curvature,
-        network=results.network,
-        lamellas=results.lamellas,
-        material=results.project.lamella.material,
-        built=tuple(_built(results)),
+        scene=scene_of(results),
     )
 
 
-def _built(results: Results) -> Iterator[DrawnLayer]:
-    """What the 3D view shows of what is built."""
-    project, out, lamellas = results.project, results.outputs.get("fabrication"), results.lamellas
-    if out is not None and lamellas is not None and (project.joint is not None or project.files.solids):
-        from lamella.stages.fabrication.scene import report_layers
-
-        yield from report_layers(out, lamellas, project.lamella.material)
-
-
-def _report_mesh(results: Results) -> SurfaceMesh:
-    """The mesh of the report: finer than the files' where that is coarse, so that curved rims look curved."""
-    if isinstance(results.surface, ElementSurface) and len(results.mesh.points) < COARSE_MESH_POINTS:
-        return results.surface.mesh(REPORT_SAG)
-    return results.mesh
+def _subtitle(results: Results) -> tuple[str, ...]:
+    """Kind of surface, section and material of the lamellas."""
+    if results.lamellas is None:
+        return (results.surface.kind,)
+    section = results.lamellas.section
+    text = f"lamellas {section.height * 1e3:.6g} × {section.thickness * 1e3:.6g} mm"
+    if section.layers > 1:
+        text += f", {section.layers} layers {section.offset * 1e3:.6g} mm apart"
+    return results.surface.kind, text, results.project.lamella.material
 
 
 def _figures(summary: dict[str, Any]) -> Iterator[Row]:

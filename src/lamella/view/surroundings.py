@@ -82,8 +82,8 @@ def surroundings(low: Floats, high: Floats) -> Iterator[MeshLayer]:
         faces=disc[1],
     )
     vertices, faces = person()
-    # in front of the structure, to the side where a view from the front-right shows it before nothing else
-    place = np.array([high[0] + 0.35 * TALL, low[1] - 0.35 * TALL, ground])
+    # beside the structure, where a view from the front and one from the front-right show it before nothing else
+    place = np.array([high[0] + 0.6 * TALL, low[1] + 0.25 * (high[1] - low[1]), ground])
     yield MeshLayer(
         name="person",
         label="Person, 1.75 m",

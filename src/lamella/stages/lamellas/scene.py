@@ -9,7 +9,7 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.network.network import FAMILIES, Network
 from lamella.solid.finish import finish
-from lamella.stages.network.scene import CURVES, Thinned, curvature_quantities, thinned
+from lamella.stages.network.scene import CURVES, PALETTE, Thinned, curvature_quantities, thinned
 from lamella.strip.lamellas import Lamellas
 from lamella.view.scene.curves import Curves, Fact, Plot, Series
 from lamella.view.scene.layer import Material, StripsLayer
@@ -56,6 +56,7 @@ def lamellas_scene(lamellas: Lamellas) -> Iterator[Shown]:
             material=LOOKS[finish(lamellas.material.density)],
             quantities=tuple(quantity.of(own) for quantity in quantities),
             quantity="utilisation",
+            palette=PALETTE,
             colour=FAMILY_COLOURS[family],
             ids=tuple(network.ids[k] for k in own_lamellas.tolist()),
             replaces=() if section.height < size / LOW else (f"lines {family}",),

@@ -24,6 +24,9 @@ STOP_LIMIT = 60_000
 CURVES = "lamellas"
 """Name of the curves: later stages add to them."""
 
+PALETTE = "Lamellas"
+"""List of what centre lines and strips are coloured by."""
+
 NODE_STYLES = {
     "regular": ("#7b8796", 3.5, 0.6),
     "boundary": ("#7b8796", 3.5, 0.6),
@@ -94,6 +97,8 @@ def network_scene(network: Network) -> Iterator[Shown]:
             groups=(family,),
             colour=FAMILY_COLOURS[family],
             quantities=tuple(quantity.of(own) for quantity in quantities),
+            quantity="layer",
+            palette=PALETTE,
             ids=tuple(network.ids[k] for k in lamellas.tolist()),
             owner=np.repeat(np.arange(len(lamellas)), np.diff(offsets)),
             positions=network.sample_points[kept.samples[own]],

@@ -51,6 +51,7 @@ def surface_scene(out: SurfaceOutput, *, alone: bool) -> Iterator[Shown]:
         opacity=1.0 if alone else VEIL,
         quantities=tuple(quantity.of(kept) for quantity in quantities.values()),
         # without strips to look at, the surface is what there is to see
+        palette="Surface",
         quantity="K" if alone and not quantities["K"].is_constant else "",
         positions=mesh.points[kept],
         normals=mesh.normals[kept],

@@ -41,7 +41,10 @@ class Layer:
     quantities : tuple of Quantity
         What it can be coloured by: one value an element each.
     quantity : str
-        Key of the one it is coloured by at first; empty: by its material.
+        Key of the one it is coloured by at first; empty: by its material; "layer": by its own colour.
+    palette : str
+        Name of the list, "Lamellas", from which one colouring is chosen for all layers that have it; the layer given
+        last decides the first one. Empty: it stays as it is.
     ids : tuple of str
         Names of what can be pointed at.
     owner : (n,) int or None
@@ -61,6 +64,7 @@ class Layer:
     opacity: float = 1.0
     quantities: tuple[Quantity, ...] = ()
     quantity: str = ""
+    palette: str = ""
     ids: tuple[str, ...] = ()
     owner: Integers | None = None
     replaces: tuple[str, ...] = ()
