@@ -6,6 +6,7 @@ import csv
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import lamella
@@ -18,13 +19,13 @@ from stages.test_structure_stage import SNOW, WEIGHT, project
 CONSTRUCTION = ["bent", "joints locked", "cables on", "props away", "loads on"]
 DRIVEN = {"case": "snow", "near": [0, 0, 0], "by": 0.005, "steps": 2}
 TABLE: dict[str, Any] = {"elements": 1, "modes": 1}
+(STRUCTURE,) = (stage for stage in STAGES if stage.name == "structure")
 WITH = {"joint": {}, "cables": {"prestress": 200.0}}
 
 
 def written(results: lamella.Results, folder: Path) -> Path:
     """The files of this stage alone."""
-    (stage,) = (one for one in STAGES if one.name == "structure")
-    for file in stage.files(results.outputs["structure"], results.upstream):
+    for file in STRUCTURE.files(results.outputs["structure"], results.upstream):
         (folder / file.name).parent.mkdir(exist_ok=True, parents=True)
         file.write(folder / file.name)
     return folder / "structure"
@@ -58,6 +59,13 @@ def test_paths_and_construction(tmp_path: Path) -> None:
     # of a case in two steps the first is kept
     case = results.outputs["structure"].analysis.cases[2]
     assert [state.factor for state in case.before] == [0.5]
+    frames = {shown.name: shown for shown in STRUCTURE.scene(results.outputs["structure"], results.upstream)}
+    assert {"cases", "steps snow", "steps weight", "buckling", "swinging"} <= set(frames)
+    assert frames["steps snow"].values.tolist() == [0, 0.5, 1]
+    assert [caption.split(":")[0] for caption in frames["cases"].captions] == ["residual", "weight", "snow"]
+    strips = [motion.displacements[2] for motion in frames["cases"].motions[:2]]
+    largest = max(np.linalg.norm(shifts, axis=1).max() for shifts in strips)
+    assert largest >= results.outputs["structure"].analysis.cases[2].displacement_max * (1 - 1e-9)
     governed = rows(folder / "envelope.csv")
     assert max(float(row["utilisation"]) for row in governed) == pytest.approx(figures["utilisation_max"], abs=1e-6)
 

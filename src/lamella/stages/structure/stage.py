@@ -136,9 +136,11 @@ class StructureStage(Stage[StructureOutput]):
         yield from _exports(out, signed | {"origin": drawing_origin(up.surface)})
 
     def scene(self, out: StructureOutput, up: Upstream) -> Iterator[Shown]:
+        from lamella.stages.structure.frames import structure_frames
         from lamella.stages.structure.scene import supports_scene
 
         yield from supports_scene(out.analysis.model)
+        yield from structure_frames(out.analysis)
 
 
 def _exports(out: StructureOutput, signed: Any) -> Iterator[File]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -43,6 +43,8 @@ class Analysis(Result):
         The first is the residual state.
     stages : tuple of CaseResult
         The end of every stage of construction, by their names; none where all is in place from the first.
+    swing_modes : (f, 6 n + k)
+        Motions of the frequencies, of largest number 1.
     frequencies : (f,)
         Of the residual state, Hz.
     free_body : bool
@@ -54,6 +56,7 @@ class Analysis(Result):
     frequencies: Floats
     free_body: bool
     stages: tuple[CaseResult, ...] = ()
+    swing_modes: Floats = field(default_factory=lambda: np.zeros((0, 0)))
 
     def _line(self) -> str:
         return ", ".join(f"{case.name} {case.utilisation_max:.2f}" for case in self.cases)
@@ -128,14 +131,15 @@ def analyse(
             if cables_later is not None:
                 rest, model = _braced(rest, model, cables_later)
         found = [CaseResult(RESIDUAL, model, rest, rest, "", np.zeros(0))]
-        swings = np.zeros(0)
+        swings, modes = np.zeros(0), np.zeros((0, 0))
         if frequencies and rest.negative == 0:
-            swings = vibration(rest, frequencies).frequencies
+            swinging = vibration(rest, frequencies)
+            swings, modes = swinging.frequencies, swinging.modes
         for k, case in enumerate(cases):
             progress(Report.step(f"load case {case.name}", k / len(cases)))
             loads = case_loads(model, case, node_masses)
             found.append(_case(model, case.name, rest, loads, buckling, steps))
-    return Analysis(model, tuple(found), swings, not supported, stages)
+    return Analysis(model, tuple(found), swings, not supported, stages, modes)
 
 
 def _end_of(stage: str, model: Model, end: Equilibrium) -> CaseResult:
@@ -171,9 +175,10 @@ def _case(model: Model, name: str, rest: Equilibrium, loads: Loads, buckling: in
                 stable = last
     except InputError as error:
         reason = error.message
-    factors = np.zeros(0)
+    factors, modes = np.zeros(0), np.zeros((0, 0))
     if buckling and stable.negative == 0:
         # nothing may be there that these loads would make buckle
         with suppress(InputError):
-            factors = linear_buckling(stable, buckling).factors
-    return CaseResult(name, model, last, rest, reason, factors, tuple(states[:-1]))
+            found = linear_buckling(stable, buckling)
+            factors, modes = found.factors, found.modes
+    return CaseResult(name, model, last, rest, reason, factors, tuple(states[:-1]), modes)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -33,6 +33,8 @@ class CaseResult(Result):
         to it.
     before : tuple of Equilibrium
         States on the way to `equilibrium`, at smaller load factors.
+    modes : (b, 6 n + k)
+        Motions of buckling, of largest number 1.
     """
 
     name: str
@@ -42,6 +44,7 @@ class CaseResult(Result):
     reason: str
     buckling: Floats
     before: tuple[Equilibrium, ...] = ()
+    modes: Floats = field(default_factory=lambda: np.zeros((0, 0)))
 
     def _line(self) -> str:
         how = f"load factor {self.load_factor:.4g} of 1" if self.reason else "reached"
