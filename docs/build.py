@@ -22,6 +22,13 @@ from lamella.files.write.network_json import network_schema
 from lamella.files.write.optimise_json import optimise_schema
 from lamella.files.write.sizing_csv import COLUMNS as SIZING_LIST
 from lamella.hardware.lists import COLUMNS as HARDWARE_LIST
+from lamella.project.driver_table import (
+    AngleRangeTable,
+    DrivingCableTable,
+    LiftTable,
+    MovedSupportsTable,
+    RadiusTable,
+)
 from lamella.project.list_tables import LIST_TABLES
 from lamella.project.load_tables import RegionTable
 from lamella.project.structure_analyses_tables import DisplacementTable, FailureTable, SensitivityTable, VariantTable
@@ -148,6 +155,13 @@ INNER_TABLES: dict[str, type[Table]] = {
 
 # tables inside the others, by the tables they are in and their keys
 FURTHER_INNER: dict[str, dict[str, type[Table]]] = {
+    "erection": {
+        "driver = {cable = {...}}": DrivingCableTable,
+        "driver = {lift = {...}}": LiftTable,
+        "driver = {radius = {...}}": RadiusTable,
+        "driver = {supports = {...}}": MovedSupportsTable,
+        "driver = {angles = {...}}": AngleRangeTable,
+    },
     "structure": {
         "factors = {...}": PartialFactorsTable,
         "[structure.failure]": FailureTable,
@@ -213,17 +227,18 @@ def _table_of(fields: Any, model: type[Table]) -> str:
         schema = properties[key]
         extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
         choices = [schema, *schema.get("anyOf", [])]
-        default = "required" if field.is_required() else _value(field.default)
+        default = "required" if field.is_required() else _value(field.default, schema)
         cells = (f"`{key}`", _type(choices), extra.get("unit", ""), default, _range(choices), field.description or "")
         rows.append("| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(rows) + "\n"
 
 
-def _value(value: object) -> str:
+def _value(value: object, schema: dict[str, Any]) -> str:
     if value is None or value == "":
         return "-"
     if isinstance(value, Table):
-        return "those of the table"
+        # a word may stand for a table
+        return f'`"{schema["default"]}"`' if isinstance(schema.get("default"), str) else "those of the table"
     return f"`{json.dumps(list(value) if isinstance(value, tuple) else value)}`"
 
 

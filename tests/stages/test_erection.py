@@ -250,3 +250,94 @@ def test_stacked_lamellas_need_no_slots() -> None:
     assert summary["erection"]["slot_width_needed"] is None
     assert not [text for text in summary["warnings"] if text.key == "slots_too_narrow"]
     assert summary["erection"]["flat"]["lies"]
+
+
+CORNERS = [[-1.2, 1.5, 0.3], [1.5, -1.2, 0.3]]
+SMALL = PROJECT | {"network": {"spacing": 0.9}, "lamella": {"layers": 1}}
+
+
+def driven(**keys: object) -> dict[str, object]:
+    return SMALL | {"erection": {"states": 3, "elements": 1} | keys}
+
+
+def test_driven_by_a_cable(tmp_path: Path) -> None:
+    """Forces, states and figures tell the same way; what is written is read back."""
+    project = lamella.parse_project(driven(driver={"cable": {"between": CORNERS, "by": 0.4}}))
+    results = lamella.compute(project, until="erection")
+    lamella.write(results, tmp_path / "out")
+    way = results.summary["erection"]["way"]
+    states = json.loads((tmp_path / "out" / "erection" / "states.json").read_text())
+    told = rows(tmp_path / "out" / "erection" / "forces.csv")
+    assert (states["driver"], states["driver_unit"], states["start"]) == ("cable", "N", "flat")
+    assert [float(row["share"]) for row in told] == [state["share"] for state in states["states"]] == [0, 0.5, 1]
+    assert way["force_max"] == pytest.approx(max(float(row["force_n"]) for row in told), abs=1e-3)
+    assert results.summary["erection"]["driver_max"] == pytest.approx(way["force_max"])
+    assert results.summary["erection"]["joint_moment_max"] is None
+    node = int(told[0]["node"])
+    points = np.array([state["nodes"] for state in states["states"]])
+    spans = np.linalg.norm(points[:, node, None] - points, axis=2)
+    # one node is drawn nearer by what the cable loses
+    assert np.abs(spans[0] - spans[2] - 0.4).min() < 1e-6
+    again = lamella.read_project(tmp_path / "out" / "project.toml")
+    assert again.erection == project.erection
+
+
+def test_a_mechanism_between_two_angles() -> None:
+    results = lamella.compute(
+        lamella.parse_project(driven(driver={"angles": {"least": 80.0, "most": 105.0}})), until="erection"
+    )
+    way = results.summary["erection"]["way"]
+    assert (way["motion"]["least"], way["motion"]["most"]) == pytest.approx((80, 105), abs=1e-6)
+    made = results.outputs["erection"].made[0]
+    at = made.model.joint_nodes.tolist().index(way["motion"]["node"])
+    assert [state.angles[at] for state in made.states] == pytest.approx([80, 92.5, 105], abs=1e-6)
+    assert way["force_max"] is None
+
+
+@pytest.mark.parametrize(
+    ("table", "key"),
+    [
+        ({"driver": 3}, "driver"),
+        ({"driver": {"lft": {}}}, "driver.lft"),
+        ({"driver": {"lift": {"at": [], "by": 1.0}}}, "driver.lift.at"),
+        ({"driver": {"lift": {"at": CORNERS, "by": 1.0}, "supports": {"at": CORNERS, "by": 1.0}}}, "driver.supports"),
+        ({"driver": {"cable": {"between": CORNERS[:1], "by": 0.1}}}, "driver.cable[0].between"),
+        ({"driver": {"cable": [{"between": CORNERS, "by": 0.1}, {"between": CORNERS}]}}, "driver.cable[1].by"),
+        ({"driver": {"radius": {"factor": 0.9}}}, "driver.radius.boundary"),
+        ({"driver": {"radius": {"factor": -1.0, "boundary": "rim"}}}, "driver.radius.factor"),
+        ({"driver": {"angles": {"least": 90.0, "most": 80.0}}}, "driver.angles.most"),
+        ({"driver": {"angles": {"least": 80.0, "most": 90.0}}, "gravity": True}, "gravity"),
+        ({"driver": {"lift": {"at": CORNERS, "by": 1.0}}, "gravity": False}, "gravity"),
+        ({"start": "designed"}, "start"),
+        ({"props": []}, "props"),
+    ],
+)
+def test_refused_drivers(table: dict[str, object], key: str) -> None:
+    with pytest.raises(InputError) as caught:
+        lamella.parse_project(driven(**table))
+    assert caught.value.where == f"erection.{key}"
+
+
+@pytest.mark.parametrize(
+    ("table", "key"),
+    [
+        ({"driver": {"cable": {"between": CORNERS[:1] * 2, "by": 0.1}}, "start": "designed"}, "driver.cable"),
+        ({"driver": {"cable": {"between": CORNERS, "by": 60.0}}, "start": "designed"}, "driver.cable.by"),
+        ({"driver": {"lift": {"at": [[90.0, 0, 0]], "by": 0.1}}}, "driver.lift.at"),
+        ({"driver": {"supports": {"at": CORNERS, "by": 30.0}}, "start": "designed"}, "driver.supports.by"),
+        ({"driver": {"radius": {"boundary": "rin", "factor": 0.9}}}, "driver.radius.boundary"),
+        ({"driver": {"radius": {"through": [0, 0, 0], "factor": 0.9}}}, "driver.radius.through"),
+        ({"driver": {"angles": {"least": 80.0, "most": 90.0, "at": [2.0, 2.0, 0]}}}, "driver.angles.at"),
+    ],
+)
+def test_drivers_that_do_not_suit_the_net(table: dict[str, object], key: str) -> None:
+    with pytest.raises(InputError) as caught:
+        lamella.compute(lamella.parse_project(driven(**table)), until="erection")
+    assert caught.value.where == f"erection.{key}"
+
+
+def test_segments_are_driven_by_their_angles() -> None:
+    project = driven(driver={"supports": {"at": CORNERS, "by": 0.1}}) | {"segments": {"size": 3.0}}
+    with pytest.raises(InputError) as caught:
+        lamella.compute(lamella.parse_project(project), until="erection")
+    assert caught.value.where == "erection.driver"

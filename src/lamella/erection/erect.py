@@ -12,25 +12,19 @@ from lamella.base.progress import Progress, Report, silent
 from lamella.erection.driver import Driver
 from lamella.erection.erection import Erection
 from lamella.erection.flat_shape import FlatShape
-from lamella.erection.free_body import free_body
-from lamella.erection.lone_joints import lone_joints
+from lamella.erection.free_net import free_net
+from lamella.erection.laid_flat import laid_flat
 from lamella.erection.path import driven_states, joint_moment, turned_states
-from lamella.erection.release import released
 from lamella.erection.rigid_motion import moved_onto
 from lamella.erection.state import State
 from lamella.erection.warnings import erection_warnings
 from lamella.strip.lamellas import Lamellas
-from lamella.structure.beam.poses import NODE_UNKNOWNS
 from lamella.structure.equilibrium import Equilibrium
 from lamella.structure.loads import no_loads
-from lamella.structure.model.model import Model, make_model
-from lamella.structure.model.rules import ModelRules
+from lamella.structure.model.model import Model
 from lamella.structure.stability import is_stable
 from lamella.structure.static import at_rest
-from lamella.structure.structure import Structure
 
-# rad: a net of which a joint, let go, turns farther is folding up
-FOLDING = np.radians(75.0)
 # over the largest force or moment of the locked net, in N and N m
 ROUNDING_MOMENT = 1e-9
 # of the net's size: farther from the locked shape the driver alone does not hold the net in it
@@ -59,13 +53,13 @@ def erect(lamellas: Lamellas, *, states: int = 20, elements: int = 2, progress: 
     """
     if states < 2:
         raise InputError(f"states = {states}", "both ends are states: at least 2", "states")
-    model = _free_model(lamellas, elements)
+    model = free_net(lamellas, elements)
     free = model.structure
     held = replace(free, held_joints=np.ones_like(free.held_joints))
     progress(Report.step("joints locked: how far it springs back"))
     locked = at_rest(held, no_loads(held))
     progress(Report.step("joints let go: how it lies flat"))
-    lying = _lying(locked, free, progress)
+    lying = laid_flat(locked, free, progress)
     driver = Driver.between(lying.poses, locked.poses)
     progress(Report.step("driven from the designed shape to flat"))
     told, each_joint = _states(model, locked, lying, driver, states, progress)
@@ -91,17 +85,6 @@ def _moment(lying: Equilibrium, largest: float) -> float:
     return moment if moment > ROUNDING_MOMENT * largest else 0.0
 
 
-def _lying(locked: Equilibrium, free: Structure, progress: Progress) -> Equilibrium:
-    """The flat state; with the mean of the joints' angles kept where the net would fold up."""
-    alone = released(locked, free, progress=progress)
-    if np.abs(alone.poses.angles).max(initial=0.0) < FOLDING:
-        return alone
-    loose = ~free.held_joints
-    weights = np.zeros(free.poses.unknowns)
-    weights[NODE_UNKNOWNS * len(free.poses.points) :][loose] = 1 / np.sqrt(loose.sum())
-    return released(locked, free, weights, progress)
-
-
 def _states(
     model: Model, locked: Equilibrium, lying: Equilibrium, driver: Driver, states: int, progress: Progress
 ) -> tuple[tuple[State, ...], bool]:
@@ -125,13 +108,3 @@ def _states(
         for one in turned_states(locked, driver, states, progress)
     ]
     return tuple(turned[::-1]), True
-
-
-def _free_model(lamellas: Lamellas, elements: int) -> Model:
-    """A body free in space, its joints free but for those of lamellas that nothing else holds."""
-    network = lamellas.network
-    rules = ModelRules(elements=elements, joints="hinged", slots="whole", near_design=False)
-    model = make_model(lamellas, free_body(network), rules)
-    if not len(model.joint_nodes):
-        raise InputError("no lamella crosses another one", "a net that is erected has joints", "lamellas")
-    return replace(model, structure=replace(model.structure, held_joints=lone_joints(network, model.joint_nodes)))

@@ -15,6 +15,7 @@ from lamella.erection.flat_shape import FlatShape
 from lamella.erection.joint_angles import twist_over_depth
 from lamella.erection.slot_room import slot_width_needed
 from lamella.erection.state import State
+from lamella.erection.way import RangeOfMotion, Way
 from lamella.structure.model.model import Model
 
 # deg off square: no slot is wide enough to turn farther
@@ -29,7 +30,8 @@ class Erection(Result):
     ----------
     model : Model
         With free joints; one node in its middle is held, so that the net is a body free in space.
-    driver : Driver
+    driver : Driver or None
+        None where a device drives the net, see `way`.
     each_joint : bool
         Whether each joint is turned to its own angle, because the driver alone would not lead the net.
     states : tuple of State
@@ -46,10 +48,14 @@ class Erection(Result):
     warnings : tuple of Message
     braced : dict
         The same with what braces the net, see `lamella.erection.braced`.
+    way : Way or None
+        Of the device that drives the net; None where its joints' angles are driven.
+    motion : RangeOfMotion or None
+        Of a net driven as a mechanism.
     """
 
     model: Model
-    driver: Driver
+    driver: Driver | None
     each_joint: bool
     states: tuple[State, ...]
     flat: FlatShape
@@ -59,6 +65,8 @@ class Erection(Result):
     spring_back: float
     warnings: tuple[Message, ...]
     braced: dict[str, float | None] = field(default_factory=dict)
+    way: Way | None = None
+    motion: RangeOfMotion | None = None
 
     @property
     def slot_width_needed(self) -> float | None:
@@ -74,12 +82,19 @@ class Erection(Result):
         """How far strips stand off square in their slots at most, degrees, (k,) at each joint, of every state.
 
         The angle between them, and what it changes over the depth of the slots by the strips' twist, which comes with
-        the share of the way.
+        the share of the way to the designed shape.
         """
         lamellas = self.model.lamellas
         twist = np.degrees(twist_over_depth(lamellas.network, self.model.joint_nodes, lamellas.section.height / 2))
-        return tuple(np.abs(90 - state.angles) + state.share * twist for state in self.states)
+        return tuple(np.abs(90 - state.angles) + (state.share if self.laid else 1.0) * twist for state in self.states)
+
+    @property
+    def laid(self) -> bool:
+        """Whether its first state is the flat net."""
+        return self.way is None or self.way.start == "flat"
 
     def _line(self) -> str:
+        if not self.laid:
+            return f"{len(self.states)} states from the designed shape on, springs back by {self.spring_back:.3g} m"
         lies = "planar" if self.flat.planar else f"on a sphere of {self.flat.radius:.4g} m"
         return f"flat state {lies}, {len(self.states)} states, springs back by {self.spring_back:.3g} m"

@@ -61,8 +61,8 @@ class FlatShape:
         return self.plane.height if self.plane.height > FLAT_ROUNDING * float(np.hypot(*self.size)) else 0.0
 
     @classmethod
-    def of(cls, model: Model, poses: Poses) -> FlatShape:
-        """The shape in a pose."""
+    def of(cls, model: Model, poses: Poses, *, laid: bool = True) -> FlatShape:
+        """The shape in a pose; of one that is not laid flat no overlaps are looked for."""
         count = model.nodes
         points, normals = poses.points[:count], poses.frames[:count, :, 2]
         plane = _turned(fitted_plane(points, normals), poses, model)
@@ -75,7 +75,8 @@ class FlatShape:
             radius, off, limit = sphere.radius, sphere.deviation, OFF_SPHERE
         if off < FLAT_ROUNDING * size:
             off = 0.0
-        return cls(plane, radius, off, off <= limit * size, _overlaps(model, poses, plane), (length, width))
+        overlaps = _overlaps(model, poses, plane) if laid else np.zeros((0, 2), np.int64)
+        return cls(plane, radius, off, off <= limit * size, overlaps, (length, width))
 
 
 def _turned(plane: Plane, poses: Poses, model: Model) -> Plane:

@@ -17,7 +17,7 @@ from lamella.structure.beam.poses import Poses
 from lamella.structure.controls import Control, DisplacementControl, LoadControl
 from lamella.structure.equilibrium import Equilibrium
 from lamella.structure.joint_springs import JointSprings, make_joint_springs
-from lamella.structure.loads import no_loads
+from lamella.structure.loads import Loads, no_loads
 from lamella.structure.newton import StepError, step
 from lamella.structure.pseudo_transient import settled
 from lamella.structure.stability import is_stable
@@ -36,19 +36,25 @@ EASY_ITERATIONS = 5
 
 
 def released(
-    locked: Equilibrium, free: Structure, driver: Floats | None = None, progress: Progress = silent
+    locked: Equilibrium,
+    free: Structure,
+    driver: Floats | None = None,
+    progress: Progress = silent,
+    loads: Loads | None = None,
 ) -> Equilibrium:
     """A structure whose locked joints are let go.
 
     Parameters
     ----------
     locked : Equilibrium
-        Without loads, all joints locked.
+        All joints locked.
     free : Structure
         The same with its joints free but for those that stay locked.
     driver : (6 n + k,), optional
         Weights of the joints' angles: their sum is kept, by a moment on each joint in proportion to its weight.
     progress : callable
+    loads : Loads, optional
+        That act all the time, and those that the way goes on with.
 
     Returns
     -------
@@ -66,7 +72,7 @@ def released(
     stiffness, ratio = STIFF * largest, FIRST_SPRING_RATIO
     springs = make_joint_springs(locked.poses, max(stiffness, np.finfo(float).tiny), joints=loose)
     free = replace(free, joint_springs=springs)
-    loads = no_loads(free)
+    loads = no_loads(free) if loads is None else loads
     if driver is not None:
         loads = replace(loads, forces=driver)
     here = Equilibrium(free, loads, 0.0, locked.poses, 0, 0)

@@ -75,7 +75,7 @@ class State(Result):
         return cls(
             share=share,
             poses=equilibrium.poses,
-            energy=equilibrium.energy,
+            energy=float(equilibrium.state.energy.sum()),
             driver=driver,
             stable=stable,
             stiffness_gap=stiffness_gap(equilibrium),

@@ -48,6 +48,8 @@ def write_states(path: Path, erection: Erection, origin: Floats, *, name: str, v
 def _parts(erection: Erection, origin: Floats, name: str, version: str) -> Iterator[bytes]:
     """The file, a state at a time."""
     head = {"schema": SCHEMA, "version": version, "units": "m", "name": one_line(name)}
+    if erection.way is not None:
+        head |= {"driver": erection.way.kind, "driver_unit": erection.way.unit, "start": erection.way.start}
     yield orjson.dumps(head)[:-1] + b',"states":[\n'
     for number, state in enumerate(erection.states):
         yield (b",\n" if number else b"") + _state(erection, state, origin)

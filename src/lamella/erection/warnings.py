@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lamella.base.message import Message
+from lamella.base.wording import counted
 from lamella.erection.slot_room import largest_turn
 
 if TYPE_CHECKING:
     from lamella.erection.erection import Erection
+    from lamella.erection.way import Way
 
 # deg: a joint that has closed to less than this from straight is folded up, layers and all
 FOLDED_ANGLE = 15.0
@@ -47,7 +49,7 @@ def erection_warnings(erection: Erection) -> Iterator[Message]:
             f"let go, the net folds up; it lies flat with the mean of its joints' angles held, by {erection.hold:.2f} "
             "N m on each joint: brace a cell on the floor",
         )
-    if not flat.lies:
+    if not flat.lies and erection.laid:
         network = erection.model.lamellas.network
         around = network.closed.any() or any(abs(p.a_cells) + abs(p.b_cells) > 0.5 for p in network.periods)
         why = "the net closes around, and has to be cut along a lamella" if around else "divide it into segments"
@@ -61,12 +63,41 @@ def erection_warnings(erection: Erection) -> Iterator[Message]:
             "one moment shared by all joints does not lead the net to its designed shape: the states have each joint "
             "turned to its own angle, in proportion",
         )
+    if erection.way is not None:
+        yield from way_warnings(erection, erection.way)
     loose = [state for state in erection.states if not state.stable]
     if loose:
         yield Message(
             "way_unstable",
             f"{len(loose)} of {len(erection.states)} states are unstable with their joints held, at "
             f"{100 * loose[0].share:.0f} % of the way for one: the net snaps there",
+        )
+
+
+def way_warnings(erection: Erection, way: Way) -> Iterator[Message]:
+    """Of what a device does."""
+    of_it = "the driver" if way.kind == "angles" else f"the driver ({way.kind})"
+    if way.stop is not None:
+        stop = way.stop
+        yield Message(
+            "driver_stops",
+            f"{of_it} meets a limit point after {100 * stop.share:.0f} % of the way, in the step to state "
+            f"{stop.state + 1}: node {stop.node} moves farthest there, by {stop.distance:.3g} m, and no equilibrium is "
+            "found beyond; the states up to there are kept",
+        )
+    if way.snaps:
+        snap = way.snaps[0]
+        yield Message(
+            "driver_snaps",
+            f"{of_it} passes {counted(len(way.snaps), 'limit point')}: in the step to {100 * snap.share:.0f} % of the "
+            f"way (state {snap.state}) the net snaps, node {snap.node} farthest, by {snap.distance:.3g} m; hold it "
+            "back there",
+        )
+    if way.start == "flat" and way.off_design > SPRINGY * erection.model.structure.size:
+        yield Message(
+            "off_design",
+            f"at the end of its way the net is up to {way.off_design:.3g} m off its designed shape: {of_it} alone does "
+            "not form it",
         )
 
 

@@ -56,9 +56,9 @@ class Cables(Lean):
         """Unknowns of a structure of so many nodes, (14, c), as `Beams.unknowns` of elements beside their nodes."""
         return self.attachment.unknowns(np.arange(len(self)), nodes)
 
-    def swollen(self, swelling: float) -> Cables:
-        """The same, longer by a strain that needs no force."""
-        return replace(self, length=self.length * (1 + swelling)) if swelling else self
+    def swollen(self, swelling: Floats | float) -> Cables:
+        """The same, longer by a strain that needs no force, of all or of each (c,)."""
+        return replace(self, length=self.length * (1 + swelling)) if np.any(swelling) else self
 
     def at(self, poses: Poses) -> CableState:
         """Tension and what follows from it, in a pose."""

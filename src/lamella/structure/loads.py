@@ -32,8 +32,8 @@ class Loads:
         Change of the elements' natural curvature, 1/m.
     swelling : (m,)
         Stretch of the elements that needs no force: of a change of temperature.
-    cable_swelling : float
-        The same of all cables.
+    cable_swelling : float or (c,)
+        The same of all cables, or of each: one that is shortened has less than 0.
     constant_forces, constant_lines : (6 n + k,), (m, 3)
         The same at any load factor.
     """
@@ -43,14 +43,14 @@ class Loads:
     motions: Floats
     natural: Floats
     swelling: Floats
-    cable_swelling: float
+    cable_swelling: Floats | float
     constant_forces: Floats
     constant_lines: Floats
 
     @property
     def strain_free(self) -> bool:
         """Whether elements keep their natural shape whatever the load factor."""
-        return not (self.natural.any() or self.swelling.any() or self.cable_swelling)
+        return not (self.natural.any() or self.swelling.any() or np.any(self.cable_swelling))
 
     def forces_at(self, factor: float) -> Floats:
         """Forces at the unknowns at a load factor, (6 n + k,)."""

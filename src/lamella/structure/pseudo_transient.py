@@ -104,6 +104,7 @@ def _dragged(structure: Structure, poses: Poses, drag: float, lever: float) -> S
         np.concatenate((own.stiffness, stiffness)),
         np.concatenate((own.points, poses.points)),
         np.concatenate((own.frames, poses.frames)),
+        np.concatenate((own.one_way, np.zeros(nodes, bool))),
     )
     joint_springs = JointSprings(
         np.concatenate((joints.joints, np.arange(angles))),

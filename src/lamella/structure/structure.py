@@ -130,7 +130,7 @@ class Structure(Lean):
                     vars(other)[name] = vars(self)[name]
         return other
 
-    def at(self, poses: Poses, beams: BeamState, *, cable_swelling: float = 0.0) -> StructureState:
+    def at(self, poses: Poses, beams: BeamState, *, cable_swelling: Floats | float = 0.0) -> StructureState:
         """In a pose, with its beams in it, and cables longer by a strain."""
         turns = self.joint_springs.beyond(poses)
         cables = self.cables.swollen(cable_swelling).at(poses)

@@ -28,6 +28,14 @@ def erected(up: Upstream, progress: Progress) -> ErectionOutput:
     divided: Segments = up.outputs["fabrication"].segments
     if len(divided.segments) < 2:
         return ErectionOutput((ErectedSegment("", 0.0, _whole(up, progress)),))
+    table = up.project.erection
+    assert table is not None
+    if table.driver.kind or table.on_ground:
+        raise InputError(
+            f"the net is divided into {len(divided.segments)} segments, each of which is driven by its joints' angles",
+            "leave [segments] out to drive the whole net, or the driver, gravity and props",
+            "erection.driver",
+        )
     found = []
     for number, segment in enumerate(divided.segments):
         progress(Report.step(f"segment {segment.id}", number / len(divided.segments)))

@@ -130,8 +130,46 @@ def _worst(of: Callable[[Erection], float | None], choose: Callable[[Iterator[fl
     return value
 
 
-def _joint_moment(made: Erection) -> float:
+def _joint_moment(made: Erection) -> float | None:
+    if made.driver is None:
+        return None
     return max(abs(state.driver) for state in made.states) * float(np.abs(made.driver.weights).max())
+
+
+def _driver_rows(value: float, summary: dict[str, Any]) -> Rows:
+    way = summary.get("way")
+    yield "Driver, at most", f"{value:.4g}", "N" if way and way["force_max"] is not None else "N m"
+
+
+def _way(out: ErectionOutput) -> Any:
+    if out.divided or out.made[0].way is None:
+        return ABSENT
+    made, way = out.made[0], out.made[0].way
+    last, stop = made.states[-1], way.stop
+    told = {
+        "kind": way.kind,
+        "start": way.start,
+        "gravity": way.gravity,
+        "travel": way.travel,
+        "force_max": float(np.abs(way.forces).max()) if way.forces.size else None,
+        "reached": last.share if stop is None else stop.share,
+        "limit_points": len(way.snaps),
+        "stop": None if stop is None else {"share": stop.share, "state": stop.state, "node": stop.node},
+        "off_design": way.off_design,
+        "joint_angle_min_deg": float(last.angles.min()),
+        "joint_angle_max_deg": float(last.angles.max()),
+    }
+    if made.motion is not None:
+        told["motion"] = {"node": made.motion.node, "least": made.motion.least, "most": made.motion.most}
+    return told
+
+
+def _way_rows(value: dict[str, Any], summary: dict[str, Any]) -> Rows:
+    if "motion" in value:
+        yield "Moves as a mechanism", f"{value['motion']['least']:.1f} to {value['motion']['most']:.1f}", "°"
+    else:
+        yield "Driven on site by", value["kind"], f"from the {value['start']} net"
+        yield "Off its designed shape at the end", f"{value['off_design']:.3f}", "m"
 
 
 OF_SEGMENT: dict[str, Callable[[Erection], Any]] = {
@@ -177,17 +215,18 @@ FIGURES: tuple[Figure[ErectionOutput], ...] = (
     Figure(
         "driver_max",
         "N m",
-        "largest moment of the driver: each joint is turned by as much as its weight says, the sum of their squares 1",
+        "largest moment of the driver: each joint is turned by as much as its weight says, the sum of their squares 1; "
+        "of a driver on site its largest force, N",
         _worst(_on_the_way("driver")),
         NUMBER,
-        rows=line("Driver, at most", "N m"),
+        rows=_driver_rows,
     ),
     Figure(
         "joint_moment_max",
         "N m",
-        "largest moment that a joint is driven by",
+        "largest moment that a joint is driven by; null where a driver on site drives the net",
         _worst(_joint_moment),
-        NUMBER,
+        nullable(NUMBER),
         rows=line("Moment on a joint, at most", "N m"),
     ),
     Figure(
@@ -283,6 +322,34 @@ FIGURES: tuple[Figure[ErectionOutput], ...] = (
         FLAG,
     ),
     Figure(
+        "way",
+        "",
+        "of a driver on site or a mechanism: `kind` of the driver, `start` and whether the net weighs (`gravity`), "
+        "`travel` of the driver (m; of joints rad), largest force of a cable or a moved node (`force_max`, N), "
+        "`reached` share of the way, `limit_points` that the net snapped at, the `stop` where no equilibrium was found "
+        "beyond (share, state, node; or null), `off_design`, how far the last state is off the designed shape (m), "
+        "`joint_angle_min_deg`, `joint_angle_max_deg` in it, and of a mechanism its `motion` (the joint's node, its "
+        "angle in the first and the last state, deg)",
+        _way,
+        record(
+            ("motion",),
+            kind=TEXT,
+            start=TEXT,
+            gravity=FLAG,
+            travel=NUMBER,
+            force_max=nullable(NUMBER),
+            reached=NUMBER,
+            limit_points=INTEGER,
+            stop=nullable(record(share=NUMBER, state=INTEGER, node=INTEGER)),
+            off_design=NUMBER,
+            joint_angle_min_deg=NUMBER,
+            joint_angle_max_deg=NUMBER,
+            motion=record(node=INTEGER, least=NUMBER, most=NUMBER),
+        ),
+        always=False,
+        rows=_way_rows,
+    ),
+    Figure(
         "hold",
         "N m",
         "moment on each joint that keeps the net from folding up in the flat state; 0 where it lies by itself",
@@ -304,5 +371,6 @@ REPORT = (
     "slot_width_needed",
     "spring_back",
     "spring_back_braced",
+    "way",
 )
 """Order of the report's lines."""

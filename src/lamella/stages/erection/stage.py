@@ -34,6 +34,7 @@ class ErectionStage(Stage["ErectionOutput"]):
         ),
         ("erection/path.csv", "places of all nodes in every state"),
         ("erection/flat.dxf", "assembly drawing of the flat state"),
+        ("erection/forces.csv", "forces of a driver on site in every state, where there is one"),
     )
     figures = FIGURES
     report = ("Erection", REPORT)
@@ -89,6 +90,7 @@ class ErectionStage(Stage["ErectionOutput"]):
 
     def files(self, out: ErectionOutput, up: Upstream) -> Iterator[File]:
         from lamella.erection.flat_drawing import write_flat
+        from lamella.erection.forces_csv import write_forces
         from lamella.erection.path_csv import write_path
         from lamella.erection.states_json import write_states
 
@@ -100,4 +102,7 @@ class ErectionStage(Stage["ErectionOutput"]):
             folder = f"erection/{one.id}/" if one.id else "erection/"
             yield File(f"{folder}states.json", partial(write_states, erection=one.made, origin=origin, **signed))
             yield File(f"{folder}path.csv", partial(write_path, erection=one.made, origin=origin, **signed))
-            yield File(f"{folder}flat.dxf", partial(write_flat, erection=one.made, **signed))
+            if one.made.laid:
+                yield File(f"{folder}flat.dxf", partial(write_flat, erection=one.made, **signed))
+            if one.made.way is not None and len(one.made.way.nodes):
+                yield File(f"{folder}forces.csv", partial(write_forces, erection=one.made, **signed))

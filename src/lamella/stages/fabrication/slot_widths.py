@@ -19,6 +19,7 @@ from lamella.erection.erection import Erection
 from lamella.fabrication.defaults import default_slot_width
 from lamella.network.network_part import network_part
 from lamella.segments.segments import Segments
+from lamella.stages.driven_net import driven_net
 from lamella.stages.fabrication.defaults import filled_measures, slots_by_erection
 from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.keys import keys
@@ -78,6 +79,8 @@ def erected_net(up: Upstream, lamellas: Lamellas, progress: Progress, segment: s
     assert table is not None
 
     def make() -> Erection:
+        if not segment:
+            return driven_net(up, lamellas, progress)
         with keys("erection", lamellas="lamella"):
             return erect(lamellas, states=table.states, elements=table.elements, progress=progress)
 
