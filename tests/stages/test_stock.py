@@ -13,7 +13,11 @@ import pytest
 from ezdxf.path import make_path
 
 import lamella
+from files.write.test_svg import dxf_paths, svg_paths
 from lamella import InputError, compute, parse_project
+from lamella.fabrication.contours import CutOptions
+from lamella.files.write.svg import write_svg
+from lamella.hardware.plate_sheets_drawing import drawn_plate_sheets, write_plate_sheets
 from lamella.stages.check import check_project
 from lamella.stages.fabrication.stage import FabricationStage
 from lamella.stages.write import write_styled
@@ -193,3 +197,25 @@ def test_stock_that_cannot_be_is_refused_with_its_key(stock: list[dict[str, obje
     with pytest.raises(InputError) as refused:
         check_project(parse_project(PROJECT | {"stock": stock}))
     assert refused.value.where == where
+
+
+def test_plates_on_their_sheets_as_svg_with_lead_ins(written: tuple[lamella.Results, Path], tmp_path: Path) -> None:
+    """The same contours and lead-ins as in the DXF file, and no lead-in in another plate or beside its sheet."""
+    groups = written[0].outputs["fabrication"].plates
+    options = CutOptions(kerf=0.0002, lead_in=0.004)
+    write_plate_sheets(tmp_path / "x.dxf", groups, options, name="x", version="1")
+    placed = drawn_plate_sheets(groups, "", options)
+    write_svg(tmp_path / "x.svg", placed, name="x", version="1", further=options.layers)
+    drawn = svg_paths(tmp_path / "x.svg")
+    cut = dxf_paths(tmp_path / "x.dxf")
+    assert {layer: len(paths) for layer, paths in drawn.items()} == {layer: len(paths) for layer, paths in cut.items()}
+    assert len(cut["LEAD"]) == len(cut["CUT"])
+    sheets = np.array([[points[:, :2].min(axis=0), points[:, :2].max(axis=0)] for *_, points in cut["SHEET"]])
+    sheets = sheets[np.ptp(sheets, axis=1).min(axis=1) > 100]
+    boxes = np.array([[points[:, :2].min(axis=0), points[:, :2].max(axis=0)] for *_, points in cut["CUT"]])
+    owners = np.array([(part, copy) for part, copy, _ in cut["CUT"]])
+    for part, copy, points in cut["LEAD"]:
+        away = points[0, :2]
+        assert ((away > sheets[:, 0]) & (away < sheets[:, 1])).all(axis=1).sum() == 1
+        other = (owners != (part, copy)).any(axis=1)
+        assert not ((away > boxes[other, 0]) & (away < boxes[other, 1])).all(axis=1).any()

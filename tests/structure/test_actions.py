@@ -9,6 +9,7 @@ import pytest
 import lamella
 from lamella.base.errors import InputError
 from lamella.hardware.item import Hardware, Item, Places
+from lamella.hardware.shape import Sweep, rectangle
 from lamella.network.network import BOUNDARY, SINGULAR
 from lamella.structure.actions.hardware_masses import hardware_masses
 from lamella.structure.actions.load_rules import LoadRule, Region, load_cases
@@ -249,6 +250,29 @@ def test_masses_of_hardware_go_to_the_nearest_nodes_and_halfway_to_both():
     assert masses.sum() == pytest.approx(4.0)
     assert masses[5] == pytest.approx(2.0)
     assert masses[[a, b]] == pytest.approx(1.0)
+
+
+def test_a_bar_along_a_lamella_weighs_on_each_node_by_its_share():
+    """A bar along a whole ruling of a helicoid: half of the cells beside each node, as the lever has it."""
+    network = lamella.net(lamella.Helicoid(4.0, 0.3, 1.5, 0.7), cells=6)
+    straight = np.flatnonzero(np.abs(network.sample_darboux.kg[network.sample_offsets[:-1]]) < 1e-9)
+    k = int(straight[0])
+    own = slice(network.stop_offsets[k], network.stop_offsets[k + 1])
+    nodes, arcs = network.stop_nodes[own], network.stop_arclengths[own]
+    middle = network.node_points[nodes].mean(axis=0)
+    ends = network.node_points[nodes[[0, -1]]] - middle
+    bar = Sweep(rectangle(0.05, 0.02), ends, np.tile(network.node_normals[nodes[0]], (2, 1)))
+    places = Places(middle[None], np.eye(3)[None], ("",))
+    item = Item("edge-1", "edge_beam", "", "steel", 7850.0, (bar,), places, length=bar.length)
+    masses = hardware_masses(network, Hardware((item,)))
+    edges = np.diff(arcs)
+    assert len(edges) > 3
+    share = (np.append(0, edges) + np.append(edges, 0)) / 2
+    assert masses.sum() == pytest.approx(7850 * 0.001 * bar.length, rel=1e-12)
+    # pieces of a sixteenth of a cell go to one side or the other
+    np.testing.assert_allclose(
+        masses[nodes], 7850 * 0.001 * share, atol=7850 * 0.001 * np.median(network.cell_edges) / 16
+    )
 
 
 class _Cube:

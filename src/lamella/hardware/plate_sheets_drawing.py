@@ -29,10 +29,11 @@ def write_plate_sheets(
         Where the file cannot be written whole.
     """
     file = DxfFile(name=name, version=version, further=options.layers)
-    file.write(path, _sheets(groups, file.owner, options))
+    file.write(path, drawn_plate_sheets(groups, file.owner, options))
 
 
-def _sheets(groups: Sequence[PlateSheets], owner: str, options: CutOptions) -> Iterator[Placed]:
+def drawn_plate_sheets(groups: Sequence[PlateSheets], owner: str, options: CutOptions = PLAIN) -> Iterator[Placed]:
+    """What the drawing holds; `owner` of DXF entities."""
     left = 0.0
     blocks: dict[tuple[str, bool], Block] = {}
     for number, group, sheet in sheet_rows(groups):

@@ -121,16 +121,17 @@ class FabricationTable(Table):
                 "choose a larger sheet or a smaller gap",
                 "sheet",
             )
-        if self.lead_in is not None and self.lead_in >= self.gap:
-            raise Refusal(
-                f"lead_in = {self.lead_in:g} m would reach the next part, {self.gap:g} m away",
-                f"write a lead_in below gap = {self.gap:g}, or a larger gap",
-                "lead_in",
-            )
         if self.kerf is not None and self.kerf >= self.gap:
             raise Refusal(
                 f"kerf = {self.kerf:g} m leaves nothing of gaps of {self.gap:g} m",
                 f"write a kerf below gap = {self.gap:g}",
                 "kerf",
+            )
+        # both contours lie half a kerf in the gap
+        if self.lead_in is not None and self.lead_in + (self.kerf or 0.0) >= self.gap:
+            raise Refusal(
+                f"lead_in = {self.lead_in:g} m would reach the next part, {self.gap:g} m away",
+                f"write a lead_in below gap = {self.gap:g} less the kerf, or a larger gap",
+                "lead_in",
             )
         return self

@@ -12,6 +12,7 @@ import pytest
 
 import lamella
 from lamella.base.arrays import Floats
+from lamella.fabrication.contours import CutOptions
 from lamella.fabrication.drawing import drawn_sheets, write_drawings
 from lamella.files.write.dxf_text import BlockWriter, Placed
 from lamella.files.write.svg import write_svg
@@ -67,15 +68,18 @@ def dxf_paths(path: Path) -> dict[str, list[tuple[str, str, Floats]]]:
     return found
 
 
-def test_svg_has_the_same_paths_as_dxf(tmp_path: Path) -> None:
+@pytest.mark.parametrize("options", [CutOptions(), CutOptions(kerf=0.0003, lead_in=0.004, tabs=2)])
+def test_svg_has_the_same_paths_as_dxf(options: CutOptions, tmp_path: Path) -> None:
+    """With kerf, lead-ins and tabs too, of parts in rows and on their sheets."""
     net = lamella.net(lamella.Unduloid(1.0, 1.6, (-1.0, 1.0)), cells=6)
     parts = net.strips().parts(foot_radius=0.0005)
     nesting = parts.nest()
-    write_drawings(tmp_path, parts, nesting, name="n", version="1")
-    for name, placed in drawn_sheets(parts, nesting).items():
-        write_svg(tmp_path / f"{name}.svg", placed, name="n & <m>", version="1")
+    write_drawings(tmp_path, parts, nesting, options, name="n", version="1")
+    for name, placed in drawn_sheets(parts, nesting, "", options).items():
+        write_svg(tmp_path / f"{name}.svg", placed, name="n & <m>", version="1", further=options.layers)
         drawn, cut = svg_paths(tmp_path / f"{name}.svg"), dxf_paths(tmp_path / f"{name}.dxf")
         assert drawn.keys() == cut.keys()
+        assert ("LEAD" in drawn) == bool(options.lead_in)
         shifts = []
         for layer, paths in cut.items():
             assert len(drawn[layer]) == len(paths)

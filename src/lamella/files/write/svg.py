@@ -19,6 +19,8 @@ from lamella.files.write.dxf_text import LAYERS, Drawn, Placed
 
 COLOURS = {"CUT": "#ff0000", "MARK": "#0000ff", "TEXT": "#00a000", "SHEET": "#808080"}
 """Of the layers, like those of the DXF files."""
+FURTHER = "#c000c0"
+"""Of layers beside them."""
 STROKE = 0.1
 """mm: width of lines to look at; a laser follows their middles."""
 SVG_MARGIN = 5.0
@@ -27,7 +29,7 @@ SVG_DECIMALS = 6
 """Of a millimetre."""
 
 
-def write_svg(path: Path, placed: Iterable[Placed], *, name: str, version: str) -> None:
+def write_svg(path: Path, placed: Iterable[Placed], *, name: str, version: str, further: Iterable[str] = ()) -> None:
     """Write a drawing.
 
     Parameters
@@ -37,6 +39,8 @@ def write_svg(path: Path, placed: Iterable[Placed], *, name: str, version: str) 
         What it holds; every path has the attributes `data-part` and `data-copy`, as the extended data of DXF entities.
     name, version : str
         Of the project and of the program.
+    further : iterable of str
+        Layers beside those of `COLOURS`.
 
     Raises
     ------
@@ -49,7 +53,7 @@ def write_svg(path: Path, placed: Iterable[Placed], *, name: str, version: str) 
     high = np.max([end[1] for end in ends], axis=0) + SVG_MARGIN
     left, top = float(low[0]), float(high[1])
     width, height = (_text(value) for value in (high - low).tolist())
-    groups: dict[str, list[str]] = {layer: [] for layer in LAYERS}
+    groups: dict[str, list[str]] = {layer: [] for layer in (*LAYERS, *further)}
     for item in items:
         points = np.round(item.points - (left, top), SVG_DECIMALS) * (1.0, -1.0) + 0.0
         for one in item.block.drawn:
@@ -65,7 +69,7 @@ def write_svg(path: Path, placed: Iterable[Placed], *, name: str, version: str) 
     ]
     for layer, paths in groups.items():
         if paths:
-            lines.append(f'<g id="{layer}" fill="none" stroke="{COLOURS[layer]}" stroke-width="{STROKE}">')
+            lines.append(f'<g id="{layer}" fill="none" stroke="{COLOURS.get(layer, FURTHER)}" stroke-width="{STROKE}">')
             lines += [*paths, "</g>"]
     write_whole(path, ("\n".join([*lines, "</svg>"]) + "\n").encode())
 

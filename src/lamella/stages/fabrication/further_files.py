@@ -8,6 +8,7 @@ from typing import Any
 
 from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
+from lamella.fabrication.contours import CutOptions
 from lamella.files.whole import write_whole
 from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.project.drawings_table import DrawingsTable
@@ -40,27 +41,38 @@ def further_files(out: FabricationOutput, up: Upstream, scene: Callable[[], Iter
     if project.joint is None and project.drawings is None:
         return
     from lamella.files.write.svg import write_svg
+    from lamella.hardware.plate_sheets_drawing import drawn_plate_sheets
     from lamella.hardware.plates_drawing import drawn_plates
+    from lamella.stages.fabrication.defaults import cut_options
 
+    options = cut_options(project)
+    cut: Any = signed | {"further": tuple(options.layers)}
     drawings = project.drawings or DrawingsTable()
     if drawings.pdf:
         yield File("fabrication/drawings.pdf", lambda path: write_whole(path, _pdf(out, up, drawings)))
     if drawings.svg:
         yield File(
             "fabrication/A.svg",
-            lambda path: _svg(path.parent, out, **signed),
+            lambda path: _svg(path.parent, out, options, **cut),
             also=("fabrication/B.svg", "fabrication/sheets.svg"),
         )
         if out.hardware.items:
-            yield File("fabrication/plates.svg", lambda path: write_svg(path, drawn_plates(out.hardware), **signed))
+            yield File(
+                "fabrication/plates.svg", lambda path: write_svg(path, drawn_plates(out.hardware, "", options), **cut)
+            )
+        if out.plates:
+            yield File(
+                "fabrication/plate_sheets.svg",
+                lambda path: write_svg(path, drawn_plate_sheets(out.plates, "", options), **cut),
+            )
 
 
-def _svg(folder: Path, out: FabricationOutput, **signed: str) -> None:
+def _svg(folder: Path, out: FabricationOutput, options: CutOptions, **signed: Any) -> None:
     """The cutting drawings."""
     from lamella.fabrication.drawing import drawn_sheets
     from lamella.files.write.svg import write_svg
 
-    for name, placed in drawn_sheets(out.parts, out.nesting).items():
+    for name, placed in drawn_sheets(out.parts, out.nesting, "", options).items():
         write_svg(folder / f"{name}.svg", placed, **signed)
 
 

@@ -50,8 +50,9 @@ class FabricationStage(Stage[FabricationOutput]):
             "where `[joint]` or `[drawings]` is given: sheets with views, details, dimensions, assembly, parts list",
         ),
         (
-            "fabrication/A.svg, fabrication/B.svg, fabrication/sheets.svg, fabrication/plates.svg",
-            "with it: the cutting drawings as SVG",
+            "fabrication/A.svg, fabrication/B.svg, fabrication/sheets.svg, fabrication/plates.svg, "
+            "fabrication/plate_sheets.svg",
+            "with it: the cutting drawings as SVG, as in the DXF files of these names",
         ),
         ("model.ifc", "where `files.ifc` is true: the same as IFC 4 members, plates and fasteners"),
         ("model.glb", "where `[joint]` is given or `files.solids` is true: the same for viewers and renderers"),
