@@ -22,6 +22,7 @@ from lamella.files.write.network_json import network_schema
 from lamella.files.write.optimise_json import optimise_schema
 from lamella.files.write.sizing_csv import COLUMNS as SIZING_LIST
 from lamella.hardware.lists import COLUMNS as HARDWARE_LIST
+from lamella.panels.lists import COLUMNS as PANEL_LIST
 from lamella.project.driver_table import (
     AngleRangeTable,
     DrivingCableTable,
@@ -85,6 +86,7 @@ VIEWS: dict[str, tuple[tuple[float, float], tuple[int, int]]] = {
     "19_timber_stacked": ((-62, 30), (1200, 900)),
     "20_steel_interlocked": ((-62, 30), (1200, 900)),
     "21_vault_structure": ((-60, 25), (1200, 900)),
+    "22_facade": ((-60, 18), (900, 1200)),
 }
 
 # azimuth and elevation of surfaces without a network
@@ -140,6 +142,9 @@ ABOUT: dict[str, str] = {
     "21_vault_structure": "A vault over an ellipse of 7 x 4 m, inflated to H = -0.22/m, so that all lamellas are cut "
     "to one radius of 4.5 m. As a structure: its strips' residual stress, weight, snow and wind with the combinations "
     "of EN 1990, and how far each case is from buckling.",
+    "22_facade": "Flat panels 0.2 m outside of an inflated tube, through every second node of its net: the diagonals "
+    "of the cells are principal lines, and the quads between them are flat as they are. 476 panels are of 12 kinds, "
+    "one or two rings each.",
 }
 
 # tables inside the tables of a boundary, by their keys
@@ -296,6 +301,7 @@ def files_page() -> str:
         "part list": _list_table(PART_LIST),
         "hardware list": _list_table(HARDWARE_LIST),
         "segment list": _list_table(SEGMENT_LIST),
+        "panel list": _list_table(PANEL_LIST),
         "sizing list": _list_table(SIZING_LIST),
     }
     for name, table in tables.items():

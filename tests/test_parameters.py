@@ -27,6 +27,7 @@ GEOMETRY = (
     "fabrication",
     "hardware",
     "solid",
+    "panels",
     "structure",
     "projection",
     "files",

@@ -64,9 +64,10 @@ def test_run_help_lists_every_stage_and_its_files(capsys: pytest.CaptureFixture[
     told = capsys.readouterr().out
     every, *stages = re.split(r"^  (\w+)(?:, after \w+)?$", told, flags=re.M)
     listed = dict(zip(stages[::2], stages[1::2], strict=True))
-    assert list(listed) == [*FILES, "erection", "structure"]
+    assert list(listed) == [*FILES, "erection", "structure", "panels"]
     assert "erection/states.json" in listed.pop("erection")
     assert "structure/results.json" in listed.pop("structure")
+    assert "panels.csv" in listed.pop("panels")
     for stage, files in FILES.items():
         for file in files:
             assert file in listed[stage] + (every if stage == "surface" else "")

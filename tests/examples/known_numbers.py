@@ -397,6 +397,17 @@ def _snow(results):
     return cases["snow"].reaction_total[2], 500 * area
 
 
+def _facade(results):
+    """Panels of a net of revolution: their sides on the circle around the neck are chords of it, 2 r sin(pi / n)."""
+    panels = results.outputs["panels"]
+    assert panels.planes.out_of_plane.max() < 1e-12
+    polygons = panels.planned
+    start, end = panels.points[polygons.nodes], panels.points[polygons.nodes[polygons.following()]]
+    around = np.abs(np.stack([start[:, 2], end[:, 2]])).max(axis=0) < 1e-9
+    assert around.sum() == 2 * 28
+    return np.linalg.norm(end - start, axis=1)[around].max(), 2 * (2.4 + 0.2) * np.sin(np.pi / 28)
+
+
 NUMBERS = {
     "01_unduloid": (_delaunay, 1e-12),
     "02_nodoid": (_nodoid, 1e-9),
@@ -424,4 +435,5 @@ NUMBERS = {
     "20_steel_interlocked": (_steel, 1e-3),
     # faces of the net for the area of the plan, straight from node to node along the rim
     "21_vault_structure": (_snow, 5e-3),
+    "22_facade": (_facade, 1e-12),
 }

@@ -14,6 +14,7 @@ from lamella import parse_project, read_project
 from lamella.fabrication.schedule import COLUMNS
 from lamella.files.write.network_json import network_bytes
 from lamella.project.tables import FURTHER_TABLES
+from lamella.surface.closed_forms.closed_form import ClosedForm
 from test_docs import DOCS, builder
 from validation.measure_network import measure
 
@@ -78,7 +79,7 @@ def test_example(name):
         return
     assert figures["lamellas"]["utilisation_max"] < 1
     assert figures["network"]["closed"] == (name not in OPEN)
-    if name < "08":
+    if isinstance(results.surface, ClosedForm):
         return
     ruler = measure(json.loads(network_bytes(results.network, name=name, version="0")))
     assert ruler["family_sign_errors"] == 0

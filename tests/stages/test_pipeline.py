@@ -77,9 +77,10 @@ def test_summaries_of_examples_have_every_key_with_finite_values(example: tuple[
     assert (set(summary["network"]) >= set(ELEMENT_NETWORK_KEYS.split())) == (path.stem in FOUND)
     assert summary["structure"] is None
     assert summary["erection"] is None
+    assert summary["panels"] is None
     assert set(KEYS) <= set(summary["seconds"])
     for place, value in numbers(summary):
-        if place in {".erection", ".structure", ".lamellas.planarity_score.developable"}:
+        if place in {".erection", ".structure", ".panels", ".lamellas.planarity_score.developable"}:
             assert value is None
         elif place == ".surface.stability":
             assert value == ("stable" if path.stem in FOUND else None)

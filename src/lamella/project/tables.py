@@ -29,6 +29,7 @@ from lamella.project.joint_table import CablesTable, JointTable
 from lamella.project.list_tables import LIST_TABLES
 from lamella.project.load_tables import ACTION_TABLES, CombinationTable, LoadTable, check_actions
 from lamella.project.material_table import MaterialTable
+from lamella.project.panels_table import PanelsTable
 from lamella.project.segments_table import SegmentsTable
 from lamella.project.sizing_table import SizingTable
 from lamella.project.stock_table import StockTable, check_stock
@@ -287,6 +288,7 @@ FURTHER_TABLES: dict[str, type[Table]] = {
     "segments": SegmentsTable,
     "erection": ErectionTable,
     "structure": StructureTable,
+    "panels": PanelsTable,
     "files": FilesTable,
 }
 
@@ -315,6 +317,7 @@ class Project(Table):
     edge_beam: EdgeBeamTable | None = Field(default=None, description=(EdgeBeamTable.__doc__ or "").strip())
     erection: ErectionTable | None = Field(default=None, description=(ErectionTable.__doc__ or "").strip())
     structure: StructureTable | None = Field(default=None, description=(StructureTable.__doc__ or "").strip())
+    panels: PanelsTable | None = Field(default=None, description=(PanelsTable.__doc__ or "").strip())
     support: Annotated[tuple[SupportTable, ...], Field(strict=False)] | None = list_key(SupportTable)
     load: Annotated[tuple[LoadTable, ...], Field(strict=False)] | None = list_key(LoadTable)
     combination: Annotated[tuple[CombinationTable, ...], Field(strict=False)] | None = list_key(CombinationTable)

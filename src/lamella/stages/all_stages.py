@@ -8,6 +8,7 @@ from lamella.stages.erection.stage import ErectionStage
 from lamella.stages.fabrication.stage import FabricationStage
 from lamella.stages.lamellas.stage import LamellasStage
 from lamella.stages.network.stage import NetworkStage
+from lamella.stages.panels.stage import PanelsStage
 from lamella.stages.stage import Stage
 from lamella.stages.structure.stage import StructureStage
 from lamella.stages.surface.stage import SurfaceStage
@@ -19,6 +20,7 @@ STAGES: tuple[Stage[Any], ...] = (
     FabricationStage(),
     ErectionStage(),
     StructureStage(),
+    PanelsStage(),
 )
 
 WRITES = (

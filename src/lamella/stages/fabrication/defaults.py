@@ -38,6 +38,8 @@ def fill_in(project: Project, surface: Surface[Any]) -> Project:
     update: dict[str, Any] = {"fabrication": filled}
     if joint is not None:
         update["joint"] = joint.model_copy(update={"slot_width": None})
+    if project.panels is not None:
+        update["panels"] = project.panels.filled(strip.height)
     if any(drawing_origin(surface)):
         update["surface"] = project.surface.model_copy(update={"origin": drawing_origin(surface)})
     made = project.model_copy(update=update)
