@@ -53,6 +53,7 @@ from lamella.segments.lists import COLUMNS as SEGMENT_LIST
 from lamella.stages.all_stages import STAGES, WRITES
 from lamella.stages.results import Results
 from lamella.stages.schema import summary_schema
+from lamella.studies.tables import STUDY_TABLES, StudyTable, study_schema
 from lamella.view.drawing_picture import draw_part, draw_sheets
 from lamella.view.picture import draw
 from lamella.view.surface_picture import Panel, draw_surface
@@ -219,6 +220,21 @@ def project_file_page() -> str:
     return "\n".join(parts)
 
 
+def study_file_page() -> str:
+    """docs/study-file.md."""
+    parts = [
+        GENERATED,
+        "# Study file\n",
+        "The file of `lamella study` is TOML in UTF-8; [Studies](studies.md) shows how it is used. For editors: "
+        "[study.schema.json](schema/study.schema.json) (also printed by `lamella schema study`).\n",
+        "## Top level\n",
+        _table_of({key: StudyTable.model_fields[key] for key in ("project", "until")}, StudyTable),
+    ]
+    for name, model in STUDY_TABLES.items():
+        parts += [f"## `{name}`\n", f"{model.__doc__}\n", _table_of(model.model_fields, model)]
+    return "\n".join(parts)
+
+
 def _inner(name: str) -> Iterator[str]:
     """Sections on the tables inside another."""
     for key, inner in FURTHER_INNER.get(name, {}).items():
@@ -253,7 +269,13 @@ def _type(choices: list[dict[str, Any]]) -> str:
 
 
 def _type_of(schema: dict[str, Any]) -> str:
-    names = {"number": "number", "integer": "whole number", "string": "text", "object": "table"}
+    names = {
+        "number": "number",
+        "integer": "whole number",
+        "string": "text",
+        "object": "table",
+        "boolean": "true or false",
+    }
     counts = {2: "two numbers", 3: "three numbers"}
     if "enum" in schema:
         return " or ".join(f'`"{word}"`' for word in schema["enum"])
@@ -265,6 +287,10 @@ def _type_of(schema: dict[str, Any]) -> str:
         if "prefixItems" in schema:
             return counts[len(schema["prefixItems"])]
         items = schema["items"]
+        if "anyOf" in items:
+            return "list of values"
+        if items.get("type") == "number":
+            return "list of numbers"
         if items.get("type") == "string":
             return f"list of {_type_of(items)}"
         if items.get("type") == "number":
@@ -438,6 +464,8 @@ def pages(results: dict[str, Results]) -> dict[str, str]:
         "project-file.md": project_file_page(),
         "files.md": files_page(),
         "examples.md": examples_page(results),
+        "study-file.md": study_file_page(),
+        "schema/study.schema.json": json.dumps(study_schema(), indent=2) + "\n",
         "schema/project.schema.json": json.dumps(project_schema(), indent=2) + "\n",
         "schema/summary.schema.json": json.dumps(summary_schema(), indent=2) + "\n",
         "schema/lamellas.schema.json": json.dumps(lamellas_schema(), indent=2) + "\n",

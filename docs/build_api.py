@@ -34,6 +34,7 @@ TOPICS: dict[str, tuple[str, ...]] = {
         "write",
         "run",
     ),
+    "Studies": ("study", "Study"),
     "Quad meshes": ("quad_mesh", "QuadMesh", "read_quad_mesh"),
     "Guided projection": ("asymptotic", "sphere_stars", "straighten", "deform", "planar_strips", "foot_surface"),
     "COMPAS": ("write_compas", "network_of_compas", "quad_mesh_of_compas", "compas_at"),

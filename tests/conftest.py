@@ -34,6 +34,23 @@ from lamella.surface.closed_forms.closed_form import ClosedForm
 settings.register_profile("same", derandomize=True)
 settings.load_profile("same")
 
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Of a test marked few(n) n cases run in `make test`, evenly spread; the others are slow ones."""
+    cases: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if item.get_closest_marker("few"):
+            cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    for several in cases.values():
+        marker = several[0].get_closest_marker("few")
+        assert marker is not None
+        kept = {k * len(several) // marker.args[0] for k in range(marker.args[0])}
+        for number, item in enumerate(several):
+            if number not in kept:
+                item.add_marker(pytest.mark.slow)
+
+
 EXAMPLES = Path(__file__).parents[1] / "examples"
 KINDS = ("unduloid", "nodoid", "catenoid", "cylinder", "helicoid", "enneper", "enneper3", "scherk")
 

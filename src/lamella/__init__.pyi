@@ -42,6 +42,8 @@ from lamella.stages.write import run as run
 from lamella.stages.write import write as write
 from lamella.strip.lamellas import Lamellas as Lamellas
 from lamella.strip.lamellas import Section as Section
+from lamella.studies.study import Study as Study
+from lamella.studies.study import study as study
 from lamella.surface.boundary import Loop as Loop
 from lamella.surface.boundary.curves import arc as arc
 from lamella.surface.boundary.curves import circle as circle

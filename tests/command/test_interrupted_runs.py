@@ -26,6 +26,7 @@ def earlier(here: Path) -> dict[str, bytes]:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX limits")
 @pytest.mark.parametrize("most", [0, 1_000, 60_000, 200_000])
+@pytest.mark.few(2)
 def test_a_full_disk_leaves_the_earlier_run_whole(here: Path, earlier: dict[str, bytes], most: int) -> None:
     """Whichever file it is that does not fit: exit 2, and every file of the earlier run as it was."""
     process = lamella("run", "p.toml", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))

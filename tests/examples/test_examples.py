@@ -65,7 +65,13 @@ def test_every_example_has_its_number():
     assert {path.stem for path in EXAMPLES.glob("*.toml")} == set(NUMBERS)
 
 
-@pytest.mark.parametrize("name", NUMBERS)
+# of seconds each: `make kernels` runs them too
+LONG = ("14_three_columns", "16_hall", "17_gridshell", "18_saddle_roof", "21_vault_structure")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in NUMBERS]
+)
 def test_example(name):
     """Each example has the physical number that it stands for: a closed form, or a figure found on finer elements."""
     number, tolerance = NUMBERS[name]

@@ -98,6 +98,7 @@ def _ring(**network: Any) -> dict[str, Any]:
         pytest.param(_ring(spacing=0.6, normal_curvature=0.03), id="given normal curvature"),
     ],
 )
+@pytest.mark.few(1)
 def test_reported_figures_are_no_less_than_those_measured(project) -> None:
     """Deviations in summary.json are no less than those measured on the written points, and at most what they are."""
     results = compute(parse_project(project), until="network")

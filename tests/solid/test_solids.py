@@ -91,6 +91,7 @@ COSTLY = pytest.mark.slow
 
 
 @pytest.mark.parametrize("layout", [pytest.param(k, marks=COSTLY) if k == "four layers" else k for k in LAYOUTS])
+@pytest.mark.few(2)
 def test_no_two_solids_overlap(layout: str) -> None:
     """Strips, washers, bolts and blocks have no volume in common, at eight nodes of each layout."""
     make, section = LAYOUTS[layout]
@@ -105,6 +106,7 @@ def test_no_two_solids_overlap(layout: str) -> None:
 
 
 @pytest.mark.parametrize("layers", [2, 4])
+@pytest.mark.few(1)
 def test_splices_are_clear_of_everything(layers: int) -> None:
     lamellas = lamella.net(lamella.Cylinder(1.5, (0.0, 3.0)), cells=6).strips(Section(0.08, 0.0015, layers, 0.025))
     parts = lamellas.parts(sheet=(3.0, 1.0))
@@ -132,6 +134,7 @@ def test_cables_and_clamps_are_clear_of_the_joints() -> None:
 
 
 @pytest.mark.parametrize(("order", "layers"), [(3, 2), (4, 2), (5, 2), pytest.param(3, 4, marks=COSTLY)])
+@pytest.mark.few(1)
 def test_hubs_of_6_8_and_10_rays_are_clear_of_everything(order: int, layers: int) -> None:
     """Plates, fins, packers and screws of hubs at singular nodes, against each other and all strips."""
     lamellas = lamella.net(lamella.Enneper(order, 0.8, 3.0), cells=10).strips(Section(0.08, 0.001, layers, 0.02))

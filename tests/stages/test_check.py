@@ -51,6 +51,7 @@ def annulus(**network: Any) -> dict[str, Any]:
     ],
     ids=["cells", "spacing", "lines", "principal", "annulus"],
 )
+@pytest.mark.few(3)
 def test_cells_and_nodes_are_those_of_the_run(tables: dict[str, Any]) -> None:
     """On coarse elements a check counts the cells of a run, and its nodes to 15 %."""
     project, steps = parse_project(tables), []
@@ -84,6 +85,7 @@ def rings(distance: float) -> list[dict[str, Any]]:
         (film(mean_curvature=2.0), "surface.mean_curvature", [2]),
     ],
 )
+@pytest.mark.few(5)
 def test_what_a_run_refuses(tables: dict[str, Any], key: str, numbers: list[float]) -> None:
     """A check refuses what a run refuses, by the same key and with the same numbers."""
     project = parse_project(tables)
@@ -140,6 +142,7 @@ UNDULOID = {"kind": "unduloid", "neck_radius": 1.6, "bulge_radius": 2.8, "height
     ],
     ids=["high", "weak", "sheet", "millimetres", "closing", "unstable", "film", "principal"],
 )
+@pytest.mark.few(4)
 def test_what_a_run_warns_of(tables: dict[str, Any], of: list[str]) -> None:
     """All of it: from closed forms to the letter, from coarse elements the same but for the figures."""
     project = parse_project(tables)

@@ -204,6 +204,7 @@ def test_a_net_that_nothing_braces_is_named() -> None:
     assert f"{results.summary['erection']['spring_back']:.3g} m" in warning
 
 
+@pytest.mark.slow
 def test_segments(tmp_path: Path) -> None:
     """Each is laid flat by itself, in a folder of its own; together they have the edges that are not cut."""
     project = PROJECT | {

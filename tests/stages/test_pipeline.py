@@ -64,6 +64,7 @@ def example(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     return request.param, out
 
 
+@pytest.mark.few(4)
 def test_summaries_of_examples_have_every_key_with_finite_values(example: tuple[Path, Path]) -> None:
     """summary.json of examples has the keys of the file interface, all numbers finite."""
     path, out = example
@@ -129,6 +130,7 @@ def test_examples_warn_of_nothing_a_designer_must_mend(example: tuple[Path, Path
         assert "without slots" not in message
 
 
+@pytest.mark.few(4)
 def test_the_copy_of_the_project_runs_to_the_same_result(example: tuple[Path, Path], tmp_path: Path) -> None:
     """project.toml of a run, all defaults filled in, gives the same bytes of every file."""
     _, out = example

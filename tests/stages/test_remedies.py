@@ -187,6 +187,7 @@ SLOW = ("curvature of lines from seeds", "all too short from seeds")
     ("tables", "key", "ways"),
     [pytest.param(*case[1:], id=case[0], marks=pytest.mark.slow if case[0] in SLOW else ()) for case in REFUSED],
 )
+@pytest.mark.few(9)
 def test_what_is_refused(tables: Tables, key: str, ways: list[Callable[[Tables, str], Tables]]) -> None:
     """A remedy written into the project to the letter: the project is accepted."""
     with refused(key) as error:

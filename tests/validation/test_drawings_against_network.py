@@ -47,6 +47,7 @@ def _crossings(network):
 
 @pytest.mark.parametrize("surface", SURFACES, ids=lambda s: s["kind"])
 @pytest.mark.parametrize("layers", [1, 2])
+@pytest.mark.few(5)
 def test_slot_distances_are_the_arc_lengths(run, surface, layers):
     """Distances of slots in the .dxf along the cut arcs are those of nodes in network.json, to 0.01 mm."""
     lamella = {"layers": layers, "height": 0.08, "thickness": 0.001}
@@ -83,6 +84,7 @@ def test_slot_distances_are_the_arc_lengths(run, surface, layers):
 
 
 @pytest.mark.parametrize("surface", SURFACES, ids=lambda s: s["kind"])
+@pytest.mark.few(2)
 def test_layers_of_their_own_have_their_own_distances(run, surface):
     """Slots of every layer's part against lamellas.json; their mean over the two layers is the centre line's."""
     lamella = {"layers": 2, "height": 0.08, "thickness": 0.001, "layer_lengths": "own"}

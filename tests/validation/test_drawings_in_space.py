@@ -28,6 +28,7 @@ NETS = {
 
 
 @pytest.mark.parametrize("name", NETS)
+@pytest.mark.few(1)
 def test_slots_and_holes_meet_in_space(name: str, tmp_path: Path) -> None:
     make, lengths, curves = NETS[name]
     section = Section(0.08, 0.0015, 2, 0.025, layer_lengths=lengths, layer_curves=curves)

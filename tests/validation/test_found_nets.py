@@ -47,6 +47,7 @@ def rim(form: ClosedForm, middle: complex, axes: tuple[float, float]) -> ArcLeng
 
 
 @pytest.mark.parametrize("name", PIECES)
+@pytest.mark.few(3)
 def test_nodes_converge_to_those_of_the_closed_form(name: str) -> None:
     """Nodes of a net on found elements converge to those of the closed form with order 3 at least."""
     form, middle, axes = PIECES[name]

@@ -54,6 +54,7 @@ LARGE = {(41, "helicoid"), (41, "enneper3"), (41, "enneper"), (24, "helicoid")}
         for kind in KINDS
     ],
 )
+@pytest.mark.few(7)
 def test_ruler_agrees(cells, kind):
     """Nets of random closed forms from their written points alone: angles, normal curvature, families, lengths."""
     _check(draw_surface(kind, np.random.default_rng([cells, 71])), cells)
@@ -119,6 +120,7 @@ def test_ruler_runs_on_a_written_file(run):
     ],
     ids=lambda s: s["kind"],
 )
+@pytest.mark.few(2)
 def test_summary_agrees_with_the_ruler(run, surface):
     """What a run says of itself, computed from the surface, against what the points say."""
     folder = run("network", surface=surface, network={"cells": 26})

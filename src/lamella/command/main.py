@@ -20,6 +20,7 @@ from lamella.base.progress import silent
 from lamella.base.wording import readable
 from lamella.command.optimise import add_optimise, run_optimise
 from lamella.command.screen import Screen
+from lamella.command.study import add_study, run_study
 
 _ABOUT = """\
 lamella takes a designer from a surface of constant mean curvature to the net of lamellas on it,
@@ -30,6 +31,7 @@ twisting leave in the strips.
   lamella new form-found          the same for a film between boundary curves of your own
   lamella run unduloid.toml       compute it and write the folder out/unduloid
   lamella check unduloid.toml     only look for mistakes
+  lamella study variants.toml     compute many variants of a project, and find the best
   lamella optimise net.obj ...    make a net of a quad mesh from elsewhere
 
 Open out/unduloid/report.html in a browser, model.3dm in Rhino, fabrication/*.dxf at the laser."""
@@ -117,6 +119,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_verbose(check)
 
     add_optimise(commands)
+    add_study(commands)
 
     examples = commands.add_parser("examples", help="list the examples, or copy them")
     examples.add_argument("names", nargs="*", metavar="NAME", help="with --copy: the examples to copy (default: all)")
@@ -126,7 +129,7 @@ def _parser() -> argparse.ArgumentParser:
         "schema",
         help="print the JSON schema of a project or a file: summary.json, network.json, ...",
     )
-    schema.add_argument("which", choices=["project", "summary", "network", "lamellas", "optimise"])
+    schema.add_argument("which", choices=["project", "summary", "network", "lamellas", "optimise", "study"])
     return parser
 
 
@@ -226,6 +229,8 @@ def _schema(arguments: argparse.Namespace) -> None:
         from lamella.project.tables import project_schema as schema
     elif arguments.which == "optimise":
         from lamella.files.write.optimise_json import optimise_schema as schema
+    elif arguments.which == "study":
+        from lamella.studies.tables import study_schema as schema
     elif arguments.which == "summary":
         from lamella.stages.schema import summary_schema as schema
     elif arguments.which == "lamellas":
@@ -240,6 +245,7 @@ _COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
     "check": _check,
     "new": _new,
     "optimise": run_optimise,
+    "study": run_study,
     "examples": _examples,
     "schema": _schema,
 }

@@ -21,9 +21,9 @@ from lamella.project.tables import (
 )
 
 
-def _fields(values: dict[str, Any], path: list[str]) -> dict[str, Any]:
+def _fields(values: dict[str, Any], path: list[str], model: type[Table]) -> dict[str, Any]:
     """Fields of the table at a path of keys; indices of lists are part of their keys: boundary[1]."""
-    fields: dict[str, Any] = Project.model_fields
+    fields: dict[str, Any] = model.model_fields
     for key in path:
         name = key.partition("[")[0]
         if name == "materials":
@@ -32,10 +32,10 @@ def _fields(values: dict[str, Any], path: list[str]) -> dict[str, Any]:
             kind = values.get("surface", {}).get("kind")
             fields = SURFACE_TABLES[kind].model_fields if kind in SURFACE_TABLES else {}
             continue
-        model = _model_of(fields[name].annotation) if name in fields else None
-        if model is None:
+        table = _model_of(fields[name].annotation) if name in fields else None
+        if table is None:
             return {}
-        fields = model.model_fields
+        fields = table.model_fields
     return fields
 
 
@@ -132,8 +132,8 @@ def _range(field: Any, unit: str) -> str:
     return " and ".join(words) + unit
 
 
-def explain(error: ErrorDetails, values: dict[str, Any]) -> Reported:
-    """Key, message and remedy of a pydantic error."""
+def explain(error: ErrorDetails, values: dict[str, Any], model: type[Table] = Project) -> Reported:
+    """Key, message and remedy of a pydantic error in the values of a project, or of the file of another model."""
     kind, context = error["type"], error.get("ctx", {})
     if kind in ("union_tag_invalid", "union_tag_not_found") and isinstance(values["surface"], dict):
         return "surface.kind", *explain_kind(values["surface"].get("kind"))
@@ -146,7 +146,7 @@ def explain(error: ErrorDetails, values: dict[str, Any]) -> Reported:
         # one about several tables has no place of its own
         return ".".join([*path, refusal.key] if refusal.key else path), str(refusal), refusal.remedy
     key, leaf = ".".join(path), path[-1]
-    parent = _fields(values, path[:-1])
+    parent = _fields(values, path[:-1], model)
     field = parent.get(leaf)
     extra = getattr(field, "json_schema_extra", None) or {}
     unit = f" {extra['unit']}" if extra.get("unit") else ""
@@ -160,6 +160,8 @@ def explain(error: ErrorDetails, values: dict[str, Any]) -> Reported:
     if kind == "missing":
         example = f"{leaf} = {shown(field.examples[0]) if field and field.examples else '...'}"
         return key, f"missing: {about}", f"add {example}" + (f" (in{unit})" if unit else "")
+    if kind == "extra_forbidden" and model is not Project:
+        return key, "unknown key" + _meant(_nearest(leaf, parent)), f"keys here: {', '.join(parent)}"
     if kind == "extra_forbidden":
         return key, *_unknown(leaf, parent, len(path) == 1)
     if kind == "float_type" and isinstance(value, int) and not isinstance(value, bool):
@@ -185,4 +187,5 @@ def explain(error: ErrorDetails, values: dict[str, Any]) -> Reported:
     if kind in ("model_type", "dict_type", "model_attributes_type", "union_tag_not_found"):
         inside, below = f"{cut(leaf)} = {{...}} with its keys inside", f"[{cut(key)}] and its keys below"
         return key, f"{reported} is not a table", f"write {inside if '[' in key else below}"
-    return key, cut(error["msg"], 200), f"see the keys of [{path[0]}] in `lamella new`"
+    where = f"[{path[0]}] in `lamella new`" if model is Project else f"{path[0]} in the documentation"
+    return key, cut(error["msg"], 200), f"see the keys of {where}"

@@ -50,6 +50,7 @@ CASES = {
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("case", CASES)
+@pytest.mark.few(4)
 def test_read_back(case: str, tolerance: float, tmp_path: Path) -> None:
     body, distance = CASES[case]()
     mesh = body.mesh(tolerance)

@@ -307,6 +307,7 @@ MORE = [pytest.param(seed, marks=pytest.mark.slow) for seed in (2, 4, 5, 7)]
 
 
 @pytest.mark.parametrize("seed", [3, *MORE])
+@pytest.mark.slow
 def test_an_uneven_sketch_is_closed(seed: int) -> None:
     """Issue 4: a random smooth change of every control point by up to 0.3 m; the net closes to 1e-3 of a cell."""
     adjusted, net = closed(sketch(seed, move=0.3, scale=0.1, tilt=5.0))

@@ -19,6 +19,7 @@ MEMORY = Memory()
 """The film is found once for both densities."""
 
 
+@pytest.mark.slow
 def test_annulus_with_two_hexagonal_nodes() -> None:
     """DESIGN section 4: periods whole to 1e-4, singular nodes within 1 mm of the converged (0, +-2.253137, 2.865947) m,
     |tg|^(1/2) ds alike in all cells to 1e-3, faces a disc with one hole.
@@ -56,6 +57,7 @@ def test_annulus_with_two_hexagonal_nodes() -> None:
 
 
 @pytest.mark.parametrize("cells", [24, 42])
+@pytest.mark.few(1)
 def test_annulus_of_ten_thousand_nodes(cells: int) -> None:
     """An annulus of 12 x 9 m, its rim given at 96 places, keeps its tolerance on at most 10,000 surface nodes.
 

@@ -113,6 +113,7 @@ def test_spacing_of_all_films(name: str, share: int) -> None:
 
 
 @pytest.mark.parametrize("name", ["regular 2", "turned 3", "turned 4", "tube 0", "tube 3"])
+@pytest.mark.few(3)
 def test_cells_are_lamellas_that_end_on_the_first_hole(name: str) -> None:
     """Ends of one family on the hole's rim, in network.json: as many as `cells`, but for curves that graze the rim."""
     for cells in (12, 17):

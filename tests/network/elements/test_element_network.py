@@ -237,6 +237,7 @@ def ruler(network: Network) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("name", FORMS)
+@pytest.mark.few(3)
 def test_nodes_are_those_of_the_closed_form_net(name: str) -> None:
     """Issue 4: node by node to 1e-5 of the size at 5,000 surface nodes."""
     form, surface, net = woven(name)

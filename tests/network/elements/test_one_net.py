@@ -189,6 +189,7 @@ def test_the_skew_ring_has_seams() -> None:
 
 
 @pytest.mark.parametrize(("case", "motion"), MOVED)
+@pytest.mark.few(6)
 def test_a_moved_surface_has_the_moved_net(case: str, motion: str) -> None:
     """A film found in a turned, mirrored, moved or scaled boundary has the net moved alike, lamella by lamella."""
     _, network = woven(case)
@@ -208,6 +209,7 @@ def test_a_moved_surface_has_the_moved_net(case: str, motion: str) -> None:
         pytest.param("six beams", marks=pytest.mark.slow),
     ],
 )
+@pytest.mark.few(2)
 def test_finer_elements_have_the_same_net(case: str) -> None:
     """The same nodes and ids on elements found to a tenth of the tolerance."""
     _, network = woven(case)

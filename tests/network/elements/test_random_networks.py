@@ -90,6 +90,7 @@ def check(seed: int) -> str:
 
 
 @pytest.mark.parametrize("seed", [1, 9, pytest.param(24, marks=pytest.mark.slow)])
+@pytest.mark.few(1)
 def test_random_networks(seed: int) -> None:
     """A random film has a sound net: degrees of nodes, faces, the Euler number, no lamella twice."""
     check(seed)

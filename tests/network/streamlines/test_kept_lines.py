@@ -136,6 +136,7 @@ def test_lamellas_less_straight_than_promised_are_told_of(tmp_path: Path) -> Non
             assert f"at 95 % of the samples by {usual / scale:.1e}" in messages[0]
 
 
+@pytest.mark.slow
 def test_asymptotic_lines_of_a_hyperboloid(tmp_path: Path) -> None:
     """Straight rulings again, and a net that closes around the hole: as many lamellas as seeds around it."""
     errors = []

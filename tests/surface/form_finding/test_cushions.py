@@ -82,6 +82,7 @@ def cushion(inner: float, volume: float) -> tuple[float, float, float]:
     ("inner", "volume", "beyond_vertical"),
     [(0.36, 0.36, False), (0.36, 0.72, True), pytest.param(0.2, 0.55, True, marks=pytest.mark.slow)],
 )
+@pytest.mark.few(1)
 def test_cushion_of_given_volume(inner, volume, beyond_vertical) -> None:
     """H and area of a film of given volume, to 1e-6, are those of its meridian's differential equation."""
     psi, mean_curvature, area = cushion(inner, volume)

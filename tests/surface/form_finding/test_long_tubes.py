@@ -55,6 +55,7 @@ def folds(length: float) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("share", [0.97, pytest.param(1.03, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_pressures_that_a_long_tube_bears(share: float) -> None:
     """Stable at a fixed mean curvature: from fold to fold of the unduloids (T. I. Vogel, Stability of a liquid drop
     trapped between two parallel planes, SIAM J. Appl. Math. 47 (1987) 516-525). The cylinder is one of them up to pi

@@ -89,6 +89,7 @@ def test_draw_is_varied_and_the_same_every_time() -> None:
 
 
 @pytest.mark.parametrize("seed", FEW)
+@pytest.mark.few(2)
 def test_film_or_reason(seed) -> None:
     """A random boundary has a film that keeps its H, measured anew, and its loops; or a refusal with a remedy."""
     judged(seed)

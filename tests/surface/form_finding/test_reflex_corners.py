@@ -32,6 +32,7 @@ def beams(shape: str, sign: float = 1.0) -> Loop:
 
 
 @pytest.mark.parametrize(("shape", "finer"), [("L", 0.02), pytest.param("T", 0.02, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_beams_with_reflex_corners_have_one_film(shape, finer) -> None:
     """The film of least area, whatever its elements: those of its mirror image are others, so are finer ones."""
     areas = []

@@ -162,6 +162,7 @@ class TestCap:
         assert found.stability.verdict == "fold"
 
     @pytest.mark.parametrize("part", [0.75, 0.95, 0.99])
+    @pytest.mark.slow
     def test_most_of_a_sphere_by_its_volume(self, part) -> None:
         """A cap as high as a part of its sphere: a^2 = 4 part (1 - part) R^2, V = pi h^2 (3 R - h) / 3."""
         radius = 1 / (2 * np.sqrt(part * (1 - part)))

@@ -115,6 +115,7 @@ def test_cylinder_at_pi_times_its_radius_is_at_the_fold() -> None:
 
 @pytest.mark.parametrize("thin", [False, True])
 @pytest.mark.parametrize("distance", [0.5, 0.9, 1.2, 1.3254868387 * 0.995])
+@pytest.mark.few(4)
 def test_catenoids_between_rings(distance, thin) -> None:
     """Both films: the thick one is stable, the thin one has one negative eigenvalue, far from nought when very thin."""
     film = catenoid(distance, thin=thin, rows=25 if thin else 9)

@@ -85,6 +85,7 @@ class TestCylinderAtPi:
 
 
 @pytest.mark.parametrize("part", [0.98, 0.995, 1.005, 1.02])
+@pytest.mark.few(2)
 def test_the_other_film_is_told_with_its_distance(part) -> None:
     """Cylinder and unduloid of one H: the estimate is exact to first order in the distance from pi radii."""
     length = part * np.pi
@@ -110,6 +111,7 @@ def test_no_other_film_is_told_where_none_is_near() -> None:
     ("radius", "length", "part"),
     [(3.0, 4.0, 100 / (36 * np.pi)), (1.0, 2.0, 0.97), (1.0, 2.0, 1.04), (1.0, 0.8, 1.05), (1.0, 5.0, 1.01)],
 )
+@pytest.mark.few(2)
 def test_tube_of_given_volume(radius, length, part) -> None:
     """A part of the cylinder's volume: an unduloid about its neck below it, about its bulge above; also unstable at
     its own pressure (beyond pi radii), where it is stable at fixed volume."""

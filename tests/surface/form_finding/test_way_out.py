@@ -68,6 +68,7 @@ def test_less_curvature_or_a_smaller_boundary(wanted: float) -> None:
     ],
     ids=["equal", "upside down", "leaning"],
 )
+@pytest.mark.slow
 def test_a_tube_too_long_without_pressure(boundary: list[dict[str, Any]]) -> None:
     """A tube of the H that is offered exists, and one without pressure at the distance that is offered.
 

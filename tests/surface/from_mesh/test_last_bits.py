@@ -45,6 +45,7 @@ def test_elements_of_a_fitted_surface(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("curvature", "columns"), [(0.0, 15), (0.02, 14)])
+@pytest.mark.few(1)
 def test_lines_on_a_symmetric_mesh(tmp_path: Path, curvature: float, columns: int) -> None:
     """z = x^2 / 9 - y^2 / 11: seeds, gaps and the elements at a vertex come in mirrored pairs."""
     points, faces = grid(columns, columns, lambda x, y: (x - 3) ** 2 / 9 - (y - 3) ** 2 / 11, 6.0)

@@ -130,6 +130,7 @@ def test_a_border_that_does_not_scatter_stays(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", MESHES)
+@pytest.mark.few(2)
 def test_normal_curvatures_of_a_mesh_with_noise(tmp_path: Path, name: str) -> None:
     """Noise of a centimetre on metre edges bends faces by 8 x 0.01/m; what is left of it is bounded as reported."""
     graph, points, faces = MESHES[name]
@@ -143,6 +144,7 @@ def test_normal_curvatures_of_a_mesh_with_noise(tmp_path: Path, name: str) -> No
     assert np.mean(off <= reported) > 0.9
 
 
+@pytest.mark.slow
 def test_errors_of_a_net_grow_with_the_noise(tmp_path: Path) -> None:
     """Lamellas of no normal curvature on a saddle of 99 vertices, by its own shape operator: 0.5 1/m per metre."""
     _, points, faces = MESHES["saddle of quads"]

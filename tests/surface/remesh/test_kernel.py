@@ -58,6 +58,7 @@ def switch(monkeypatch: pytest.MonkeyPatch) -> Iterator[object]:
         "graded 1 to 20 from 16 triangles",
     ],
 )
+@pytest.mark.few(3)
 def test_meshes_are_those_of_numpy(name, compiled, switch) -> None:
     """The compiled remesher makes the meshes of the numpy one, to the last bit."""
     case: Case = CASES[name]()

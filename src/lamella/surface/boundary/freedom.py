@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
-from scipy.spatial.transform import Rotation
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
@@ -15,7 +13,8 @@ from lamella.base.limits import MOST_WAVES
 from lamella.base.vectors import diagonal
 from lamella.base.wording import rounded
 from lamella.surface.boundary.adjustable_film import AdjustableFilm
-from lamella.surface.boundary.boundary_curve import Adjust, BoundaryCurve, Place, Triple
+from lamella.surface.boundary.boundary_curve import Adjust, BoundaryCurve
+from lamella.surface.boundary.film_changes import Change, curve_waved, placed, sized, tilted, waved, with_curvature
 from lamella.surface.boundary.splines import follow_weights
 from lamella.surface.boundary.waves import wave_rows
 
@@ -30,10 +29,6 @@ MEASURED_PLACES, DRAWN_PLACES = 1000, 4000
 SPARE = 0.05
 # where nothing says what may change: of a loop's size
 USUAL_CHANGE = 0.05
-
-
-Change = Callable[[AdjustableFilm, Floats], AdjustableFilm]
-"""The film with some parameters changed by values."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +77,7 @@ class Freedom:
         for index, curve in enumerate(film.curves):
             parts += _of_curve(index, curve, usual=not given)
         if film.adjust_mean_curvature:
-            parts.append(_part("mean curvature", "", -1, film.adjust_mean_curvature, 1, _with_curvature))
+            parts.append(_part("mean curvature", "", -1, film.adjust_mean_curvature, 1, with_curvature))
         self._parts = parts
         self._trees: dict[int, cKDTree] = {}
         self.names = tuple(part.name for part in parts)
@@ -164,7 +159,7 @@ class Freedom:
 
     def curvature_sensitivities(self) -> Floats:
         """Change of H, 1/m, per share of each parameter, (count,)."""
-        rates = [part.ranges if part.apply is _with_curvature else np.zeros(len(part.ranges)) for part in self._parts]
+        rates = [part.ranges if part.apply is with_curvature else np.zeros(len(part.ranges)) for part in self._parts]
         return np.concatenate([np.zeros(0), *rates])
 
 
@@ -206,14 +201,14 @@ def _of_curve(index: int, curve: BoundaryCurve, usual: bool) -> list[_Part]:
     # an even wave is a shift
     first = 1 if move else 0
     if points:
-        apply = _curve_waved(index, first)
+        apply = curve_waved(index, first)
         most = MOST_WAVES
         t = np.arange(FREEDOM_PLACES) / FREEDOM_PLACES
         if curve.points is not None:
             most = min(MOST_WAVES, len(curve.points) // POINTS_A_WAVE)
             drawn = np.array(curve.points)
             rows = wave_rows(np.arange(len(drawn)) / len(drawn), most)[first:]
-            apply = _waved(index, rows)
+            apply = waved(index, rows)
             # between the points what the curve makes of them
             rows = rows @ follow_weights(drawn, t, straight=curve.interpolation == "polyline").T
         else:
@@ -226,105 +221,14 @@ def _of_curve(index: int, curve: BoundaryCurve, usual: bool) -> list[_Part]:
         by_part = limits.reshape(FREEDOM_PLACES, 3, -1)
         parts.append(_Part(f"points of {curve.name!r}", "points", index, ranges, by_part, apply))
     if move:
-        parts.append(_part(f"place of {curve.name!r}", "move", index, move, axes, _placed(index)))
+        parts.append(_part(f"place of {curve.name!r}", "move", index, move, axes, placed(index)))
     if scale:
-        parts.append(_part(f"size of {curve.name!r}", "scale", index, scale, 1, _sized(index)))
+        parts.append(_part(f"size of {curve.name!r}", "scale", index, scale, 1, sized(index)))
     if tilt:
-        parts.append(_part(f"tilt of {curve.name!r}", "tilt", index, np.radians(tilt), 3, _tilted(index)))
+        parts.append(_part(f"tilt of {curve.name!r}", "tilt", index, np.radians(tilt), 3, tilted(index)))
     return parts
 
 
 def _part(name: str, key: str, loop: int, most: float, count: int, apply: Change) -> _Part:
     """Components of one vector, at most so long."""
     return _Part(name, key, loop, np.full(count, most), np.eye(3, count)[None], apply)
-
-
-def _replaced(film: AdjustableFilm, index: int, curve: BoundaryCurve) -> AdjustableFilm:
-    curves = list(film.curves)
-    curves[index] = curve
-    return replace(film, curves=tuple(curves))
-
-
-def _mapped(film: AdjustableFilm, index: int, turn: Floats, factor: float, shift: Floats) -> AdjustableFilm:
-    """One curve turned and scaled about its middle, then shifted."""
-    curve = film.curves[index]
-    if curve.points is not None:
-        points = np.array(curve.points)
-        middle = points.mean(0)
-        moved = (points - middle) @ turn.T * factor + middle + shift
-        return _replaced(film, index, replace(curve, points=_tuples(moved)))
-    if curve.circle is not None:
-        ring = replace(
-            curve.circle,
-            center=_triple(np.array(curve.circle.center) + shift),
-            radius=curve.circle.radius * factor,
-            normal=_triple(turn @ np.array(curve.circle.normal)),
-        )
-        return _replaced(film, index, replace(curve, circle=ring))
-    place = curve.place or Place()
-    there = replace(
-        place,
-        shift=_triple(np.array(place.shift) + shift),
-        scale=place.scale * factor,
-        turn=_degrees(turn @ Rotation.from_rotvec(np.radians(place.turn)).as_matrix()),
-    )
-    return _replaced(film, index, replace(curve, place=there))
-
-
-def _degrees(turn: Floats) -> Triple:
-    """Vector along the axis of a rotation (3, 3), as long as its angle, degrees."""
-    return _triple(np.degrees(Rotation.from_matrix(turn).as_rotvec()))
-
-
-def _triple(vector: Floats) -> Triple:
-    x, y, z = vector.tolist()
-    return x, y, z
-
-
-def _tuples(points: Floats) -> tuple[Triple, ...]:
-    return tuple(map(_triple, points))
-
-
-def _in_space(shifts: Floats) -> Floats:
-    """Shifts (..., 3) of shifts in plan (..., 2), or those of three already."""
-    return np.concatenate([shifts, np.zeros((*shifts.shape[:-1], 3 - shifts.shape[-1]))], axis=-1)
-
-
-def _placed(index: int) -> Change:
-    return lambda film, values: _mapped(film, index, np.eye(3), 1.0, _in_space(values))
-
-
-def _sized(index: int) -> Change:
-    return lambda film, values: _mapped(film, index, np.eye(3), 1.0 + float(values[0]), np.zeros(3))
-
-
-def _tilted(index: int) -> Change:
-    return lambda film, values: _mapped(film, index, Rotation.from_rotvec(values).as_matrix(), 1.0, np.zeros(3))
-
-
-def _waved(index: int, waves: Floats) -> Change:
-    def apply(film: AdjustableFilm, values: Floats) -> AdjustableFilm:
-        curve = film.curves[index]
-        points = np.array(curve.points) + waves.T @ _in_space(values.reshape(len(waves), -1))
-        return _replaced(film, index, replace(curve, points=_tuples(points)))
-
-    return apply
-
-
-def _curve_waved(index: int, first: int) -> Change:
-    """Waves by arc length, added to those the curve is placed with; without the even one where it is moved anyway."""
-
-    def apply(film: AdjustableFilm, values: Floats) -> AdjustableFilm:
-        curve = film.curves[index]
-        place = curve.place or Place()
-        rows = np.zeros((2 * MOST_WAVES + 1, 3))
-        rows[: len(place.waves)] = np.array(place.waves).reshape(-1, 3)
-        rows[first:] += _in_space(values.reshape(len(rows) - first, -1))
-        waves = _tuples(rows) if rows.any() else ()
-        return _replaced(film, index, replace(curve, place=replace(place, waves=waves)))
-
-    return apply
-
-
-def _with_curvature(film: AdjustableFilm, values: Floats) -> AdjustableFilm:
-    return replace(film, mean_curvature=(film.mean_curvature or 0.0) + float(values[0]))
