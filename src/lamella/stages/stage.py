@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from lamella.base.message import Message
 from lamella.base.progress import Progress
@@ -18,7 +18,10 @@ from lamella.project.tables import Project
 from lamella.stages.figure import Figure
 from lamella.stages.memory import Memory, content_key
 from lamella.surface.surface import Surface
-from lamella.view.scene.scene import Shown
+
+if TYPE_CHECKING:
+    from lamella.view.scene.scene import Shown
+
 
 Out = TypeVar("Out")
 Made = TypeVar("Made")

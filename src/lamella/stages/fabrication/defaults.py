@@ -52,6 +52,11 @@ def slots_by_erection(project: Project) -> bool:
     return project.erection is not None and not given and not section_of(project).level
 
 
+def usual_slot_width(project: Project) -> float:
+    """Width of its slots that nothing but the project itself decides, m."""
+    return project.fabrication.slot_width or default_slot_width(project.lamella.thickness)
+
+
 def filled_measures(project: Project, surface: Surface[Any], slot_width: float) -> Project:
     """The project with its slots' width, m, where it has none, and what follows from it."""
     cut = project.fabrication
@@ -120,7 +125,7 @@ def splice_room(project: Project) -> float:
         return 0.0
     from lamella.hardware.splices import splice_length
 
-    slot_width = project.fabrication.slot_width or default_slot_width(project.lamella.thickness)
+    slot_width = usual_slot_width(project)
     return splice_length(joint_rules(project, project.joint)) / 2 + slot_width + SAME
 
 

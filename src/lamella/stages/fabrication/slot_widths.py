@@ -16,11 +16,10 @@ from lamella.base.progress import Progress, Report
 from lamella.base.wording import rounded
 from lamella.erection.erect import erect
 from lamella.erection.erection import Erection
-from lamella.fabrication.defaults import default_slot_width
 from lamella.network.network_part import network_part
 from lamella.segments.segments import Segments
 from lamella.stages.driven_net import driven_net
-from lamella.stages.fabrication.defaults import filled_measures, slots_by_erection
+from lamella.stages.fabrication.defaults import filled_measures, usual_slot_width
 from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.keys import keys
 from lamella.stages.lamellas.stage import strips_of
@@ -36,7 +35,7 @@ Make = Callable[[Upstream], FabricationOutput]
 
 
 def with_slots(up: Upstream, make: Make, progress: Progress) -> FabricationOutput:
-    """Parts of a project; where nothing says how wide slots are, as wide as the erection needs them.
+    """Parts of a project in which nothing says how wide slots are: as wide as the erection needs them.
 
     Parameters
     ----------
@@ -46,9 +45,7 @@ def with_slots(up: Upstream, make: Make, progress: Progress) -> FabricationOutpu
     progress : callable
     """
     project = up.project
-    usual = project.fabrication.slot_width or default_slot_width(project.lamella.thickness)
-    if not slots_by_erection(project):
-        return replace(make(up), slot_width=usual)
+    usual = usual_slot_width(project)
     lamellas: Lamellas = up.outputs["lamellas"].lamellas
     width, divided = usual, project.segments is not None
     if up.checking and way_takes_long(up):

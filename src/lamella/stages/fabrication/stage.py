@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
@@ -19,13 +20,16 @@ from lamella.stages.fabrication.defaults import (
     cut_options,
     filled_measures,
     slots_by_erection,
+    usual_slot_width,
 )
 from lamella.stages.fabrication.figures import FIGURES, REPORT
 from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.keys import with_keys
 from lamella.stages.stage import File, Stage, Upstream
 from lamella.surface.surface import Surface
-from lamella.view.scene.scene import Shown
+
+if TYPE_CHECKING:
+    from lamella.view.scene.scene import Shown
 
 
 class FabricationStage(Stage[FabricationOutput]):
@@ -84,6 +88,10 @@ class FabricationStage(Stage[FabricationOutput]):
 
     def run(self, up: Upstream, progress: Progress) -> FabricationOutput:
         from lamella.stages.fabrication.making import made
+
+        if not slots_by_erection(up.project):
+            return replace(made(up), slot_width=usual_slot_width(up.project))
+        # the beam model, which slots of a given width do without
         from lamella.stages.fabrication.slot_widths import with_slots
 
         return with_slots(up, made, progress)
@@ -97,7 +105,7 @@ class FabricationStage(Stage[FabricationOutput]):
     def warnings(self, out: FabricationOutput, up: Upstream, progress: Progress) -> Iterator[Message]:
         named = ("fabrication.end_distance", "fabrication.hub_radius")
         yield from (with_keys(warning, *named) for warning in out.parts.warnings)
-        yield from out.hardware.warnings
+        yield from (with_keys(warning, "network.minimum_length") for warning in out.hardware.warnings)
         yield from out.notes
         yield from out.segments.warnings
         if up.project.joint is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
@@ -27,7 +27,9 @@ from lamella.strip.lamellas import Lamellas, largest_utilisation, make_lamellas
 from lamella.strip.layer_curves import check_layer_curves
 from lamella.strip.sizing import largest_measures
 from lamella.surface.surface import Surface
-from lamella.view.scene.scene import Shown
+
+if TYPE_CHECKING:
+    from lamella.view.scene.scene import Shown
 
 
 class LamellasStage(Stage[LamellasOutput]):

@@ -29,12 +29,12 @@ from lamella.stages.unit_first import unit_first
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.surface import Surface
 from lamella.surface.umbilic import umbilic_reason
-from lamella.view.scene.scene import Shown
 
 if TYPE_CHECKING:
     from lamella.network.elements.element_network import ElementNetwork, NetPlan
     from lamella.network.elements.net_coordinates import NetCoordinates
     from lamella.network.streamlines.streamline_network import TracedNetwork
+    from lamella.view.scene.scene import Shown
 
 
 class NetworkStage(Stage[NetworkOutput]):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lamella import __version__
 from lamella.base.drawing_origin import drawing_origin
@@ -19,7 +19,10 @@ from lamella.stages.stage import File, Missing, Stage, Upstream
 from lamella.stages.structure.figures import FIGURES, REPORT
 from lamella.stages.structure.output import StructureOutput
 from lamella.surface.surface import Surface
-from lamella.view.scene.scene import Shown
+
+if TYPE_CHECKING:
+    from lamella.view.scene.scene import Shown
+
 
 MOST_CHECKED = 20_000
 """Elements of lamellas times cases that are analysed in a few seconds."""

@@ -23,10 +23,10 @@ from lamella.stages.surface.surface_of_table import make_surface
 from lamella.stages.surface.warnings import size_warnings, surface_file_warnings
 from lamella.surface.closed_forms.closed_form import ClosedForm
 from lamella.surface.surface import Surface
-from lamella.view.scene.scene import Shown
 
 if TYPE_CHECKING:
     from lamella.stages.surface.adjusted_table import AdjustedTable
+    from lamella.view.scene.scene import Shown
 
 
 class SurfaceStage(Stage[SurfaceOutput]):
