@@ -117,7 +117,7 @@ def _notes(found: EdgeBeamAxes, ids: tuple[str, ...]) -> list[Message]:
             Message(
                 "ends_without_plate",
                 f"{found.loose} of {every} at edge beams have no room for an end plate, and no joint holds them: leave "
-                "these short lamellas out by a larger minimum_length, or choose another number of cells",
+                "these short lamellas out, or choose another number of cells",
             )
         )
     if found.askew:

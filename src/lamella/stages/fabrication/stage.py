@@ -105,7 +105,9 @@ class FabricationStage(Stage[FabricationOutput]):
     def warnings(self, out: FabricationOutput, up: Upstream, progress: Progress) -> Iterator[Message]:
         named = ("fabrication.end_distance", "fabrication.hub_radius")
         yield from (with_keys(warning, *named) for warning in out.parts.warnings)
-        yield from (with_keys(warning, "network.minimum_length") for warning in out.hardware.warnings)
+        for warning in out.hardware.warnings:
+            by = "short lamellas out by a larger network.minimum_length"
+            yield Message(warning.key, warning.replace("short lamellas out", by))
         yield from out.notes
         yield from out.segments.warnings
         if up.project.joint is not None:
