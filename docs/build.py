@@ -30,6 +30,7 @@ from lamella.project.driver_table import (
     MovedSupportsTable,
     RadiusTable,
 )
+from lamella.project.lifting_table import LiftingTable
 from lamella.project.list_tables import LIST_TABLES
 from lamella.project.load_tables import RegionTable
 from lamella.project.structure_analyses_tables import DisplacementTable, FailureTable, SensitivityTable, VariantTable
@@ -167,6 +168,7 @@ FURTHER_INNER: dict[str, dict[str, type[Table]]] = {
         "driver = {radius = {...}}": RadiusTable,
         "driver = {supports = {...}}": MovedSupportsTable,
         "driver = {angles = {...}}": AngleRangeTable,
+        "lifting = {...}": LiftingTable,
     },
     "structure": {
         "factors = {...}": PartialFactorsTable,

@@ -121,6 +121,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
         "structure.model",
         "fabrication",
         "hardware",
+        "segments",
         "files",
         "files.write",
     ),

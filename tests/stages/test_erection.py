@@ -342,3 +342,37 @@ def test_segments_are_driven_by_their_angles() -> None:
     with pytest.raises(InputError) as caught:
         lamella.compute(lamella.parse_project(project), until="erection")
     assert caught.value.where == "erection.driver"
+
+
+def test_lifted_by_a_crane(tmp_path: Path) -> None:
+    """Figures, list and warning tell the same; what braces it least is named."""
+    project = driven(lifting={"points": [4]}) | {"lamella": {}, "joint": {}, "cables": {"every": 1}}
+    results = lamella.compute(lamella.parse_project(project), until="erection")
+    lamella.write(results, tmp_path / "out")
+    figures = results.summary["erection"]["lifting"]
+    told = rows(tmp_path / "out" / "erection" / "lifting.csv")
+    assert [one["bracing"] for one in figures] == [row["bracing"] for row in told] == ["none", "cables"]
+    for one, row in zip(figures, told, strict=True):
+        assert [str(node) for node in one["nodes"]] == row["nodes"].split(";")
+        assert float(row["deflection_m"]) == pytest.approx(one["deflection"], abs=1e-4)
+        assert max(map(float, row["slings_n"].split(";"))) == pytest.approx(one["sling_max"], abs=0.1)
+    assert [one["holds"] for one in figures] == [False, True]
+    (warning,) = [text for text in results.summary["warnings"] if text.key == "lifting_needs_bracing"]
+    assert warning.endswith("cables")
+
+
+@pytest.mark.parametrize(
+    ("table", "key"),
+    [
+        ({"points": [5]}, "points"),
+        ({"points": [3, 3]}, "points"),
+        ({"points": []}, "points"),
+        ({"at": [[0, 0, 0]]}, "at"),
+        ({"limit": 0.0}, "limit"),
+        ({"hook": -1.0}, "hook"),
+    ],
+)
+def test_refused_lifting(table: dict[str, object], key: str) -> None:
+    with pytest.raises(InputError) as caught:
+        lamella.parse_project(driven(lifting=table))
+    assert caught.value.where == f"erection.lifting.{key}"

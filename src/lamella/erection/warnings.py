@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lamella.base.message import Message
 from lamella.base.wording import counted
+from lamella.erection.bracings import NONE
+from lamella.erection.lift_cases import LiftCase, least_bracing
 from lamella.erection.slot_room import largest_turn
 
 if TYPE_CHECKING:
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
 FOLDED_ANGLE = 15.0
 # of the net's size: what springs back farther needs bracing
 SPRINGY = 0.02
+# ids that a message names
+SEGMENTS_NAMED = 5
 
 
 def erection_warnings(erection: Erection) -> Iterator[Message]:
@@ -109,6 +113,40 @@ def spring_back_warning(erection: Erection) -> Iterator[Message]:
             f"with its joints locked and nothing else holding it the net springs back by {erection.spring_back:.3g} m: "
             "brace it before it is moved, by diagonals or edge beams",
         )
+
+
+def lifting_warnings(lifts: Mapping[str, Sequence[LiftCase]]) -> Iterator[Message]:
+    """Of nets that have to be braced before they are lifted: a message a number of points.
+
+    Parameters
+    ----------
+    lifts : mapping
+        Cases by the id of the segment, "" for the whole net.
+    """
+    for points in dict.fromkeys(case.points for cases in lifts.values() for case in cases):
+        needed = {
+            segment: least_bracing(cases, points)
+            for segment, cases in lifts.items()
+            if any(case.points == points for case in cases)
+        }
+        soft = {segment: bracing for segment, bracing in needed.items() if bracing != NONE}
+        if not soft:
+            continue
+        of_it = "the net" if "" in soft else f"{len(soft)} of {counted(len(needed), 'segment')}"
+        ways = []
+        for bracing in dict.fromkeys(soft.values()):
+            ids = [segment for segment, one in soft.items() if one == bracing and segment]
+            those = f" ({', '.join(ids[:SEGMENTS_NAMED])}{', ...' if len(ids) > SEGMENTS_NAMED else ''})" if ids else ""
+            ways.append(("no bracing that the project has is enough" if bracing is None else _named(bracing)) + those)
+        yield Message(
+            "lifting_needs_bracing",
+            f"lifted at {points} points with joints locked alone {of_it} would not keep the shape; needed before: "
+            + "; ".join(ways),
+        )
+
+
+def _named(bracing: str) -> str:
+    return {"edge_beams": "edge beams", "both": "cables and edge beams"}.get(bracing, bracing)
 
 
 def slot_warning(erection: Erection, slot_width: float) -> Iterator[Message]:

@@ -8,6 +8,7 @@ from pydantic import Field, field_serializer, model_validator
 
 from lamella.base.number_lists import Refusal
 from lamella.project.driver_table import ANGLES, DriverTable, check_points
+from lamella.project.lifting_table import LiftingTable
 from lamella.project.values import Points, Table, number
 
 
@@ -47,6 +48,12 @@ class ErectionTable(Table):
         "Points, each of the nearest node, that props raise on the way from where they lie to their designed height.",
         "m",
         default=None,
+    )
+
+    lifting: LiftingTable | None = Field(
+        default=None,
+        description=" ".join((LiftingTable.__doc__ or "").split()),
+        examples=[{"points": [2, 3, 4]}],
     )
 
     @field_serializer("driver", mode="plain")

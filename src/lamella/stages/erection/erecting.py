@@ -4,17 +4,27 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
+from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report
 from lamella.erection.braced import spring_backs
+from lamella.erection.bracings import Bracings
 from lamella.erection.erection import Erection
+from lamella.erection.lift_cases import LiftCase, LiftRules, lift_cases
+from lamella.hardware.axis_ends import EdgeBeamAxes
+from lamella.network.network_part import network_part
 from lamella.segments.segments import Segment, Segments
+from lamella.stages.driving_devices import nodes_near
 from lamella.stages.erection.output import ErectedSegment, ErectionOutput
 from lamella.stages.fabrication.defaults import cable_rules
 from lamella.stages.fabrication.making import edge_beams_of
 from lamella.stages.fabrication.slot_widths import erected_net, segment_lamellas
 from lamella.stages.keys import keys
 from lamella.stages.stage import Upstream
+from lamella.strip.lamellas import Lamellas
+from lamella.structure.actions.hardware_masses import hardware_masses
 
 
 def erected(up: Upstream, progress: Progress) -> ErectionOutput:
@@ -27,9 +37,15 @@ def erected(up: Upstream, progress: Progress) -> ErectionOutput:
     """
     divided: Segments = up.outputs["fabrication"].segments
     if len(divided.segments) < 2:
-        return ErectionOutput((ErectedSegment("", 0.0, _whole(up, progress)),))
+        return ErectionOutput((_whole(up, progress),))
     table = up.project.erection
     assert table is not None
+    if table.lifting is not None and table.lifting.at is not None:
+        raise InputError(
+            f"the net is divided into {len(divided.segments)} segments, which are not lifted at the same points",
+            "write points = [2, 3, 4] for nodes of each segment's own",
+            "erection.lifting.at",
+        )
     if table.driver.kind or table.on_ground:
         raise InputError(
             f"the net is divided into {len(divided.segments)} segments, each of which is driven by its joints' angles",
@@ -49,27 +65,63 @@ def erected(up: Upstream, progress: Progress) -> ErectionOutput:
     return ErectionOutput(tuple(found))
 
 
-def _whole(up: Upstream, progress: Progress) -> Erection:
-    lamellas, project = up.outputs["lamellas"].lamellas, up.project
-    table = project.erection
+def _whole(up: Upstream, progress: Progress) -> ErectedSegment:
+    lamellas = up.outputs["lamellas"].lamellas
+    bracings = _bracings(up, edge_beams_of(up, lamellas))
+    made = _braced(up, erected_net(up, lamellas, progress), bracings, progress)
+    return ErectedSegment("", 0.0, made, lifts=_lifts(up, lamellas, bracings, _masses(up), progress))
+
+
+def _bracings(up: Upstream, edge_beams: EdgeBeamAxes | None) -> Bracings:
+    project = up.project
+    return Bracings(cable_rules(project), edge_beams, project.known_materials())
+
+
+def _braced(up: Upstream, made: Erection, bracings: Bracings, progress: Progress) -> Erection:
+    table = up.project.erection
     assert table is not None
-    made = erected_net(up, lamellas, progress)
     with keys("erection", prestress="cables.prestress"):
-        braced = spring_backs(
-            lamellas,
-            elements=table.elements,
-            cables=cable_rules(project),
-            edge_beams=edge_beams_of(up, lamellas),
-            materials=project.known_materials(),
-            progress=progress,
-        )
-    return replace(made, braced=braced)
+        found = spring_backs(made.model.lamellas, bracings, elements=table.elements, progress=progress)
+    return replace(made, braced=found)
+
+
+def _masses(up: Upstream) -> Floats:
+    """Of the hardware at each node of the whole net, kg."""
+    network = up.outputs["network"].network
+    return hardware_masses(network, up.outputs["fabrication"].hardware, ("cable", "edge_beam"))
+
+
+def _lifts(
+    up: Upstream, lamellas: Lamellas, bracings: Bracings, masses: Floats, progress: Progress
+) -> tuple[LiftCase, ...]:
+    table = up.project.erection
+    assert table is not None
+    asked = table.lifting
+    if asked is None:
+        return ()
+    progress(Report.step("lifted under its own weight"))
+    nodes = None
+    with keys("erection.lifting"):
+        if asked.at is not None:
+            nodes = np.unique(nodes_near(up, lamellas.network, asked.at, "at"))
+            if len(nodes) < 2:
+                raise InputError("all these points are nearest to one node", "give points farther apart", "at")
+        rules = LiftRules(asked.points, nodes, asked.hook, asked.diameter, asked.limit)
+        return lift_cases(lamellas, rules, bracings, elements=table.elements, node_masses=masses, progress=progress)
 
 
 def _segment(up: Upstream, segment: Segment, divided: Segments, number: int, progress: Progress) -> ErectedSegment:
-    """A segment; what cannot be erected is told, and the others go on."""
+    """A segment; what cannot be erected is told, and the others go on.
+
+    Edge beams are mounted on the whole net; what braces a segment are its cables.
+    """
+    bracings = _bracings(up, None)
     try:
-        made = erected_net(up, segment_lamellas(up, divided, number), progress, segment.id)
+        lamellas = segment_lamellas(up, divided, number)
+        made = _braced(up, erected_net(up, lamellas, progress, segment.id), bracings, progress)
     except InputError as error:
         return ErectedSegment(segment.id, segment.mass, None, error.message)
-    return ErectedSegment(segment.id, segment.mass, made)
+    nodes = network_part(up.outputs["network"].network, divided.of_node == number).nodes
+    return ErectedSegment(
+        segment.id, segment.mass, made, lifts=_lifts(up, lamellas, bracings, _masses(up)[nodes], progress)
+    )

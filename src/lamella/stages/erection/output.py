@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from lamella.base.message import Message
 from lamella.erection.erection import Erection
+from lamella.erection.lift_cases import LiftCase
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,12 +22,15 @@ class ErectedSegment:
     made : Erection or None
     fault : str
         Why there is none.
+    lifts : tuple of LiftCase
+        Where it is asked for.
     """
 
     id: str
     mass: float
     made: Erection | None
     fault: str = ""
+    lifts: tuple[LiftCase, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

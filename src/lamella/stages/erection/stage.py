@@ -35,6 +35,10 @@ class ErectionStage(Stage["ErectionOutput"]):
         ("erection/path.csv", "places of all nodes in every state"),
         ("erection/flat.dxf", "assembly drawing of the flat state"),
         ("erection/forces.csv", "forces of a driver on site in every state, where there is one"),
+        (
+            "erection/lifting.csv",
+            "where `erection.lifting` is given: deflections, stresses, slings in the crane",
+        ),
     )
     figures = FIGURES
     report = ("Erection", REPORT)
@@ -72,7 +76,7 @@ class ErectionStage(Stage["ErectionOutput"]):
         return f"{pieces}flat on {length:.3g} x {width:.3g} m, springs back by {figures['spring_back']:.3g} m"
 
     def warnings(self, out: ErectionOutput, up: Upstream, progress: Progress) -> Iterator[Message]:
-        from lamella.erection.warnings import slot_warning, spring_back_warning
+        from lamella.erection.warnings import lifting_warnings, slot_warning, spring_back_warning
 
         project = up.project
         slot = project.fabrication.slot_width or (project.joint.slot_width if project.joint else None)
@@ -87,15 +91,20 @@ class ErectionStage(Stage["ErectionOutput"]):
                 said += spring_back_warning(one.made)
             for message in said:
                 yield Message(message.key, f"segment {one.id}: {message}") if one.id else message
+        yield from lifting_warnings({one.id: one.lifts for one in out.segments})
 
     def files(self, out: ErectionOutput, up: Upstream) -> Iterator[File]:
         from lamella.erection.flat_drawing import write_flat
         from lamella.erection.forces_csv import write_forces
+        from lamella.erection.lifting_csv import write_lifting
         from lamella.erection.path_csv import write_path
         from lamella.erection.states_json import write_states
 
         signed: Any = {"name": up.project.name, "version": __version__}
         origin = np.array(drawing_origin(up.surface), float)
+        if any(one.lifts for one in out.segments):
+            lifts = [(one.id, one.lifts) for one in out.segments]
+            yield File("erection/lifting.csv", partial(write_lifting, lifts=lifts, **signed))
         for one in out.segments:
             if one.made is None:
                 continue
