@@ -11,12 +11,16 @@ import pytest
 
 import lamella
 from lamella import InputError, Section, compute, parse_project
+from lamella.fabrication.cut_length import segment_lengths
 from lamella.fabrication.drawing import write_drawings
+from lamella.fabrication.flat import outline_points
 from lamella.fabrication.parts import make_parts
 from lamella.fabrication.read_back import read_slots
+from lamella.files.write.dxf_text import BlockWriter, Placed
 from lamella.hardware.axis_ends import EdgeBeamAxes
 from lamella.hardware.beam_axes import edge_beam_axes
 from lamella.hardware.edge_rules import EdgeBeamRules
+from lamella.hardware.fold_drawing import draw_folds
 from lamella.hardware.make_hardware import Joined, half_joint_of, make_hardware
 from lamella.hardware.rims import rim_pieces
 from lamella.hardware.rules import JointRules
@@ -107,6 +111,88 @@ def test_beams_keep_their_distance_from_the_rim_and_their_length(name: str) -> N
     # closed forms of revolution have no corners, a square's sides go on in its corners by the distance
     corners = 2 * sum(not axis.piece.closed for axis in axes.axes) * axes.axes[0].distance
     assert sum(item.quantity * item.length for item in beams) == pytest.approx(total + corners, rel=1e-3)
+
+
+def test_a_bar_around_a_ring_is_cut_as_a_cone_unrolled() -> None:
+    """A bar along the normals of a circle of radius R is a cone, which is exactly an annulus of radii |1/kn| + z."""
+    axes, made = beams_of("rings", FLAT)
+    width = FLAT.flat[0]
+    bars = made.hardware.of("edge_beam")
+    assert all(item.plate for item in bars)
+    for item in bars:
+        (frame, point) = item.places.axes[0], item.places.origins[0]
+        axis = min(axes.axes, key=lambda one: abs(one.piece.points[0, 2] - point[2]))
+        assert axis.piece.closed
+        radius = np.hypot(*point[:2])
+        outwards = np.append(point[:2] / radius, 0.0)
+        bend = -(frame[1] @ outwards) / radius
+        flat = outline_points(item.cut.outline, 1)[:-1]
+        half = len(flat) // 2
+        # the middle of the whole of it, along y from the middle of the bar
+        heading = item.length * bend / 2
+        away = np.hypot(flat[:, 0], flat[:, 1] - 1 / bend)
+        side = np.where(np.arange(len(flat)) < half, -width / 2, width / 2)
+        np.testing.assert_allclose(away, np.abs(1 / bend - side), atol=2e-5)
+        for edge, z in ((flat[:half], -width / 2), (flat[half:], width / 2)):
+            angle = np.ptp(np.arctan2(edge[:, 0], np.abs(edge[:, 1] - 1 / bend)))
+            assert angle == pytest.approx(2 * abs(heading), rel=1e-4)
+            # the true length of that edge of the cone
+            assert angle * abs(1 / bend - z) == pytest.approx(item.length * (1 - z * bend), rel=1e-4)
+        assert item.cut.area == pytest.approx(item.length * width, rel=1e-4)
+
+
+def test_a_twisted_bar_is_as_long_as_its_edges_but_for_the_twist() -> None:
+    """Edges of a bar twisted by tg are longer by tg^2 w^2 / 8 than those of the flat one, mitred or not."""
+    for name in ("wavy rim", "skew square"):
+        _, made = beams_of(name, FLAT)
+        for item in made.hardware.of("edge_beam"):
+            if item.pattern is None:
+                # straight towards the normal: bought as it is
+                assert "cut straight" in item.description
+                continue
+            (shape,) = item.shape
+            twist = float(item.description.split("up to ")[1].split()[0]) if "up to" in item.description else 0.0
+            strain = np.radians(twist) ** 2 * FLAT.flat[0] ** 2 / 8
+            outline = item.cut.outline
+            half = len(outline) // 2
+            for part, z in ((outline[:half], -0.05), (outline[half:], 0.05)):
+                lengths = segment_lengths(np.vstack([part, part[:1]]))[: half - 1]
+                # the bar stands square to its own axis
+                along = np.gradient(shape.points, axis=0, edge_order=2)
+                along /= np.linalg.norm(along, axis=1)[:, None]
+                up = shape.up - np.einsum("ij,ij->i", shape.up, along)[:, None] * along
+                up /= np.linalg.norm(up, axis=1)[:, None]
+                true = np.linalg.norm(np.diff(shape.points + z * up, axis=0), axis=1).sum()
+                assert -1e-4 < true / lengths.sum() - 1 < strain + 1e-4
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_folds_are_drawn_with_their_angle_on_the_leg(turned: bool, tmp_path: Path) -> None:
+    """The middle of the fold across the plate, its angle in strokes beside it on the plate, clear of the holes."""
+    _, made = beams_of("wavy rim", TUBE)
+    for item in made.hardware.of("end plate"):
+        (fold,) = item.folds
+        writer = BlockWriter("")
+        draw_folds(writer, item, turned=turned)
+        drawn = Placed(writer.block(), 0.0, 0.0)
+        points = drawn.points @ (np.array([[0, -1], [1, 0]]) if turned else np.eye(2)) / 1e3
+        layers = {one.layer: [] for one in drawn.block.drawn}
+        for one in drawn.block.drawn:
+            layers[one.layer].append(points[one.first : one.end])
+        (line,) = layers["MARK"]
+        outline = item.cut.outline[:, :2]
+        low, high = outline.min(axis=0), outline.max(axis=0)
+        np.testing.assert_allclose(np.sort(line[:, 1]), [low[1], high[1]], atol=1e-9)
+        # from the inner end: the leg, and half of the fold's middle surface
+        thickness, legs = TUBE.end_plate, item.description.split("folded by ")[1].split()[0]
+        assert np.degrees(fold.angle) == pytest.approx(float(legs), abs=1e-9)
+        bent = 1.5 * thickness * fold.angle
+        leg = high[0] - line[0, 0] - bent / 2 + 1.5 * thickness * np.tan(fold.angle / 2)
+        assert leg == pytest.approx(TUBE.end_plate_leg, abs=1e-9) or leg < TUBE.end_plate_leg
+        text = np.concatenate(layers["TEXT"])
+        assert (text > [line[0, 0] + fold.radius, low[1]]).all()
+        assert (text < high).all()
+        assert fold.text == f"UP {float(legs):g}"
 
 
 def test_a_square_of_straight_tubes_is_mitred() -> None:

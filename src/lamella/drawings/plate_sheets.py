@@ -86,6 +86,7 @@ def _draw(page: Page, words: Terms, item: Item, room: tuple[float, float, float,
     page.line(view.place(outline), "medium", closed=True)
     for hole in item.cut.holes:
         page.line(view.place(outline_points(hole, PLATE_ARCS)), "medium", closed=True)
+    _folds(page, words, view, item)
     corners = np.array([least, [most[0], least[1]], most])
     away = -FIRST_ROW - (SECOND_ROW - FIRST_ROW) * np.array([_steps(page, words, view, item, axis) for axis in (0, 1)])
     view.dimension(page, words, corners[[0, 1]], float(away[0]))
@@ -93,9 +94,20 @@ def _draw(page: Page, words: Terms, item: Item, room: tuple[float, float, float,
     _holes(page, words, view, item, least, most)
 
 
+def _folds(page: Page, words: Terms, view: View, item: Item) -> None:
+    """Lines of the folds, their sense, angle and inner radius along them."""
+    for fold in item.folds:
+        begin, end = view.place(fold.line)
+        page.line([begin, end], "centre")
+        text = words("fold_up", angle=words.number(float(np.degrees(fold.angle)), 2), radius=words.mm(fold.radius))
+        x, y = end
+        page.line([end, (x, y + 2), (x + 1, y + 2)], "fine")
+        page.label(text, x + 1.5, y + 2 - 0.3 * NOTE_EM, NOTE_EM)
+
+
 def _steps(page: Page, words: Terms, view: View, item: Item, axis: int) -> bool:
-    """Distances of the corners along an axis, below or to the right, where there are few and all have room."""
-    corners = item.cut.outline[:, :2]
+    """Distances of corners and folds along an axis, below or to the right, where there are few and all have room."""
+    corners = np.concatenate([item.cut.outline[:, :2], *(fold.line for fold in item.folds)])
     stops = np.unique(np.round(corners[:, axis], 7))
     told = [text_width(words.mm(step), TEXT_EM) + 2 for step in np.diff(stops).tolist()]
     if not 3 <= len(stops) <= MOST_CORNERS or item.cut.outline[:, 2].any() or (np.diff(stops) * view.mm < told).any():

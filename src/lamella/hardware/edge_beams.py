@@ -19,6 +19,7 @@ from lamella.base.message import Message
 from lamella.base.wording import counted
 from lamella.fabrication.flat import outline_points
 from lamella.hardware.axis_ends import BeamAxis, BeamEnds, EdgeBeamAxes, beside, extent
+from lamella.hardware.bar_pattern import bar_pattern
 from lamella.hardware.base_plates import base_plates
 from lamella.hardware.beam_axes import LEAST_ANGLE
 from lamella.hardware.bores import Bores
@@ -244,7 +245,21 @@ def _segment(axis: BeamAxis, low: float, high: float, mitred: tuple[bool, bool],
     places = Places(origin[None], own[None], (label,))
     text = f"{axis.beam.name}, {MM * shape.length:.1f} mm, {_bent_to(axis, kn, kg, tg)}"
     rules = axis.rules
-    return Item("edge", "edge_beam", text, rules.material, rules.density, (shape,), places, length=shape.length)
+    pattern = None
+    if not axis.beam.round and np.abs(kn).max() >= STRAIGHT:
+        pattern = bar_pattern(middle, curve.up, kn, axis.beam.height, 2 * axis.beam.reach, cuts)
+    return Item(
+        "edge",
+        "edge_beam",
+        text,
+        rules.material,
+        rules.density,
+        (shape,),
+        places,
+        plate=pattern is not None,
+        length=shape.length,
+        pattern=pattern,
+    )
 
 
 def _bend(points: Floats, up: Floats) -> tuple[Floats, Floats, Floats]:
@@ -253,10 +268,14 @@ def _bend(points: Floats, up: Floats) -> tuple[Floats, Floats, Floats]:
     ahead = np.diff(points, axis=0) / step
     half = (step[1:] + step[:-1]) / 2
     turn = (ahead[1:] - ahead[:-1]) / half
-    normal = up[1:-1]
-    out = np.cross(ahead[1:] + ahead[:-1], normal)
-    out /= np.linalg.norm(out, axis=1)[:, None]
-    twist = (up[2:] - up[:-2]) / (2 * half)
+    # beside a rim along which the surface twists the axis is not square to the rim's normals
+    along = np.concatenate([ahead[:1], ahead[1:] + ahead[:-1], ahead[-1:]])
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    square = up - np.einsum("ij,ij->i", up, along)[:, None] * along
+    square /= np.linalg.norm(square, axis=1)[:, None]
+    normal = square[1:-1]
+    out = np.cross(along[1:-1], normal)
+    twist = (square[2:] - square[:-2]) / (2 * half)
     return tuple(np.einsum("ij,ij->i", one, two) for one, two in ((turn, normal), (-turn, out), (twist, out)))
 
 

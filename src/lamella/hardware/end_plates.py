@@ -192,7 +192,7 @@ class _OnAxis:
             places,
             plate=True,
             bent=folded_plates(plates, flat, places),
-            marks=plates.marks(),
+            folds=plates.folds(),
         )
 
     def bores(self, joints: JointRules) -> Bores:

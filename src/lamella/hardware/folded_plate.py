@@ -9,7 +9,7 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.fabrication.flat import outline_points
 from lamella.hardware.edge_rules import END_PITCH, FOLD_BEND
-from lamella.hardware.item import Places
+from lamella.hardware.item import Fold, Places
 from lamella.hardware.shape import Bent, Prism, circle, rectangle
 
 FINE = 0.002
@@ -48,10 +48,11 @@ class FoldedPlate:
         half = self.thickness / 2
         return Prism(rectangle(length, self.height, (length / 2, 0.0)), -half, half, holes)
 
-    def marks(self) -> tuple[Floats, ...]:
-        """The middle of the fold, a line across the plate."""
+    def folds(self) -> tuple[Fold, ...]:
+        """The fold: its middle is a line across the plate."""
         x = self.straight[0] + self.radius * self.fold / 2
-        return (np.array([[x, -self.height / 2], [x, self.height / 2]]),)
+        line = np.array([[x, -self.height / 2], [x, self.height / 2]])
+        return (Fold(line, self.fold, FOLD_BEND * self.thickness),)
 
     def folded(self, flat: Floats, offset: float) -> Floats:
         """Points (v, 2) of the flat plate, `offset` above its middle, as it is folded, (v, 3), m.

@@ -49,6 +49,30 @@ class Places:
         return np.asarray(self.origins[:, None] + np.einsum("vi,qij->qvj", points, self.axes))
 
 
+@dataclass(frozen=True, eq=False)
+class Fold:
+    """A fold of a flat plate.
+
+    Attributes
+    ----------
+    line : (2, 2)
+        Middle of the fold across the plate as it is drawn, m.
+    angle : float
+        By which it is folded, up: towards who looks at the drawing, rad.
+    radius : float
+        Inside, m.
+    """
+
+    line: Floats
+    angle: float
+    radius: float
+
+    @property
+    def text(self) -> str:
+        """What is engraved beside it: up, by so many degrees."""
+        return f"UP {round(float(np.degrees(self.angle)), 2):g}"
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Item(Result):
     """One kind of part: all its pieces are equal.
@@ -74,8 +98,10 @@ class Item(Result):
         Of what is bought by the metre, m; 0 where that says nothing.
     bent : tuple of Bent
         Plates that are bent into place: each one as it is built; else empty.
-    marks : tuple of (k, 2)
-        Lines that are engraved on a plate, m: where it is folded.
+    folds : tuple of Fold
+        Where and how a plate is folded.
+    pattern : Prism, optional
+        What a bar is cut as before it is bent and twisted; of what has its shape when it is cut it is None.
     """
 
     id: str
@@ -88,7 +114,8 @@ class Item(Result):
     plate: bool = False
     length: float = 0.0
     bent: tuple[Bent, ...] = ()
-    marks: tuple[Floats, ...] = ()
+    folds: tuple[Fold, ...] = ()
+    pattern: Prism | None = None
 
     def _line(self) -> str:
         return f"{self.id}: {self.quantity} x {self.description}, {self.mass:.4g} kg each"
@@ -117,6 +144,8 @@ class Item(Result):
         ValueError
             It is none.
         """
+        if self.pattern is not None:
+            return self.pattern
         (shape,) = self.shape
         if not isinstance(shape, Prism):
             raise ValueError(f"{self.id} is no plate")

@@ -112,7 +112,7 @@ def make_hardware(
         blocks = shear_blocks(lamellas, rules, keep_clear, _spliced(parts, lamellas, rules))
         items += blocks.items
         bores.append(blocks.bores)
-        left_out = 0 if beams is None else len(beams.left_out)
+        left_out = 0 if beams is None else int((beams.left_out.inner > 0).sum())
         notes += _without(blocks.cells_without - left_out, len(network.cell_edges), rules)
     drilled_parts = drilled(parts, lamellas, Bores.of(bores))
     if rules.splice:

@@ -11,6 +11,7 @@ from lamella.base.arrays import Floats
 from lamella.fabrication.contours import PLAIN, CutOptions, draw_contours
 from lamella.fabrication.drawing import SHEET_SPACE, sheet_block
 from lamella.files.write.dxf_text import Block, BlockWriter, DxfFile, Placed
+from lamella.hardware.fold_drawing import draw_folds
 from lamella.hardware.item import Item
 from lamella.hardware.plate_sheets import PlateSheets, sheet_rows
 from lamella.hardware.rules import MM
@@ -54,9 +55,7 @@ def _block(item: Item, owner: str, turned: bool, options: CutOptions) -> Block:
     writer = BlockWriter(owner)
     holes = tuple(_turned(hole, turned) for hole in item.cut.holes)
     draw_contours(writer, _turned(item.cut.outline, turned), holes, options, tag=item.id)
-    for line in item.marks:
-        flat = np.column_stack([line, np.zeros(len(line))])
-        writer.polyline("MARK", MM * _turned(flat, turned)[:, :2], closed=False, tag=item.id)
+    draw_folds(writer, item, turned=turned)
     return writer.block()
 
 

@@ -11,6 +11,7 @@ from lamella.fabrication.contours import PLAIN, CutOptions, draw_contours
 from lamella.fabrication.flat import outline_points
 from lamella.fabrication.stroke_font import text_strokes
 from lamella.files.write.dxf_text import Block, BlockWriter, DxfFile, Placed
+from lamella.hardware.fold_drawing import draw_folds
 from lamella.hardware.item import Hardware, Item
 from lamella.hardware.rules import MM
 
@@ -19,7 +20,7 @@ TEXT, SPACE = 0.008, 0.02
 
 
 def write_plates(path: Path, hardware: Hardware, options: CutOptions = PLAIN, *, name: str, version: str) -> None:
-    """Write the drawing: outlines and holes on layer CUT, folds on layer MARK, what a plate is on layer TEXT beside it.
+    """Write the drawing: outlines and holes on layer CUT, folds on layer MARK, angles and ids on layer TEXT.
 
     Entities carry extended data of the application "LAMELLA": the plate's id.
 
@@ -52,8 +53,7 @@ def _block(item: Item, owner: str, width: float, options: CutOptions) -> Block:
     writer = BlockWriter(owner)
     prism = item.cut
     draw_contours(writer, prism.outline, prism.holes, options, tag=item.id)
-    for line in item.marks:
-        writer.polyline("MARK", MM * line, closed=False, tag=item.id)
+    draw_folds(writer, item)
     left = float(outline_points(prism.outline)[:, 0].min())
     at = np.array([left + width + SPACE, -TEXT / 2])
     text = f"{item.id.upper()}  {item.quantity} PIECES  T {MM * item.thickness:g}  {item.material.upper()}"
