@@ -10,7 +10,7 @@ from lamella.hardware.item import Hardware, Item
 from lamella.hardware.shape import Sweep
 from lamella.network.network import Network
 
-PIECES = 16
+BAR_PIECES = 16
 """Pieces of a bar in a cell edge, each of which goes to its nearest node."""
 
 HALFWAY = 1e-6
@@ -37,7 +37,7 @@ def hardware_masses(network: Network, hardware: Hardware, without: tuple[str, ..
     items = [item for item in hardware if item.kind not in without and item.quantity]
     if not items:
         return masses
-    step = float(np.median(network.cell_edges)) / PIECES if len(network.cell_edges) else np.inf
+    step = float(np.median(network.cell_edges)) / BAR_PIECES if len(network.cell_edges) else np.inf
     spread = [_points(item, step) for item in items]
     points, each = (np.concatenate(one) for one in zip(*spread, strict=True))
     away, nearest = cKDTree(network.node_points).query(points, k=[1, min(2, len(masses))])
