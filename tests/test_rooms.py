@@ -132,6 +132,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
     "solid": ("base", "network", "strip", "fabrication", "hardware"),
     "drawings": ("base", "network", "strip", "fabrication", "hardware", "segments", "solid"),
     "view.scene": ("base", "surface"),
+    "view.render": ("base", "view.scene"),
     "view": (
         "base",
         *SURFACES,
@@ -165,6 +166,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
         *FILES,
         "view",
         "view.scene",
+        "view.render",
         "stages",
         *STAGES,
         "stages.run",

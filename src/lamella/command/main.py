@@ -19,6 +19,7 @@ from lamella.base.errors import InputError
 from lamella.base.progress import silent
 from lamella.base.wording import readable
 from lamella.command.optimise import add_optimise, run_optimise
+from lamella.command.picture import add_picture, run_picture
 from lamella.command.screen import Screen
 from lamella.command.study import add_study, run_study
 
@@ -32,6 +33,7 @@ twisting leave in the strips.
   lamella run unduloid.toml       compute it and write the folder out/unduloid
   lamella check unduloid.toml     only look for mistakes
   lamella study variants.toml     compute many variants of a project, and find the best
+  lamella picture unduloid.toml   draw it as a PNG file, without a screen
   lamella optimise net.obj ...    make a net of a quad mesh from elsewhere
 
 Open out/unduloid/report.html in a browser, model.3dm in Rhino, fabrication/*.dxf at the laser."""
@@ -120,6 +122,7 @@ def _parser() -> argparse.ArgumentParser:
 
     add_optimise(commands)
     add_study(commands)
+    add_picture(commands)
 
     examples = commands.add_parser("examples", help="list the examples, or copy them")
     examples.add_argument("names", nargs="*", metavar="NAME", help="with --copy: the examples to copy (default: all)")
@@ -246,6 +249,7 @@ _COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
     "new": _new,
     "optimise": run_optimise,
     "study": run_study,
+    "picture": run_picture,
     "examples": _examples,
     "schema": _schema,
 }

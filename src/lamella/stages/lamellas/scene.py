@@ -78,7 +78,7 @@ def _quantities(lamellas: Lamellas, kept: Thinned) -> tuple[Quantity, ...]:
     return (
         magnitude("utilisation", "Utilisation", "of strength", use, min(1.0, float(use.max(initial=0.0)))),
         magnitude("mises", "Von Mises stress", "MPa", lamellas.von_mises[some] * TO_MPA),
-        magnitude("layer", "Stress of layers beside", "MPa", lamellas.layer[some] * TO_MPA),
+        magnitude("layers", "Stress of layers beside", "MPa", lamellas.layer[some] * TO_MPA),
         *curvature_quantities(lamellas.network, some),
         magnitude("planarity", "Planarity score", "", _planarity(lamellas, kept), PLANARITY_HIGH, PLANARITY),
     )

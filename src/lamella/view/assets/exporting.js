@@ -10,10 +10,12 @@ export async function glbOf(drawn) {
   const root = new THREE.Group();
   root.rotation.x = -Math.PI / 2;
   for (const one of drawn) {
+    const parts = partsOf(one);
+    if (!parts.length) continue;
     const group = new THREE.Group();
     group.name = one.layer.name;
-    group.add(...partsOf(one));
-    if (group.children.length) root.add(group);
+    group.add(...parts);
+    root.add(group);
   }
   root.updateMatrixWorld(true);
   return new THREE.GLTFExporter().parseAsync(root, { binary: true, onlyVisible: false });
