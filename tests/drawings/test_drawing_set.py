@@ -15,12 +15,13 @@ import pytest
 import lamella
 from lamella import compute, parse_project
 from lamella.base.arrays import Floats
+from lamella.drawings import strip_sheets
 from lamella.drawings.built import Built
 from lamella.drawings.drawing_set import drawing_pages, drawings_pdf
-from lamella.drawings.page import PENS, Page
+from lamella.drawings.page import PENS, Label, Page
 from lamella.drawings.paper import PAPERS
 from lamella.drawings.pdf import pdf_bytes
-from lamella.drawings.strip_sheets import different_strips
+from lamella.drawings.strip_sheets import different_strips, strips_not_drawn
 from lamella.drawings.terms import terms
 from lamella.fabrication.flat import outline_points
 
@@ -105,7 +106,7 @@ def test_sheets_follow_from_the_net(pdf: pypdfium2.PdfDocument, pages: list[Page
 
 def test_every_strip_and_plate_is_drawn_once(pdf: pypdfium2.PdfDocument, pages: list[Page], built: Built) -> None:
     strips, plates = drawn(pdf, pages, EN("strips")), drawn(pdf, pages, EN("plates"))
-    labels = [built.parts.parts[k].label for k in different_strips(built)]
+    labels = [built.parts.parts[k].label for k in different_strips(built.parts)]
     assert {label: strips[label] for label in labels} == dict.fromkeys(labels, 1)
     cut = [item.id for item in built.hardware if item.plate]
     assert {one: plates[one] for one in cut} == dict.fromkeys(cut, 1)
@@ -115,14 +116,14 @@ def test_parts_list_has_every_part_and_their_mass(pdf: pypdfium2.PdfDocument, pa
     found = drawn(pdf, pages, EN("parts_list"))
     kinds = [item.id for item in built.hardware]
     assert {one: found[one] for one in kinds} == dict.fromkeys(kinds, 1)
-    groups = [", ".join(built.parts.parts[k].label for k in same) for same in different_strips(built).values()]
+    groups = [", ".join(built.parts.parts[k].label for k in same) for same in different_strips(built.parts).values()]
     assert {one: found[one] for one in groups} == dict.fromkeys(groups, 1)
     assert found[EN.number(built.parts.mass + built.hardware.mass, 1)] == 1
 
 
 def test_stations_of_slots_are_those_of_the_parts(pdf: pypdfium2.PdfDocument, pages: list[Page], built: Built) -> None:
     expected: Counter[str] = Counter()
-    for k in different_strips(built):
+    for k in different_strips(built.parts):
         part = built.parts.parts[k]
         expected.update(EN.mm(value - part.start) for value in [*part.slots, *part.holes[:, 0]])
     assert expected.total() > 50
@@ -132,7 +133,7 @@ def test_stations_of_slots_are_those_of_the_parts(pdf: pypdfium2.PdfDocument, pa
 def test_strips_are_drawn_in_the_scale_that_is_told(
     pdf: pypdfium2.PdfDocument, pages: list[Page], built: Built
 ) -> None:
-    straight = [built.parts.parts[k] for k in different_strips(built) if built.parts.parts[k].axis.is_arc]
+    straight = [built.parts.parts[k] for k in different_strips(built.parts) if built.parts.parts[k].axis.is_arc]
     assert straight
     widths: list[float] = []
     scale = None
@@ -216,3 +217,22 @@ def test_descriptions_of_hardware_are_translated(built: Built) -> None:
     for item in built.hardware:
         assert german.description(item.description) != item.description
     assert german.description("star washer 51.5 x 4 mm, 90 deg") == "Sternscheibe 51,5 x 4 mm, 90 Grad"
+
+
+def test_more_strips_than_are_drawn_are_told(built: Built, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first ones in the order of the part list, and how many there are; no word where all are drawn."""
+    assert not list(strips_not_drawn(built.parts))
+    every = list(different_strips(built.parts))
+    assert len(every) > 3
+    monkeypatch.setattr(strip_sheets, "STRIP_LIMIT", 3)
+    (message,) = strips_not_drawn(built.parts)
+    assert message.key == "strips_not_drawn"
+    assert f"3 of {len(every)} " in message
+    labels = {
+        one.text
+        for page in strip_sheets.strip_pages(built, PAPERS["A3"], EN)
+        for one in page.content
+        if isinstance(one, Label)
+    }
+    heads = [built.parts.parts[k].label for k in every]
+    assert [head for head in heads if head in labels] == heads[:3]

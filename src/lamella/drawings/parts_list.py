@@ -26,7 +26,7 @@ def list_pages(built: Built, paper: Paper, words: Terms) -> Iterator[Page]:
 
 def _strips(built: Built, words: Terms) -> Iterator[tuple[str, ...]]:
     parts = built.parts.parts
-    for first, same in different_strips(built).items():
+    for first, same in different_strips(built.parts).items():
         part, count = parts[first], sum(parts[k].quantity for k in same)
         text = words(
             "strip_described",

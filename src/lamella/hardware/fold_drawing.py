@@ -12,7 +12,7 @@ from lamella.hardware.rules import MM
 
 FOLD_TEXT = 0.004
 """m: height of the text; less where the plate is narrow."""
-TEXT_SHARE = 0.8
+FOLD_TEXT_SHARE = 0.8
 """Of the fold's length that the text takes at most."""
 
 
@@ -33,7 +33,7 @@ def draw_folds(writer: BlockWriter, item: Item, *, turned: bool = False) -> None
         up = (end - begin) / length
         strokes = text_strokes(fold.text)
         wide = max(float(stroke[:, 0].max()) for stroke in strokes)
-        size = min(FOLD_TEXT, TEXT_SHARE * length / wide)
+        size = min(FOLD_TEXT, FOLD_TEXT_SHARE * length / wide)
         # along the line, on its right: beyond the fold, where no hole is
         right = np.array([up[1], -up[0]])
         base = begin + (length - size * wide) / 2 * up + (fold.radius + 2 * size) * right

@@ -12,8 +12,15 @@ from lamella.fabrication.contours import CutOptions
 from lamella.files.whole import write_whole
 from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.project.drawings_table import DrawingsTable
+from lamella.project.tables import Project
 from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.stage import File, Upstream
+
+
+def draws_sheets(project: Project) -> bool:
+    """Whether drawings.pdf is written."""
+    asked = project.joint is not None or project.drawings is not None
+    return asked and (project.drawings or DrawingsTable()).pdf
 
 
 def further_files(out: FabricationOutput, up: Upstream, scene: Callable[[], Iterable[DrawnLayer]]) -> Iterator[File]:
@@ -48,7 +55,7 @@ def further_files(out: FabricationOutput, up: Upstream, scene: Callable[[], Iter
     options = cut_options(project)
     cut: Any = signed | {"further": tuple(options.layers)}
     drawings = project.drawings or DrawingsTable()
-    if drawings.pdf:
+    if draws_sheets(project):
         yield File("fabrication/drawings.pdf", lambda path: write_whole(path, _pdf(out, up, drawings)))
     if drawings.svg:
         yield File(

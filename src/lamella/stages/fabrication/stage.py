@@ -23,6 +23,7 @@ from lamella.stages.fabrication.defaults import (
     usual_slot_width,
 )
 from lamella.stages.fabrication.figures import FIGURES, REPORT
+from lamella.stages.fabrication.further_files import draws_sheets
 from lamella.stages.fabrication.output import FabricationOutput
 from lamella.stages.keys import with_keys
 from lamella.stages.stage import File, Stage, Upstream
@@ -114,6 +115,10 @@ class FabricationStage(Stage[FabricationOutput]):
             from lamella.stages.fabrication.scene import solids_left_out
 
             yield from solids_left_out(up.project, out, up.outputs["lamellas"].lamellas)
+        if draws_sheets(up.project):
+            from lamella.drawings.strip_sheets import strips_not_drawn
+
+            yield from strips_not_drawn(out.parts)
 
     def files(self, out: FabricationOutput, up: Upstream) -> Iterator[File]:
         from lamella.fabrication.drawing import write_drawings

@@ -9,8 +9,10 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.network.network import FAMILIES, Network
 from lamella.solid.finish import finish
+from lamella.stages.lamellas.sizing_scene import sizing_facts, sizing_plot, sizing_quantities
 from lamella.stages.network.scene import CURVES, PALETTE, Thinned, curvature_quantities, thinned
 from lamella.strip.lamellas import Lamellas
+from lamella.strip.sizing import Sizing
 from lamella.view.scene.curves import Curves, Fact, Plot, Series
 from lamella.view.scene.layer import Material, StripsLayer
 from lamella.view.scene.quantity import FAMILY_COLOURS, Quantity, magnitude
@@ -38,11 +40,13 @@ STRESSES = (
 TO_MPA = 1e-6
 
 
-def lamellas_scene(lamellas: Lamellas) -> Iterator[Shown]:
-    """The strips of either family, and the stresses along them."""
+def lamellas_scene(lamellas: Lamellas, sizing: Sizing | None = None) -> Iterator[Shown]:
+    """The strips of either family, the stresses along them, and how near to their limit they are."""
     network, section = lamellas.network, lamellas.section
     kept = thinned(network)
     quantities = _quantities(lamellas, kept)
+    if sizing is not None:
+        quantities += sizing_quantities(sizing, lamellas, kept)
     size = float(np.ptp(network.sample_points, axis=0).max()) if len(network.sample_points) else 0.0
     for family in FAMILIES:
         own_lamellas, own, offsets = kept.family(network, family)
@@ -69,7 +73,7 @@ def lamellas_scene(lamellas: Lamellas) -> Iterator[Shown]:
             thickness=section.thickness,
         )
     if len(network.ids):
-        yield _curves(lamellas, kept)
+        yield _curves(lamellas, kept, sizing)
 
 
 def _quantities(lamellas: Lamellas, kept: Thinned) -> tuple[Quantity, ...]:
@@ -94,7 +98,7 @@ def _planarity(lamellas: Lamellas, kept: Thinned) -> Floats:
     return np.asarray(worst, dtype=np.float64)
 
 
-def _curves(lamellas: Lamellas, kept: Thinned) -> Curves:
+def _curves(lamellas: Lamellas, kept: Thinned, sizing: Sizing | None) -> Curves:
     """Facts and stresses, for the curves that the net has given."""
     network: Network = lamellas.network
     largest = np.maximum.reduceat(lamellas.utilisation, network.sample_offsets[:-1])
@@ -112,8 +116,12 @@ def _curves(lamellas: Lamellas, kept: Thinned) -> Curves:
         facts=(
             Fact("Developed length", "m", lamellas.developed_lengths, 3),
             Fact("Largest utilisation", "", largest),
+            *(() if sizing is None else sizing_facts(sizing)),
         ),
-        plots=(Plot("Residual stress", "MPa", series),),
+        plots=(
+            Plot("Residual stress", "MPa", series),
+            *(() if sizing is None else (sizing_plot(sizing, lamellas, kept),)),
+        ),
         worst="Most stressed",
         worst_by="von_mises",
     )

@@ -124,7 +124,7 @@ class LamellasStage(Stage[LamellasOutput]):
     def scene(self, out: LamellasOutput, up: Upstream) -> Iterator[Shown]:
         from lamella.stages.lamellas.scene import lamellas_scene
 
-        yield from lamellas_scene(out.lamellas)
+        yield from lamellas_scene(out.lamellas, out.sizing)
 
 
 def strips_of(project: Project, surface: Surface[Any]) -> partial[Lamellas]:
