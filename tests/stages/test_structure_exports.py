@@ -12,6 +12,8 @@ import pytest
 
 from lamella import compute, parse_project
 from lamella.stages.structure.stage import StructureStage
+from lamella.structure.export.opensees import fine_elements
+from lamella.structure.model.model import divided
 from stages.csv_rows import rows
 
 PROJECT: dict[str, Any] = {
@@ -82,7 +84,15 @@ def test_the_script_has_fibres_for_strips_alone(run: tuple[Any, Path]) -> None:
         for node in ast.parse((folder / "opensees.py").read_text("utf-8")).body
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
     }
-    assert len(parts["BEAMS"]) == len(analysis.model.structure.beams)
-    assert len(parts["FIBRES"]) == 2 * len(analysis.model.lines.length)
+    # shorter elements than those of the analysis
+    times = fine_elements(analysis.model) // analysis.model.rules.elements
+    assert times > 4
+    strips = times * len(analysis.model.lines.length)
+    assert len(parts["BEAMS"]) == times * len(analysis.model.structure.beams)
+    assert len(parts["FIBRES"]) == 2 * strips
+    # a slot at each crossing that an element ends at, a hinge at both its ends
+    slotted = int(divided(analysis.model, times).lines.crossed.any(1).sum())
+    assert slotted == int(analysis.model.lines.crossed.sum()) > 0
+    assert len(parts["HINGES"]) == 2 * slotted
     assert len(parts["CABLES"]) == len(analysis.model.structure.cables)
     assert [case[0] for case in parts["CASES"]] == ["residual", "snow"]

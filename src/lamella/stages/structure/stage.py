@@ -162,7 +162,4 @@ def _exports(out: StructureOutput, signed: Any) -> Iterator[File]:
         yield File(f"structure/{page[0]}.csv", partial(write_page, page=page, **plain))
     yield File("structure/results.xlsx", lambda path: write_result_book(path, cases, further.pages(), **signed))
     yield File("structure/curvatures.csv", lambda path: write_imposed_curvatures(path, model, **signed))
-    loads = {case.name: case.equilibrium.loads for case in cases[1:]}
-    yield File(
-        "structure/opensees.py", lambda path: write_opensees(path, model.structure, loads, model.nodes, **signed)
-    )
+    yield File("structure/opensees.py", lambda path: write_opensees(path, out.analysis, **signed))

@@ -49,6 +49,10 @@ class Analysis(Result):
         Of the residual state, Hz.
     free_body : bool
         Whether nothing supports it, so that a node was held that it cannot drift.
+    loads : tuple of LoadCase
+        Of the cases but for the first one.
+    node_masses : (n,) or None
+        Of what hangs on the network's nodes, kg.
     """
 
     model: Model
@@ -57,6 +61,8 @@ class Analysis(Result):
     free_body: bool
     stages: tuple[CaseResult, ...] = ()
     swing_modes: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    loads: tuple[LoadCase, ...] = ()
+    node_masses: Floats | None = None
 
     def _line(self) -> str:
         return ", ".join(f"{case.name} {case.utilisation_max:.2f}" for case in self.cases)
@@ -139,7 +145,7 @@ def analyse(
             progress(Report.step(f"load case {case.name}", k / len(cases)))
             loads = case_loads(model, case, node_masses)
             found.append(_case(model, case.name, rest, loads, buckling, steps))
-    return Analysis(model, tuple(found), swings, not supported, stages, modes)
+    return Analysis(model, tuple(found), swings, not supported, stages, modes, tuple(cases), node_masses)
 
 
 def _end_of(stage: str, model: Model, end: Equilibrium) -> CaseResult:

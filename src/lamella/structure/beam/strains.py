@@ -126,7 +126,7 @@ class Strains:
     first: Floats
     _direction: Floats  # (3, m) rho over its length
     _size: Floats  # (m,)
-    _share: Share
+    share: Share
     _curvature: Floats  # (3, m)
     _across: Floats  # (m,) the last strain over the share's root
 
@@ -159,7 +159,7 @@ class Strains:
 
     def second(self, stress: Floats) -> Floats:
         """Second derivative of the sum of stress (7, m) times strain with respect to rho and theta, (6, 6, m)."""
-        law, d, size, share = self.law, self._direction, self._size, self._share
+        law, d, size, share = self.law, self._direction, self._size, self.share
         result = np.zeros((6, 6, len(size)))
         pull = stress[0] / (law.length * size)
         side = np.zeros_like(d)

@@ -53,6 +53,9 @@ class Model(Result):
     joint_nodes : (k,) int
         Node of the network of each joint; none where joints are locked.
     supports : NodeSupports
+    edge_beams : EdgeBeamAxes or None
+    materials : mapping
+        Those of edge beams by name.
     """
 
     lamellas: Lamellas
@@ -62,6 +65,8 @@ class Model(Result):
     rims: RimBeams
     joint_nodes: Integers
     supports: NodeSupports
+    edge_beams: EdgeBeamAxes | None
+    materials: Mapping[str, Material]
 
     def _line(self) -> str:
         structure = self.structure
@@ -132,9 +137,15 @@ def make_model(
     structure = replace(
         structure, cables=brace(network, poses, cables, section.height), joint_springs=_springs(poses, rules)
     )
-    return Model(
-        lamellas, rules, structure, lines, rims, np.flatnonzero(joints >= 0) if loose else joints[:0], supports
-    )
+    at_joints = np.flatnonzero(joints >= 0) if loose else joints[:0]
+    return Model(lamellas, rules, structure, lines, rims, at_joints, supports, edge_beams, materials)
+
+
+def divided(model: Model, elements: int) -> Model:
+    """The same net on the same supports with another number of elements in a cell edge, and its cables as they are."""
+    rules = replace(model.rules, elements=elements)
+    other = make_model(model.lamellas, model.supports, rules, edge_beams=model.edge_beams, materials=model.materials)
+    return replace(other, structure=replace(other.structure, cables=model.structure.cables))
 
 
 def _beams(
