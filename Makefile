@@ -1,6 +1,7 @@
 # The two commands of the README are `make demo` and `make test`; both set up everything they need.
 PYTHON ?= python3
 BIN := .venv/bin
+PAGE := tests/page
 # a process a core: threads of their own would only wait for each other
 ONE := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1
 
@@ -8,7 +9,7 @@ ONE := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1
 NUMERICS := tests/surface/element tests/surface/form_finding/test_last_bits.py tests/surface/form_finding/test_rings.py \
 	tests/surface/from_mesh/test_last_bits.py tests/projection/test_star_measures.py tests/base/test_sparse.py
 
-.PHONY: demo test slowest slow kernels lint types bench docs api clean
+.PHONY: demo test slowest slow kernels lint types page bench docs api clean
 
 demo: .venv/ready
 	$(BIN)/lamella run examples/01_unduloid.toml
@@ -34,6 +35,15 @@ lint: .venv/ready
 
 types: .venv/ready
 	$(BIN)/mypy
+
+# linter and types of the viewer's JavaScript, where there are npm and a registry; users need neither
+page:
+	@$(MAKE) --no-print-directory $(PAGE)/node_modules/ready || echo "no npm, or no registry: checks of the viewer's JavaScript are left out"
+	@test ! -f $(PAGE)/node_modules/ready || npm --prefix $(PAGE) run --silent check
+
+$(PAGE)/node_modules/ready: $(PAGE)/package.json $(PAGE)/package-lock.json
+	npm --prefix $(PAGE) ci --ignore-scripts --no-audit --no-fund --silent
+	touch $@
 
 bench: .venv/ready
 	@$(MAKE) --no-print-directory .venv-bench/ready || echo "programs to compare with could not be installed: left out"

@@ -40,7 +40,9 @@ function lookup(stops) {
     const left = Math.min(Math.floor(place), Math.max(colours.length - 2, 0));
     const right = Math.min(left + 1, colours.length - 1);
     for (let k = 0; k < 3; k++)
-      table[3 * level + k] = linear(colours[left][k] + (place - left) * (colours[right][k] - colours[left][k]));
+      table[3 * level + k] = linear(
+        colours[left][k] + (place - left) * (colours[right][k] - colours[left][k]),
+      );
   }
   table.set(linearOf(MISSING_COLOUR), 3 * LEVELS);
   return table;

@@ -19,7 +19,8 @@ export function makeSwitches(viewer, changed) {
   // lamellas before the surface they stand on
   const lists = [...viewer.palettes.keys()].reverse().map((palette) => {
     const select = element("select", { id: `colour-${slug(palette)}`, "data-palette": palette });
-    for (const [key, label] of colourings(viewer, palette)) select.append(element("option", { value: key }, label));
+    for (const [key, label] of colourings(viewer, palette))
+      select.append(element("option", { value: key }, label));
     select.value = viewer.palettes.get(palette);
     select.addEventListener("change", () => {
       viewer.colour(palette, select.value);
@@ -71,7 +72,8 @@ export function colourings(viewer, palette) {
   if (layers.some((/** @type {any} */ layer) => layer.colour)) found.set(FAMILY, "Family");
   const materials = new Set(layers.map((/** @type {any} */ layer) => layer.material));
   materials.delete("plain");
-  if (materials.size) found.set("", materials.has("surface") ? "Plain" : `Material (${[...materials].join(", ")})`);
+  if (materials.size)
+    found.set("", materials.has("surface") ? "Plain" : `Material (${[...materials].join(", ")})`);
   return found;
 }
 

@@ -44,7 +44,11 @@ function revived(value, buffer, body) {
  */
 function arrayOf(spec, buffer, body) {
   if (spec.type === "constant") return new Float32Array(spec.count).fill(spec.value ?? NaN);
-  const raw = new READERS[/** @type {keyof typeof READERS} */ (spec.type)](buffer, body + spec.at, spec.count);
+  const raw = new READERS[/** @type {keyof typeof READERS} */ (spec.type)](
+    buffer,
+    body + spec.at,
+    spec.count,
+  );
   if (spec.step !== undefined)
     return Float32Array.from(raw, (level) => (level === MISSING ? NaN : spec.low + level * spec.step));
   return spec.type === "i2" ? Float32Array.from(raw, (level) => level / UNIT) : raw;

@@ -18,7 +18,8 @@ export async function glbOf(drawn) {
     root.add(group);
   }
   root.updateMatrixWorld(true);
-  return new THREE.GLTFExporter().parseAsync(root, { binary: true, onlyVisible: false });
+  const data = await new THREE.GLTFExporter().parseAsync(root, { binary: true, onlyVisible: false });
+  return /** @type {ArrayBuffer} */ (data);
 }
 
 /** @param {any} one */
@@ -30,7 +31,9 @@ function partsOf(one) {
     const ends = [];
     for (const i of one.starts) for (let k = 3 * i; k < 3 * i + 6; k++) ends.push(one.points[k]);
     geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(ends), 3));
-    return ends.length ? [new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: one.plainColour }))] : [];
+    return ends.length
+      ? [new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: one.plainColour }))]
+      : [];
   }
   const { geometry, material } = one.mesh;
   const look = new THREE.MeshStandardMaterial({

@@ -30,7 +30,8 @@ export function legend(title, unit, ...content) {
  * @param {any} quantity
  */
 export function rampLegend({ label, unit, stops, low, high, remark, least, most }) {
-  if (low === high) return legend(label, unit, swatch(stops[0], `${format(low, 4)} ${remark || "everywhere"}`));
+  if (low === high)
+    return legend(label, unit, swatch(stops[0], `${format(low, 4)} ${remark || "everywhere"}`));
   const bar = element("div", { class: "bar" });
   bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
   const ticks = element("div", { class: "ticks" });

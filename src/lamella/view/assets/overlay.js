@@ -59,7 +59,9 @@ export class Overlay {
     }
     const [[ax, ay], [bx, by]] = places;
     this.lines.replaceChildren(svg("line", { x1: ax, y1: ay, x2: bx, y2: by }), ...dots);
-    return [placed(element("span", { class: "label measured" }, this.distance()), (ax + bx) / 2, (ay + by) / 2)];
+    return [
+      placed(element("span", { class: "label measured" }, this.distance()), (ax + bx) / 2, (ay + by) / 2),
+    ];
   }
 
   /** "2.315 m (x 1.200, y 1.980, z 0.011)" */

@@ -22,14 +22,21 @@ export function createPanel(curves, onCursor) {
   byId("plots").append(...plots.map((/** @type {any} */ plot) => plot.figure));
   choice.append(
     element("option", { value: "" }, "none"),
-    ...curves.ids.map((/** @type {string} */ id, /** @type {number} */ k) => element("option", { value: k }, id)),
+    ...curves.ids.map((/** @type {string} */ id, /** @type {number} */ k) =>
+      element("option", { value: k }, id),
+    ),
   );
   byId("lamella-title").textContent = curves.noun;
   byId("lamella-panel").hidden = false;
 
   function showFacts() {
-    const none = { label: "", text: `Choose a ${curves.noun.toLowerCase()} here or in the 3D view.`, unit: "" };
-    const entries = current === null ? [none] : curves.facts.map((/** @type {any} */ fact) => told(fact, current));
+    const none = {
+      label: "",
+      text: `Choose a ${curves.noun.toLowerCase()} here or in the 3D view.`,
+      unit: "",
+    };
+    const entries =
+      current === null ? [none] : curves.facts.map((/** @type {any} */ fact) => told(fact, current));
     facts.replaceChildren(
       ...entries.map((/** @type {any} */ { label, text, unit }) => {
         const value = element("dd", {}, text, element("span", {}, unit ? ` ${unit}` : ""));

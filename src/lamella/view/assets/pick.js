@@ -25,7 +25,8 @@ export function pick(drawn, caster, isSeen, onScreen, x, y) {
     least = Infinity;
   for (const one of drawn) {
     const hit = one.hit(caster, isSeen);
-    if (hit && hit.distance < least) [best, least] = [picked(one, hit.element, hit.point.toArray()), hit.distance];
+    if (hit && hit.distance < least)
+      [best, least] = [picked(one, hit.element, hit.point.toArray()), hit.distance];
   }
   return best ?? nearestCurve(drawn, isSeen, onScreen, x, y);
 }

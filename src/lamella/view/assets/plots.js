@@ -19,7 +19,13 @@ export function createPlot(spec, curves, onCursor) {
   const readout = element("ul", { class: "readout" });
   const place = element("span", { "aria-live": "polite" });
   const title = element("div", {}, `${spec.title} `, element("span", {}, spec.unit));
-  const figure = element("figure", { class: "plot" }, element("figcaption", {}, title, place), drawing, readout);
+  const figure = element(
+    "figure",
+    { class: "plot" },
+    element("figcaption", {}, title, place),
+    drawing,
+    readout,
+  );
   const values = spec.series.map((/** @type {any} */ series, /** @type {number} */ k) => {
     const text = element("b");
     const line = svg("line", { x2: 18, y1: 4, y2: 4, ...strokeOf(k) });
@@ -34,10 +40,15 @@ export function createPlot(spec, curves, onCursor) {
     frame = plotFrame(spec, curves, curve, drawing.clientWidth || 480);
     drawing.setAttribute("viewBox", `0 0 ${frame.width} ${PLOT_HEIGHT}`);
     const peaks = spec.series
-      .map((/** @type {any} */ series, /** @type {number} */ k) => `${series.label} ${format(frame.peaks[k])}`)
+      .map(
+        (/** @type {any} */ series, /** @type {number} */ k) => `${series.label} ${format(frame.peaks[k])}`,
+      )
       .join(", ");
     const about = `${spec.title} along ${curves.noun.toLowerCase()} ${curves.ids[curve]}`;
-    drawing.setAttribute("aria-label", `${about}: peaks ${peaks} ${spec.unit}. Left and right arrows read values.`);
+    drawing.setAttribute(
+      "aria-label",
+      `${about}: peaks ${peaks} ${spec.unit}. Left and right arrows read values.`,
+    );
     drawing.replaceChildren(...axisShapes(frame), ...curveShapes(spec, frame));
     setCursor(null);
   }
@@ -106,7 +117,9 @@ function plotFrame(spec, curves, curve, width) {
     high,
     /** @type {number | null} */
     held: null,
-    peaks: bounds.map((/** @type {number[]} */ [least, most]) => (Math.abs(least) > Math.abs(most) ? least : most)),
+    peaks: bounds.map((/** @type {number[]} */ [least, most]) =>
+      Math.abs(least) > Math.abs(most) ? least : most,
+    ),
     x: (/** @type {number} */ s) => MARGIN.left + (s / length) * inner,
     y: (/** @type {number} */ value) => MARGIN.top + ((high - value) / (high - low)) * tall,
     sampleAt: (/** @type {number} */ pixel) =>
@@ -149,7 +162,8 @@ function axisShapes({ curves, curve, first, width, length, low, high, x, y }) {
   const isSparse = (right - left) / (endStop - firstStop) > 7;
   for (let stop = firstStop; stop < endStop; stop++) {
     const place = x(curves.arclengths[first + curves.stop_samples[stop]]);
-    if (isSparse) shapes.push(svg("line", { class: "node", x1: place, x2: place, y1: MARGIN.top, y2: bottom }));
+    if (isSparse)
+      shapes.push(svg("line", { class: "node", x1: place, x2: place, y1: MARGIN.top, y2: bottom }));
     shapes.push(svg("line", { class: "tick", x1: place, x2: place, y1: bottom, y2: bottom + 5 }));
   }
   const horizontal = niceTicks(0, length, Math.max(2, Math.min(8, width / 80)));

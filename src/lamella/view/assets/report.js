@@ -8,7 +8,8 @@ import { createPanel, worstOf } from "./panel.js";
 import { format } from "./text.js";
 import { drawTriad } from "./triad.js";
 import { VIEWS } from "./standpoint.js";
-import { noView, Viewer } from "./viewer.js";
+import { noView } from "./stage.js";
+import { Viewer } from "./viewer.js";
 
 const QUARTER = Math.PI / 24;
 /** Of what is seen about the place of a warning, cells of the net. */
@@ -19,7 +20,8 @@ function start() {
   const curves = scene.curves[0] ?? null;
   const preference = matchMedia("(prefers-color-scheme: dark)");
   const isDark = () =>
-    /** @type {Record<string, boolean>} */ ({ dark: true, light: false })[readHash().theme] ?? preference.matches;
+    /** @type {Record<string, boolean>} */ ({ dark: true, light: false })[readHash().theme] ??
+    preference.matches;
   const stage = byId("stage");
   /** @type {any} */
   let viewer = null;
@@ -201,7 +203,11 @@ function start() {
     byId("worst").addEventListener("click", () => select(worstOf(curves)));
     document.addEventListener("keydown", (/** @type {any} */ event) => {
       const isTyping =
-        event.target.closest?.("select, input") || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey;
+        event.target.closest?.("select, input") ||
+        event.ctrlKey ||
+        event.metaKey ||
+        event.altKey ||
+        event.shiftKey;
       const by = { ArrowLeft: -1, ArrowRight: 1 }[/** @type {string} */ (event.key)];
       if (isTyping) return;
       if (event.key === "Escape") select(null);
@@ -210,7 +216,9 @@ function start() {
   }
 
   if (viewer) connectView();
-  for (const part of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-needs=curves]")))
+  for (const part of /** @type {NodeListOf<HTMLElement>} */ (
+    document.querySelectorAll("[data-needs=curves]")
+  ))
     part.hidden = !curves;
   connectPanel();
   applyHash();

@@ -18,7 +18,9 @@ export const VIEWS = {
  */
 export function fittingDistance(camera, clouds) {
   camera.updateMatrixWorld();
-  const [right, up, back] = [0, 1, 2].map((k) => new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, k));
+  const [right, up, back] = [0, 1, 2].map((k) =>
+    new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, k),
+  );
   const vertical = Math.tan((camera.fov * Math.PI) / 360);
   const horizontal = vertical * camera.aspect;
   const point = new THREE.Vector3();

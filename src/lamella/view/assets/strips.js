@@ -28,7 +28,8 @@ export function ruledPositions(layer, points, normals) {
  */
 export function ruledIndex(offsets) {
   const index = [];
-  for (const i of pieceStarts(offsets)) index.push(2 * i, 2 * i + 2, 2 * i + 1, 2 * i + 1, 2 * i + 2, 2 * i + 3);
+  for (const i of pieceStarts(offsets))
+    index.push(2 * i, 2 * i + 2, 2 * i + 1, 2 * i + 1, 2 * i + 2, 2 * i + 3);
   return new Uint32Array(index);
 }
 
@@ -57,7 +58,11 @@ export function sideways(offsets, points, normals) {
     const [first, last] = [offsets[curve], offsets[curve + 1] - 1];
     for (let i = first; i <= last; i++) {
       const [a, b] = [3 * Math.max(i - 1, first), 3 * Math.min(i + 1, last)];
-      const [tx, ty, tz] = [points[b] - points[a], points[b + 1] - points[a + 1], points[b + 2] - points[a + 2]];
+      const [tx, ty, tz] = [
+        points[b] - points[a],
+        points[b + 1] - points[a + 1],
+        points[b + 2] - points[a + 2],
+      ];
       const [nx, ny, nz] = [normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]];
       const [x, y, z] = [ny * tz - nz * ty, nz * tx - nx * tz, nx * ty - ny * tx];
       const length = Math.hypot(x, y, z) || 1;
