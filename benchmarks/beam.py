@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from bench import Limit, Row, Table, alone, clocked, exponent, factorisations, in_turns, memory_gb, show
 
+import lamella
 from lamella import find_material
 from lamella.base.arrays import Floats
+from lamella.network.network import BOUNDARY
+from lamella.structure.actions.load_case import no_load
+from lamella.structure.actions.node_supports import NodeSupports
+from lamella.structure.analysis.size import structure_memory
 from lamella.structure.beam.beams import make_beams
 from lamella.structure.beam.cross_section import flat_strip
 from lamella.structure.beam.poses import Poses
+from lamella.structure.buckling import linear_buckling
 from lamella.structure.loads import make_loads
+from lamella.structure.model.case_loads import case_loads
+from lamella.structure.model.model import make_model
+from lamella.structure.model.rules import ModelRules
 from lamella.structure.static import at_rest, loaded
 from lamella.structure.structure import Structure, make_structure
 
@@ -22,6 +32,9 @@ PER_CELL = 4
 STEPS = 5
 # of dead load, N/m of strip
 LOAD = 12.0
+# of nets, in multiples of their weight
+NET_LOAD = 3.0
+TOLD = "told beforehand, GB"
 
 
 def hypar(cells: int, per_cell: int = PER_CELL) -> Structure:
@@ -113,9 +126,60 @@ def assembly() -> Table:
     )
 
 
+def net_analysed(spacing: float) -> dict[str, float]:
+    """The strips of Enneper's surface, pinned along the rim: model, residual state, load steps, first buckling factor.
+
+    Pairs 100 x 1.5 mm slotted at every crossing; what a run of the stage "structure" computes of one case.
+    """
+    network = lamella.net(lamella.Enneper(2, 0.6, 3.0), spacing=spacing)
+    lamellas = network.strips()
+    fixed = np.zeros((len(network.node_points), 6), bool)
+    fixed[network.node_kinds == BOUNDARY, :3] = True
+    supports = NodeSupports(fixed, np.zeros(fixed.shape))
+    case = replace(no_load("load", len(fixed)), self_weight=np.array([0.0, 0.0, -NET_LOAD]))
+    before = memory_gb()
+    modelling, model = clocked(lambda: make_model(lamellas, supports, ModelRules(elements=PER_CELL)))
+    loads = case_loads(model, case)
+    with factorisations() as inside:
+        seconds, found = clocked(lambda: loaded(at_rest(model.structure, loads), steps=STEPS))
+    steps, bare = len(inside.seconds), inside.total
+    buckling, _ = clocked(lambda: linear_buckling(found, 1))
+    return {
+        "elements": len(model.structure.beams),
+        "model, s": modelling,
+        "analysis, s": seconds,
+        "factorisations": steps,
+        "analysis / factorisations": seconds / bare,
+        "buckling, s": buckling,
+        "largest deflection, mm": 1e3 * float(np.abs(found.displacements).max()),
+        "memory, GB": memory_gb() - before,
+        TOLD: structure_memory(len(model.structure.beams), 1),
+    }
+
+
+def net_table() -> Table:
+    """Nets of strips, in processes of their own."""
+    rows = [alone(net_analysed, spacing) for spacing in (0.238, 0.106, 0.0479)]
+    growth = exponent(*((row["elements"], row["analysis, s"]) for row in (rows[0], rows[-1])))
+    whole = rows[-1]["model, s"] + rows[-1]["analysis, s"] + rows[-1]["buckling, s"]
+    return Table(
+        "Beams: a net",
+        f"Strips of a net on Enneper's surface, {PER_CELL} elements a cell edge: the model, the residual state and "
+        f"{STEPS} load steps, beside their factorisations, and the first buckling factor.",
+        tuple({name: int(v) if float(v).is_integer() else v for name, v in row.items()} for row in rows),
+        (
+            Limit("analysis / factorisations at 2,000 elements", rows[0]["analysis / factorisations"], 3.0),
+            Limit("CPU seconds at 50,000 elements, with model and buckling", whole, 600.0),
+            Limit("exponent of growth, 2,000 to 50,000 elements", growth, 1.4),
+            Limit("memory at 50,000 elements over what is told", rows[-1]["memory, GB"] / rows[-1][TOLD], 1.0),
+        ),
+    )
+
+
 def tables() -> Iterator[Table]:
     """Assembly, then analyses in processes of their own."""
     yield assembly()
+    yield net_table()
     rows = [alone(analysed, cells) for cells in (16, 36, 79)]
     growth = exponent(*((row["elements"], row["analysis, s"]) for row in (rows[0], rows[-1])))
     yield Table(

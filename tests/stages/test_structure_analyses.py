@@ -18,6 +18,7 @@ from stages.test_structure_stage import SNOW, WEIGHT, project
 
 CONSTRUCTION = ["bent", "joints locked", "cables on", "props away", "loads on"]
 DRIVEN = {"case": "snow", "near": [0, 0, 0], "by": 0.005, "steps": 2}
+SUMMER = {"name": "summer", "kind": "temperature", "value": 30.0}
 TABLE: dict[str, Any] = {"elements": 1, "modes": 1}
 (STRUCTURE,) = (stage for stage in STAGES if stage.name == "structure")
 WITH = {"joint": {}, "cables": {"prestress": 200.0}}
@@ -139,10 +140,12 @@ def test_refused_before_a_run(table: dict[str, Any], others: dict[str, Any], whe
     ("table", "where"),
     [
         ({"sensitivity": {"thickness": 0.002}}, "structure.sensitivity.thickness"),
-        ({"displacement": DRIVEN | {"near": [9.0, 9.0, 0.0]}}, "structure.displacement.near"),
+        ({"displacement": DRIVEN | {"near": [2.0, 2.0, 0.0]}}, "structure.displacement.near"),
+        ({"displacement": DRIVEN | {"near": [2000.0, 0.0, 0.0]}}, "structure.displacement.near"),
+        ({"displacement": DRIVEN | {"case": "summer"}}, "structure.displacement.case"),
     ],
 )
 def test_refused_on_the_net(table: dict[str, Any], where: str) -> None:
     with pytest.raises(InputError) as refused:
-        compute(project(structure=TABLE | table, load=[WEIGHT, SNOW]))
+        compute(project(structure=TABLE | table, load=[WEIGHT, SNOW, SUMMER]))
     assert refused.value.where == where

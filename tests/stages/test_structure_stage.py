@@ -94,6 +94,7 @@ def test_a_check_leaves_large_structures_to_the_run(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr("lamella.stages.structure.stage.MOST_CHECKED", 100)
     (left,) = check_project(project()).left
     assert "3 cases" in left
+    assert "GB of memory" in left
 
 
 def test_a_net_that_is_let_go() -> None:
@@ -116,6 +117,43 @@ def test_overload_and_overstress_are_warned_of() -> None:
     assert not case["converged"]
     assert case["load_factor"] < 1
     warned(told, "overload", [case["load_factor"]], ["'snow'"])
+
+
+def test_supports_that_hold_little_or_all_are_warned_of() -> None:
+    soft = [{"near": [0.0, 0.0, 0.0], "fixed": ["x", "y", "rx", "ry", "rz"], "spring": {"z": 100.0}}]
+    results = compute(project(support=soft, load=[SNOW]))
+    (_, case) = results.summary["structure"]["cases"]
+    # a spring of 100 N/m under all of the snow
+    force = -results.outputs["structure"].analysis.cases[1].load_total[2]
+    assert case["deflection_max"] == pytest.approx(force / 100.0, rel=0.05)
+    warned(results.summary["warnings"], "structure_moves_far", [case["deflection_max"]])
+    everywhere = compute(project(support=[{"ground": 50.0}], load=[SNOW]))
+    warned(everywhere.summary["warnings"], "all_nodes_supported")
+
+
+def test_buckling_and_slack_cables_are_told_with_their_place() -> None:
+    thin = {"material": "S355", "thickness": 0.0002}
+    limp = compute(project(lamella=thin, load=None))
+    ways = limp.outputs["structure"].analysis.cases[0].equilibrium.negative
+    warned(limp.summary["warnings"], "structure_unstable", [ways])
+    loose = compute(project(joint={}, cables={"prestress": 0.0}, load=[SNOW | {"value": 2000.0}]))
+    message = warned(loose.summary["warnings"], "cables_slack")
+    attached = loose.outputs["structure"].analysis.model.structure.cables.attachment.nodes
+    assert any(f"from node {one} to {other}" in message for one, other in attached.tolist())
+    over = compute(
+        project(load=[SNOW | {"value": 1e5}], lamella={"material": "S355", "height": 0.04, "thickness": 5e-4})
+    )
+    case = over.outputs["structure"].analysis.cases[1]
+    shifts = np.linalg.norm(case.modes[0][: 6 * len(case.equilibrium.poses.points)].reshape(-1, 6)[:, :3], axis=1)
+    point = case.equilibrium.structure.poses.points[np.round(shifts, 9).argmax()]
+    warned(over.summary["warnings"], "overload", [case.buckling[0], *point.tolist()])
+
+
+def test_a_support_near_a_point_far_away() -> None:
+    """Millimetres for metres."""
+    with pytest.raises(InputError) as refused:
+        compute(project(support=[{"near": [1584.0, 0.0, 1080.0]}]))
+    assert refused.value.where == "support[0].near"
 
 
 def test_joints_layers_and_cables_of_the_table() -> None:

@@ -18,6 +18,7 @@ from lamella.stages.structure.asked_cases import asked_cases
 from lamella.stages.structure.compared import compared
 from lamella.stages.structure.output import StructureOutput
 from lamella.stages.structure.variant import sensitivity_variants, variant_of
+from lamella.structure.actions.places import refuse_far
 from lamella.structure.analysis.analyse import Analysis
 from lamella.structure.analysis.case_result import CaseResult
 from lamella.structure.analysis.compared_case import ComparedCase
@@ -71,6 +72,8 @@ def _driven(up: Upstream, analysis: Analysis, progress: Progress) -> Driven | No
     away = np.linalg.norm(network.node_points + origin - np.array(table.near), axis=1)
     # of nodes alike the first, whatever the last bits
     node = int(np.round(away / max(float(away.max()), np.finfo(float).tiny), 9).argmin())
+    with keys("structure.displacement"):
+        refuse_far(network.node_points, table.near, float(away[node]))
     progress(Report.step(f"node {node} driven by load case {table.case}"))
     start, way = _start(analysis, table.case), np.array(table.direction)
     with keys("structure.displacement", loads="structure.displacement.case"):

@@ -85,16 +85,21 @@ class StructureStage(Stage[StructureOutput]):
     def takes_long(self, up: Upstream) -> str:
         from lamella.stages.actions_of_tables import combinations_of
 
-        project, table = up.project, up.project.structure or StructureTable()
-        cases = 1 + len(project.load or ()) + len(combinations_of(project))
-        size = cases * table.elements * len(up.outputs["network"].network.cell_edges)
-        if size <= MOST_CHECKED:
+        cases = 1 + len(up.project.load or ()) + len(combinations_of(up.project))
+        elements = _elements(up)
+        if cases * elements <= MOST_CHECKED:
             return ""
-        return f"what the structure does under {cases} cases (checked up to {MOST_CHECKED:,} elements times cases)"
+        return (
+            f"what the structure does under {cases} cases: about {elements:,} elements, {_memory(elements, cases)} of "
+            f"memory (checked up to {MOST_CHECKED:,} elements times cases)"
+        )
 
     def heading(self, up: Upstream) -> str:
-        table = up.project.structure or StructureTable()
-        return f"{table.elements} elements a cell edge, {counted(len(up.project.load or ()), 'load')}"
+        from lamella.stages.actions_of_tables import combinations_of
+
+        loads, elements = len(up.project.load or ()), _elements(up)
+        memory = _memory(elements, 1 + loads + len(combinations_of(up.project)))
+        return f"about {elements:,} elements, {counted(loads, 'load')}, up to {memory} of memory"
 
     def run(self, up: Upstream, progress: Progress) -> StructureOutput:
         from lamella.stages.actions_of_tables import actions_of
@@ -129,7 +134,7 @@ class StructureStage(Stage[StructureOutput]):
     def warnings(self, out: StructureOutput, up: Upstream, progress: Progress) -> Iterator[Message]:
         from lamella.stages.structure.warnings import structure_warnings
 
-        yield from structure_warnings(out.analysis)
+        yield from structure_warnings(out)
 
     def files(self, out: StructureOutput, up: Upstream) -> Iterator[File]:
         from lamella.stages.structure.results_file import write_results
@@ -144,6 +149,19 @@ class StructureStage(Stage[StructureOutput]):
 
         yield from supports_scene(out.analysis.model)
         yield from structure_frames(out.analysis)
+
+
+def _elements(up: Upstream) -> int:
+    """About how many elements lamellas have."""
+    table = up.project.structure or StructureTable()
+    lines = up.project.lamella.layers if table.layers == "each" else 1
+    return table.elements * len(up.outputs["network"].network.cell_edges) * lines
+
+
+def _memory(elements: int, cases: int) -> str:
+    from lamella.structure.analysis.size import structure_memory
+
+    return f"{structure_memory(elements, cases):.2g} GB"
 
 
 def _exports(out: StructureOutput, signed: Any) -> Iterator[File]:

@@ -10,6 +10,7 @@ import numpy as np
 from lamella.base.arrays import Booleans, Floats, Integers
 from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
+from lamella.base.vectors import diagonal
 from lamella.network.network import BOUNDARY, Network
 from lamella.structure.actions.rim_edges import rim_edges, rim_loops
 
@@ -119,6 +120,22 @@ def _apart(one: Floats, other: Floats) -> bool:
     return bool(one.max() < other.min() or other.max() < one.min())
 
 
+def refuse_far(points: Floats, near: tuple[float, float, float], away: float) -> None:
+    """Refuse a place whose nearest node is farther than the net is large.
+
+    Raises
+    ------
+    InputError
+    """
+    size = diagonal(points)
+    if away > size:
+        raise InputError(
+            f"the node nearest to {coordinates(near)} is {away:.4g} m away, and the net is {size:.4g} m large",
+            "write the point in metres, as the drawing has it",
+            "near",
+        )
+
+
 def nodes_at(network: Network, place: Place, rims: NamedRims) -> Integers:
     """Nodes in a place, in their order.
 
@@ -149,6 +166,7 @@ def nodes_at(network: Network, place: Place, rims: NamedRims) -> Integers:
     away = np.linalg.norm(points - np.array(place.near), axis=1)
     nearest = int(np.argmin(np.round(away, 9)))
     if place.radius is None:
+        refuse_far(points, place.near, float(away[nearest]))
         return np.array([nearest])
     found = np.flatnonzero(away <= place.radius)
     if not len(found):

@@ -63,6 +63,12 @@ def driven(
     InputError
         The node is held in all that the direction has; loads that change natural lengths.
     """
+    if not start.loads.strain_free:
+        raise InputError(
+            "the case changes lengths of parts, as temperature does: a displacement cannot drive it",
+            "choose a case of forces",
+            "loads",
+        )
     way = np.asarray(direction, float) / np.linalg.norm(direction)
     weights = np.zeros(start.poses.unknowns)
     weights[NODE_UNKNOWNS * node : NODE_UNKNOWNS * node + 3] = way
@@ -76,8 +82,6 @@ def driven(
         except StopIteration:
             break
         except InputError as error:
-            if error.where == "loads" and not start.loads.strain_free:
-                raise
             reason = error.message
             break
     return Driven(name, node, LoadCurve.of(states, use, weights), reason)
