@@ -21,6 +21,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 from files.write.test_samples import RADIUS, cylinder_mesh, cylinder_net, helix, inward
 from lamella.base.arrays import Floats
 from lamella.files.write import model_3dm, splines
+from lamella.files.write.drawn_layer import DrawnLayer, Repeated
 from lamella.files.write.model_3dm import model_bytes
 from lamella.files.write.splines import SPLINE_TOLERANCE, Spline, fit_splines
 
@@ -215,6 +216,7 @@ def test_a_failed_write_raises_and_leaves_the_older_file(tmp_path: Path) -> None
 import resource, sys
 from pathlib import Path
 from files.write.test_samples import RADIUS, cylinder_mesh, cylinder_net
+from lamella.files.write.drawn_layer import DrawnLayer, Repeated
 from lamella.files.write.model_3dm import model_bytes
 from lamella.files.whole import write_whole
 network, lamellas = cylinder_net()
@@ -296,3 +298,25 @@ def test_splines_of_many_curves_are_those_of_each(monkeypatch: pytest.MonkeyPatc
         np.testing.assert_allclose(spline.knots, expected.t, atol=1e-15)
         np.testing.assert_allclose(spline.controls, expected.c, atol=1e-12)
         np.testing.assert_allclose(expected(own), values[first:end], atol=1e-5)
+
+
+def test_many_places_have_their_names_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Names say id and place; user text, which is as large as all else of a place, is left out of many."""
+    network, _ = cylinder_net(per_cell=16)
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], float)
+    triangles = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
+    labels = tuple(f"node {k}" for k in range(200))
+    places = np.arange(600.0).reshape(-1, 3), np.tile(np.eye(3), (200, 1, 1))
+    layer = DrawnLayer("bolt", repeated=(Repeated("bolt-1", corners, triangles, *places, labels, {"id": "bolt-1"}),))
+
+    def written() -> tuple[int, list[Any]]:
+        content = model_bytes(name="n", version="1", surface=cylinder_mesh(), network=network, further=(layer,))
+        return len(content), [one for one in read(content)[1]["bolt"] if "block" not in one.Attributes.Name]
+
+    large, told = written()
+    assert [one.Attributes.GetUserString("place") for one in told] == list(labels)
+    monkeypatch.setattr(model_3dm, "TEXTS_MOST", 199)
+    small, named = written()
+    assert [one.Attributes.Name for one in named] == [f"bolt-1 {label}" for label in labels]
+    assert not any(one.Attributes.GetUserStrings() for one in named)
+    assert (large - small) / 200 > 300

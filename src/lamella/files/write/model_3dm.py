@@ -38,6 +38,8 @@ LEAST_SAMPLES = 4
 
 POINT_OBJECTS = 2_000
 """Nodes up to this number are points named by their index; above, one point cloud a layer."""
+TEXTS_MOST = 30_000
+"""Places of repeated solids up to which each has user text, which makes it twice as large: 400 bytes a place."""
 
 
 def model_bytes(
@@ -80,8 +82,9 @@ def model_bytes(
     require_finite(network.sample_points, network.sample_normals, network.sample_tangents)
     require_finite(network.sample_arclengths, network.node_points, surface.points, surface.normals)
     model = _Model(name, version, frame).filled(surface, network, lamellas)
+    places = sum(len(solid.labels) for layer in further for solid in layer.repeated)
     for layer in further:
-        model.add_further(layer)
+        model.add_further(layer, texts=places <= TEXTS_MOST)
     return model.encoded()
 
 
@@ -108,8 +111,15 @@ class _Model:
         self._add_nodes(network)
         return self
 
-    def add_further(self, layer: DrawnLayer) -> None:
-        """Polylines and points of a later stage, named by their number."""
+    def add_further(self, layer: DrawnLayer, *, texts: bool = True) -> None:
+        """Polylines and points of a later stage, named by their number, and its solids.
+
+        Parameters
+        ----------
+        layer : DrawnLayer
+        texts : bool
+            Whether every place of what is repeated has user text; its name says the same.
+        """
         self.rhino.add_layers({layer.name: layer.colour})
         for k, curve in enumerate(layer.curves):
             require_finite(curve)
@@ -121,7 +131,7 @@ class _Model:
             attributes = self.rhino.attributes(layer.name, f"point {k}", version=self.version)
             self.file.Objects.AddPoint(rhino3dm.Point3d(*self.rhino.placed(point).tolist()), attributes)
         for solid in layer.repeated:
-            self._add_repeated(layer.name, solid)
+            self._add_repeated(layer.name, solid, texts)
         for body in layer.bodies:
             self._add_body(layer.name, body)
 
@@ -132,7 +142,7 @@ class _Model:
         attributes = self.rhino.attributes(layer, body.name, **text, version=self.version)
         self.file.Objects.AddMesh(_mesh(self.rhino.placed(body.vertices), body.triangles), attributes)
 
-    def _add_repeated(self, layer: str, solid: Repeated) -> None:
+    def _add_repeated(self, layer: str, solid: Repeated, texts: bool) -> None:
         """A block, and a reference to it for each place."""
         require_finite(solid.vertices, solid.origins, solid.axes)
         mesh = _mesh(solid.vertices / self.rhino.metres, solid.triangles)
@@ -147,7 +157,8 @@ class _Model:
             for entry, value in zip(entries, values, strict=True):
                 setattr(matrix, entry, value)
             # what all have in common is said in the block: there may be tens of thousands of places
-            attributes = self.rhino.attributes(layer, f"{solid.name} {label}", id=text["id"], place=label)
+            own = {"id": text["id"], "place": label} if texts else {}
+            attributes = self.rhino.attributes(layer, f"{solid.name} {label}", **own)
             self.file.Objects.AddInstanceObject(rhino3dm.InstanceReference(definition, matrix), attributes)
 
     def encoded(self) -> bytes:
