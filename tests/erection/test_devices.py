@@ -191,7 +191,7 @@ def test_a_limit_point_is_named() -> None:
     structure = make_structure(poses, beams, {0: "x y z rx rz", 1: "x y rx rz"})
     whole = 1.4 * toggle_load(limit)
     begin = at_rest(structure, make_loads(structure, forces={1: (0, 0, -whole, 0, 0, 0)}))
-    found = list(device_states(begin, states, poses.points))
+    found = list(device_states(begin, states, poses.points, 2))
     snaps = [one.snap for one in found if one.snap is not None]
     assert len(found) == states
     (snap,) = snaps

@@ -11,7 +11,10 @@ import pytest
 
 import lamella
 from lamella import InputError
+from lamella.erection.samples import sampled
 from lamella.stages.check import check_project
+from lamella.stages.scene import scene_of
+from lamella.view.scene.encode import encode_scene
 from stages.csv_rows import rows
 from validation.measure_network import measure
 
@@ -376,3 +379,23 @@ def test_refused_lifting(table: dict[str, object], key: str) -> None:
     with pytest.raises(InputError) as caught:
         lamella.parse_project(driven(lifting=table))
     assert caught.value.where == f"erection.lifting.{key}"
+
+
+def test_the_view_has_a_slider() -> None:
+    """Strips and joints of the frames are where the states have them, and take the place of the designed net."""
+    results = lamella.compute(lamella.parse_project(driven()), until="erection")
+    (made,) = results.outputs["erection"].made
+    scene = scene_of(results)
+    (frames,) = [one for one in scene.frames if one.name == "erection"]
+    assert frames.values.tolist() == [state.share for state in made.states]
+    assert {"strips A", "strips B", "surface"} <= set(frames.hides)
+    moved = {motion.layer: motion for motion in frames.motions}
+    points, normals = sampled(made.model, made.states[0].poses)
+    network = made.model.lamellas.network
+    for family in "AB":
+        own = np.repeat(network.families == family, np.diff(network.sample_offsets))
+        np.testing.assert_allclose(moved[f"erection {family}"].positions[0], points[own], atol=1e-12)
+        np.testing.assert_allclose(moved[f"erection {family}"].normals[0], normals[own], atol=1e-12)
+    for state, turns in zip(made.states, moved["erection joints"].values["joint_turn"], strict=True):
+        np.testing.assert_allclose(turns, state.angles - 90)
+    assert len(encode_scene(scene)) > 10_000

@@ -35,7 +35,9 @@ class Found:
     snap: Snap | None = None
 
 
-def device_states(begin: Equilibrium, states: int, towards: Floats, progress: Progress = silent) -> Iterator[Found]:
+def device_states(
+    begin: Equilibrium, states: int, towards: Floats, named: int, progress: Progress = silent
+) -> Iterator[Found]:
     """States at equal shares of the way, as far as it leads.
 
     Where the equilibrium that is followed becomes unstable the net leaves it for the side of a shape, as a flat net
@@ -49,6 +51,8 @@ def device_states(begin: Equilibrium, states: int, towards: Floats, progress: Pr
         Of the way, both ends counted.
     towards : (n, 3)
         Places of all nodes in the shape to whose side it goes, m.
+    named : int
+        The first so many nodes are those of the network, one of which names a limit point.
     progress : callable
     """
     here = begin
@@ -67,12 +71,12 @@ def device_states(begin: Equilibrium, states: int, towards: Floats, progress: Pr
                 after = settled(replace(after, poses=replace(after.poses, points=points)), control, control)
             except InputError:
                 return
-        yield Found(after, share, farthest(here, after, share, number) if snapped else None)
+        yield Found(after, share, farthest(here, after, share, number, named) if snapped else None)
         here = after
 
 
-def farthest(before: Equilibrium, after: Equilibrium, share: float, state: int) -> Snap:
-    """The node of the network that moved farthest from one equilibrium to another."""
-    moved = np.linalg.norm(after.poses.points - before.poses.points, axis=1)
+def farthest(before: Equilibrium, after: Equilibrium, share: float, state: int, named: int) -> Snap:
+    """The node of the network that moved farthest from one equilibrium to another, of the first `named`."""
+    moved = np.linalg.norm(after.poses.points - before.poses.points, axis=1)[:named]
     node = int(np.round(moved, 9).argmax())
     return Snap(share, state, node, float(moved[node]))

@@ -95,7 +95,7 @@ def driven_by(
     rigged, begin, turn = _begun(model, locked, device, start, ground, progress)
     progress(Report.step(f"driven: {device.kind}"))
     nodes = slice(0, model.nodes)
-    found = list(device_states(begin, states, _towards(turn.of(free.poses), begin.poses, side), progress))
+    found = list(device_states(begin, states, _towards(turn.of(free.poses), begin.poses, side), model.nodes, progress))
     told = [
         State.of(model, one.here, one.share, rigged.drive(one.here), stable=one.here.negative == 0) for one in found
     ]
@@ -133,7 +133,9 @@ def _way(
         nodes=rigged.nodes,
         forces=np.array([rigged.forces(one.here) for one in found]).reshape(len(found), -1),
         snaps=tuple(one.snap for one in found if one.snap is not None),
-        stop=None if len(found) == states else farthest(before.here, last.here, last.share, len(found) - 1),
+        stop=None
+        if len(found) == states
+        else farthest(before.here, last.here, last.share, len(found) - 1, model.nodes),
         off_design=float(moved_onto(last.here.poses.points[nodes], designed).max()),
     )
 

@@ -84,8 +84,8 @@ def as_mechanism(
     designed = float(designed_angles(lamellas.network, model.joint_nodes)[joint])
     goals = np.linspace(np.radians(least), np.radians(most), states) - designed
     up = goals >= begin.poses.angles[joint]
-    rising, risen = _states(begin, joint, goals[up], progress)
-    falling, fallen = _states(begin, joint, goals[~up][::-1], progress)
+    rising, risen = _states(model, begin, joint, goals[up], progress)
+    falling, fallen = _states(model, begin, joint, goals[~up][::-1], progress)
     found = [*falling[::-1], *rising]
     if not found:
         raise InputError(
@@ -188,7 +188,9 @@ def easiest_motion(locked: Equilibrium, free: Structure) -> Floats:
     return np.asarray(weights / np.linalg.norm(weights))
 
 
-def _states(begin: Equilibrium, joint: int, goals: Floats, progress: Progress) -> tuple[list[Equilibrium], Snap | None]:
+def _states(
+    model: Model, begin: Equilibrium, joint: int, goals: Floats, progress: Progress
+) -> tuple[list[Equilibrium], Snap | None]:
     """At some angles of a joint, one after the other; and where the way ends before."""
     control = np.zeros(begin.poses.unknowns)
     control[len(control) - len(begin.poses.angles) + joint] = 1.0
@@ -201,6 +203,6 @@ def _states(begin: Equilibrium, joint: int, goals: Floats, progress: Progress) -
             for onward in displacement_path(before, control, goal - before.poses.angles[joint]):
                 here = onward
         except InputError:
-            return found, farthest(before, here, float(number / len(goals)), number)
+            return found, farthest(before, here, float(number / len(goals)), number, model.nodes)
         found.append(here)
     return found, None

@@ -19,6 +19,7 @@ from lamella.stages.stage import File, Missing, Stage, Upstream
 
 if TYPE_CHECKING:
     from lamella.stages.erection.output import ErectionOutput
+    from lamella.view.scene.scene import Shown
 
 
 class ErectionStage(Stage["ErectionOutput"]):
@@ -115,3 +116,8 @@ class ErectionStage(Stage["ErectionOutput"]):
                 yield File(f"{folder}flat.dxf", partial(write_flat, erection=one.made, **signed))
             if one.made.way is not None and len(one.made.way.nodes):
                 yield File(f"{folder}forces.csv", partial(write_forces, erection=one.made, **signed))
+
+    def scene(self, out: ErectionOutput, up: Upstream) -> Iterator[Shown]:
+        from lamella.stages.erection.scene import erection_scene
+
+        yield from erection_scene(out)
