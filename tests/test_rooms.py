@@ -122,6 +122,7 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
         "fabrication",
         "hardware",
         "segments",
+        "drawings",
         "files",
         "files.write",
     ),

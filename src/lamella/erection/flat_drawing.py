@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.erection.erection import Erection
+from lamella.erection.flat_plan import FlatPlan
 from lamella.fabrication.stroke_font import text_strokes
 from lamella.files.write.dxf_text import Block, BlockWriter, DxfFile, Placed
-from lamella.structure.beam.helices import points_between
 
 MM = 1e3
-# pieces an element that its curve is drawn with
-DRAWN_PIECES = 4
 # m: letters of lamellas' ids, of joints' angles, and what is left around them
 ID_TEXT, ANGLE_TEXT, TEXT_SPACE = 0.06, 0.025, 0.02
+# ids that stand one behind the other
+MOST_IDS_AT_AN_END = 40
 SLOTTED = "LAY THE A LAMELLAS UPRIGHT WITH THEIR SLOTS UP. PUT THE B LAMELLAS ON FROM ABOVE WITH THEIR SLOTS DOWN."
 STACKED = "LAY THE A LAMELLAS UPRIGHT. STACK THE B LAMELLAS ON THEM AND BOLT THEM LOOSELY."
 ANGLES = "NUMBERS BESIDE JOINTS ARE THEIR ANGLES IN DEGREES FROM A TO B COUNTER-CLOCKWISE."
@@ -40,29 +40,20 @@ def write_flat(path: Path, erection: Erection, *, name: str, version: str) -> No
 
 
 def _placed(erection: Erection, owner: str) -> Iterator[Placed]:
-    model, plane = erection.model, erection.flat.plane
-    lines, network, section = model.lines, model.lamellas.network, model.lamellas.section
-    points, frames = model.structure.beams.attachment.ends(erection.states[0].poses)
-    along, turned = points_between(points, frames, np.arange(DRAWN_PIECES + 1) / DRAWN_PIECES)
-    centre, left = plane.project(along), (turned[..., 1] @ plane.axes[:2].T)
-    for number, lamella in enumerate(network.ids):
-        own = np.flatnonzero(lines.lamella == number)
-        line, side = _joined(centre[own]), _joined(left[own])
+    plan = FlatPlan.of(erection)
+    section = erection.model.lamellas.section
+    ids = erection.model.lamellas.network.ids
+    for lamella, line, side in zip(ids, plan.lines, plan.sides, strict=True):
         for layer, offset in enumerate(section.layer_offsets.tolist()):
             yield Placed(
                 _layer(line + offset * side, side, section.thickness, lamella, owner), 0.0, 0.0, copy=layer + 1
             )
-        yield from _ids(line, lamella, owner)
-    yield Placed(_angles(erection, owner), 0.0, 0.0)
-    low = plane.project(erection.states[0].poses.points).min(0)
+    yield from _ids(plan, ids, owner)
+    yield Placed(_angles(plan, erection, owner), 0.0, 0.0)
+    low = np.concatenate(plan.lines).min(0)
     for row, text in enumerate((STACKED if section.level else SLOTTED, ANGLES)):
-        at = low - (0.0, (2 * row + 3) * ID_TEXT)
+        at = low - (0.0, (2 * row + 5) * ID_TEXT)
         yield Placed(_text(text, at, ID_TEXT / 2, "", owner), 0.0, 0.0)
-
-
-def _joined(pieces: Floats) -> Floats:
-    """Points (e, p + 1, 2) of elements one behind the other as one line."""
-    return np.concatenate((pieces[:, :-1].reshape(-1, 2), pieces[-1:, -1]))
 
 
 def _layer(line: Floats, side: Floats, thickness: float, lamella: str, owner: str) -> Block:
@@ -72,21 +63,31 @@ def _layer(line: Floats, side: Floats, thickness: float, lamella: str, owner: st
     return writer.block()
 
 
-def _ids(line: Floats, lamella: str, owner: str) -> Iterator[Placed]:
-    """Beyond both ends of a lamella."""
-    width = ID_TEXT * len(lamella)
-    for end, before in ((line[0], line[1]), (line[-1], line[-2])):
-        away = (end - before) / np.linalg.norm(end - before)
-        middle = end + away * (TEXT_SPACE + width / 2)
-        yield Placed(_text(lamella, middle - (width / 2, ID_TEXT / 2), ID_TEXT, lamella, owner), 0.0, 0.0)
+def _ids(plan: FlatPlan, ids: Sequence[str], owner: str) -> Iterator[Placed]:
+    """Beyond both ends of a lamella; where another one ends there, farther out."""
+    taken = np.empty((0, 4))
+    for lamella, line in zip(ids, plan.lines, strict=True):
+        half = np.array([ID_TEXT * len(lamella), ID_TEXT]) / 2
+        for end, before in ((line[0], line[1]), (line[-1], line[-2])):
+            away = (end - before) / np.linalg.norm(end - before)
+            for farther in range(MOST_IDS_AT_AN_END):
+                middle = end + away * (TEXT_SPACE + half[0] + farther * 1.5 * ID_TEXT)
+                box = np.concatenate((middle - half, middle + half))
+                if not _covers(taken, box):
+                    break
+            taken = np.concatenate((taken, box[None]))
+            yield Placed(_text(lamella, box[:2], ID_TEXT, lamella, owner), 0.0, 0.0)
 
 
-def _angles(erection: Erection, owner: str) -> Block:
+def _covers(taken: Floats, box: Floats) -> bool:
+    """Whether a box (left, low, right, high) covers another one."""
+    return bool(((taken[:, :2] < box[2:]) & (box[:2] < taken[:, 2:])).all(1).any())
+
+
+def _angles(plan: FlatPlan, erection: Erection, owner: str) -> Block:
     """At every joint."""
-    model, state = erection.model, erection.states[0]
     writer = BlockWriter(owner)
-    places = erection.flat.plane.project(state.poses.points[model.joint_nodes]) + TEXT_SPACE
-    for place, angle in zip(places, state.angles.tolist(), strict=True):
+    for place, angle in zip(plan.joints + TEXT_SPACE, erection.states[0].angles.tolist(), strict=True):
         for stroke in text_strokes(f"{angle:.1f}"):
             writer.polyline("TEXT", MM * (ANGLE_TEXT * stroke + place), closed=False, tag="")
     return writer.block()

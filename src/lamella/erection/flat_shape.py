@@ -15,7 +15,7 @@ from lamella.structure.beam.poses import Poses
 from lamella.structure.model.model import Model
 
 # pieces of an element whose crossings with those of others are looked for
-PIECES = 4
+CROSSED_PIECES = 4
 # over the size: nets of straight strips farther off their plane, and those of arcs farther off a sphere, do not lie;
 # below that is what strips give about their strong axis
 OFF_FLOOR, OFF_SPHERE = 1e-4, 0.02
@@ -92,12 +92,12 @@ def _turned(plane: Plane, poses: Poses, model: Model) -> Plane:
 
 def _overlaps(model: Model, poses: Poses, plane: Plane) -> Integers:
     lines, attachment = model.lines, model.structure.beams.attachment
-    shares = np.linspace(0, 1, PIECES + 1)
+    shares = np.linspace(0, 1, CROSSED_PIECES + 1)
     along, _ = points_between(*attachment.ends(poses), shares)
     flat = plane.project(along)
     pieces = np.stack((flat[:, :-1], flat[:, 1:]), 2).reshape(-1, 2, 2)
-    crossed, _ = crossings_beside_nodes(pieces, np.repeat(_edge_ends(model), PIECES, axis=0))
-    return np.unique(np.sort(lines.lamella[crossed // PIECES], axis=1), axis=0)
+    crossed, _ = crossings_beside_nodes(pieces, np.repeat(_edge_ends(model), CROSSED_PIECES, axis=0))
+    return np.unique(np.sort(lines.lamella[crossed // CROSSED_PIECES], axis=1), axis=0)
 
 
 def _edge_ends(model: Model) -> Integers:

@@ -13,11 +13,14 @@ from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
 from lamella.base.progress import Progress
 from lamella.base.wording import counted
+from lamella.files.whole import write_whole
+from lamella.project.drawings_table import DrawingsTable
 from lamella.project.tables import Project
 from lamella.stages.erection.figures import FIGURES, REPORT
 from lamella.stages.stage import File, Missing, Stage, Upstream
 
 if TYPE_CHECKING:
+    from lamella.erection.erection import Erection
     from lamella.stages.erection.output import ErectionOutput
     from lamella.view.scene.scene import Shown
 
@@ -33,8 +36,9 @@ class ErectionStage(Stage["ErectionOutput"]):
             "nodes, lamellas, joint angles, energy and driver of every state; where `[segments]` is given in a folder "
             "of each segment, as the next two",
         ),
-        ("erection/path.csv", "places of all nodes in every state"),
+        ("erection/path.csv, erection/polylines.csv", "places of all nodes in every state, and in few for FE programs"),
         ("erection/flat.dxf", "assembly drawing of the flat state"),
+        ("erection/flat.pdf", "the same on paper, with the order of threading, a plan for each segment"),
         ("erection/forces.csv", "forces of a driver on site in every state, where there is one"),
         (
             "erection/lifting.csv",
@@ -45,7 +49,7 @@ class ErectionStage(Stage["ErectionOutput"]):
     report = ("Erection", REPORT)
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
-        return ("erection", "joint", "cables", "edge_beam", "materials", "segments", "surface")
+        return ("erection", "joint", "cables", "edge_beam", "materials", "segments", "surface", "drawings")
 
     def warned_by(self, project: Project) -> tuple[str, ...]:
         return ("fabrication", "joint")
@@ -99,6 +103,7 @@ class ErectionStage(Stage["ErectionOutput"]):
         from lamella.erection.forces_csv import write_forces
         from lamella.erection.lifting_csv import write_lifting
         from lamella.erection.path_csv import write_path
+        from lamella.erection.polylines_csv import write_polylines
         from lamella.erection.states_json import write_states
 
         signed: Any = {"name": up.project.name, "version": __version__}
@@ -106,16 +111,29 @@ class ErectionStage(Stage["ErectionOutput"]):
         if any(one.lifts for one in out.segments):
             lifts = [(one.id, one.lifts) for one in out.segments]
             yield File("erection/lifting.csv", partial(write_lifting, lifts=lifts, **signed))
+        laid = [(one.id, one.made) for one in out.segments if one.made is not None and one.made.laid]
+        if laid:
+            yield File("erection/flat.pdf", lambda path: write_whole(path, self._pdf(laid, up, signed)))
         for one in out.segments:
             if one.made is None:
                 continue
             folder = f"erection/{one.id}/" if one.id else "erection/"
             yield File(f"{folder}states.json", partial(write_states, erection=one.made, origin=origin, **signed))
             yield File(f"{folder}path.csv", partial(write_path, erection=one.made, origin=origin, **signed))
+            yield File(f"{folder}polylines.csv", partial(write_polylines, erection=one.made, origin=origin, **signed))
             if one.made.laid:
                 yield File(f"{folder}flat.dxf", partial(write_flat, erection=one.made, **signed))
             if one.made.way is not None and len(one.made.way.nodes):
                 yield File(f"{folder}forces.csv", partial(write_forces, erection=one.made, **signed))
+
+    def _pdf(self, laid: list[tuple[str, Erection]], up: Upstream, signed: dict[str, str]) -> bytes:
+        from lamella.erection.flat_sheets import flat_pdf
+
+        project = up.project
+        drawings = project.drawings or DrawingsTable()
+        return flat_pdf(
+            laid, material=project.lamella.material, paper=drawings.paper, language=drawings.language, **signed
+        )
 
     def scene(self, out: ErectionOutput, up: Upstream) -> Iterator[Shown]:
         from lamella.stages.erection.scene import erection_scene
