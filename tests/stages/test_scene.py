@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,10 @@ import pytest
 
 import lamella
 from lamella import compute, parse_project
+from lamella.network.network import SEAM
 from lamella.stages.fabrication import view_layers
 from lamella.stages.network import scene as network_scene
+from lamella.stages.network.marks import network_marks
 from lamella.stages.scene import scene_of
 from lamella.view.scene.layer import InstancesLayer, LinesLayer, MeshLayer, StripsLayer
 from lamella.view.scene.scene import Scene
@@ -150,6 +153,30 @@ def test_nodes_of_very_big_nets_are_thinned(monkeypatch: pytest.MonkeyPatch) -> 
     for k, (first, end) in enumerate(zip(curves.stop_offsets[:-1], curves.stop_offsets[1:], strict=True)):
         own = net.stop_nodes[net.stop_offsets[k] : net.stop_offsets[k + 1]]
         assert (curves.stop_nodes[first], curves.stop_nodes[end - 1]) == (own[0], own[-1])
+
+
+def test_warnings_about_strips_lead_to_the_worst_place_of_each_lamella() -> None:
+    """Of strips twenty times as thick as they may be; the lamella that the warning names comes first."""
+    project = PROJECT | {"lamella": {"thickness": 0.01, "layers": 1}}
+    results = compute(parse_project(project), until="lamellas")
+    lamellas, network = results.lamellas, results.network
+    mark = next(one for one in scene_of(results).marks if one.key == "overstressed")
+    warning = next(one for one in results.summary["warnings"] if one.key == "overstressed")
+    assert f"in lamella {mark.ids[0]} at" in warning
+    np.testing.assert_array_equal(mark.positions[0], network.sample_points[np.argmax(lamellas.utilisation)])
+    over = np.maximum.reduceat(lamellas.utilisation, network.sample_offsets[:-1]) > 1
+    assert set(mark.ids) == {one for one, far in zip(network.ids, over, strict=True) if far}
+
+
+def test_warnings_about_nets_lead_to_their_nodes(results: lamella.Results) -> None:
+    network = results.network
+    kinds = network.node_kinds.copy()
+    kinds[3:5] = SEAM
+    other = replace(network, node_kinds=kinds, faces_left_out=np.array([2]))
+    found = {mark.key: mark.positions for mark in network_marks(other, 0.1)}
+    np.testing.assert_array_equal(found["net_open"], network.node_points[3:5])
+    np.testing.assert_array_equal(found["faces_left_out"], network.node_points[2:3])
+    assert set(found) <= {"net_open", "faces_left_out", "cells_large", "cells_small"}
 
 
 def test_supports_are_at_their_nodes() -> None:

@@ -122,9 +122,11 @@ class LamellasStage(Stage[LamellasOutput]):
             yield File("sizing.csv", lambda path: write_sizing(path, sizing, network, out.lamellas, **signed))
 
     def scene(self, out: LamellasOutput, up: Upstream) -> Iterator[Shown]:
+        from lamella.stages.lamellas.marks import lamella_marks
         from lamella.stages.lamellas.scene import lamellas_scene
 
         yield from lamellas_scene(out.lamellas, out.sizing)
+        yield from lamella_marks(out.lamellas)
 
 
 def strips_of(project: Project, surface: Surface[Any]) -> partial[Lamellas]:

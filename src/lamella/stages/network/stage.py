@@ -133,9 +133,11 @@ class NetworkStage(Stage[NetworkOutput]):
         yield File("nodes.csv", lambda path: write_nodes_csv(path, network, **signed))
 
     def scene(self, out: NetworkOutput, up: Upstream) -> Iterator[Shown]:
+        from lamella.stages.network.marks import network_marks
         from lamella.stages.network.scene import network_scene
 
         yield from network_scene(out.network)
+        yield from network_marks(out.network, up.project.lamella.height)
 
 
 @keys("network", surface="surface")

@@ -149,8 +149,8 @@ function start() {
       link.textContent = count > 1 ? `show (${count})` : "show";
       link.addEventListener("click", () => {
         const point = Array.from(mark.positions.subarray(3 * next, 3 * next + 3));
+        const index = mark.ids.length && panel ? curves.ids.indexOf(mark.ids[next] ?? mark.ids[0]) : -1;
         next = (next + 1) % count;
-        const index = mark.ids.length && panel ? curves.ids.indexOf(mark.ids[0]) : -1;
         if (index >= 0) select(index);
         viewer.goTo(point, NEARBY * (viewer.cell || 1));
         viewer.markAt(point);

@@ -46,7 +46,7 @@ class Mark:
     positions : (n, 3)
         m.
     ids : tuple of str
-        Lamellas it speaks of.
+        Lamellas it speaks of: one for each place, or one for all.
     """
 
     key: str
