@@ -42,6 +42,7 @@ from lamella.project.tables import (
     ArcTable,
     BoundaryTable,
     CircleTable,
+    LimitTable,
     MaterialTable,
     PartTable,
     PlaceTable,
@@ -162,6 +163,7 @@ INNER_TABLES: dict[str, type[Table]] = {
 
 # tables inside the others, by the tables they are in and their keys
 FURTHER_INNER: dict[str, dict[str, type[Table]]] = {
+    "network": {"limit = {...}": LimitTable},
     "erection": {
         "driver = {cable = {...}}": DrivingCableTable,
         "driver = {lift = {...}}": LiftTable,

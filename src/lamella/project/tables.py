@@ -78,6 +78,14 @@ MOST_LEFT_OUT = 100
 _Every = Annotated[int, Field(ge=1, le=MOST_LEFT_OUT)]
 
 
+class LimitTable(Table):
+    """What strips may be used on a boundary that is adjusted."""
+
+    utilisation: float = number(
+        "Largest utilisation of the strips, by bending, twist and helix.", "", ge=0.01, le=10.0, examples=[1.0]
+    )
+
+
 class NetworkTable(Table):
     """Which curves the net has, and how dense it is."""
 
@@ -127,6 +135,11 @@ class NetworkTable(Table):
         default="open",
         description="What to do where a net does not close by itself; every net of a closed-form surface closes.",
     )
+    limit: LimitTable | None = Field(
+        default=None,
+        description='With closing = "adjust": what strips may be used, as limit = {utilisation = 1.0}. The nearest '
+        "boundary is looked for whose net closes and whose strips keep it.",
+    )
     minimum_length: float = number(
         "Lamellas shorter than this many median cell edges are left out.", "cells", ge=0, le=100, default=0.5
     )
@@ -158,6 +171,13 @@ class NetworkTable(Table):
         if self.angle != 90:
             raise Refusal(
                 f"angle = {self.angle:g} deg: only 90 deg is offered", "write angle = 90 or leave it out", "angle"
+            )
+        if self.limit is not None and (self.closing != "adjust" or self.kind == "principal"):
+            reason = f'closing = "{self.closing}"' if self.closing != "adjust" else 'kind = "principal"'
+            raise Refusal(
+                f"limit changes a boundary for its strips, and {reason} is given",
+                'write closing = "adjust" and a net of lamellas, or leave limit out',
+                "limit",
             )
         if self.kind == "principal" and self.normal_curvature is not None:
             raise Refusal(

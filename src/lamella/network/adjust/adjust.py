@@ -21,8 +21,10 @@ from lamella.network.adjust.adjustable_films import Films, FollowError
 from lamella.network.adjust.aim import Aim, LostError, StuckError, worst
 from lamella.network.adjust.film_net import FilmNet
 from lamella.network.adjust.least_change import SPACING, LeastChange
+from lamella.network.adjust.strip_limit import MostUsed, StripLimit
 from lamella.network.density_request import DensityRequest
 from lamella.network.elements.closing_steps import CLOSES
+from lamella.network.elements.element_network import plan_net
 from lamella.network.elements.lattice import Lattice, choose_lattice
 from lamella.network.isothermic.between_umbilics import between_umbilics, keeps_apart
 from lamella.network.isothermic.holonomy import around_holes, holonomies
@@ -76,6 +78,10 @@ LIMITS_TIGHTENED_MAX, TIGHTENED = 4, 1e-3
 # of a limit: what takes as much has reached it
 AT_LIMIT = 1.0 - 1e-3
 MOVED_SAMPLES = 2000
+# steps towards less used strips, and rounds of them with the film made anew between; of the limit: what is aimed at;
+# shares of the way there that are tried where the whole is beyond what may change; and of it: what first order may miss
+EASING_STEPS_MAX, EASING_ROUNDS_MAX, EASED = 16, 3, 0.99
+EASING_SHARES, EASING_MISSED = (1.0, 0.5, 0.25, 0.1), 1e-3
 
 
 @dataclass(frozen=True)
@@ -105,9 +111,12 @@ def adjust_boundary(
     cells: int | None = None,
     spacing: float | None = None,
     pattern: Pattern = LAMELLAS,
+    limit: StripLimit | None = None,
     progress: Progress = silent,
 ) -> Adjusted:
     """Change a boundary as little as can be until the net of its film closes, umbilics on nodes.
+
+    With a limit to the utilisation of strips until they keep it as well.
 
     Parameters
     ----------
@@ -115,12 +124,14 @@ def adjust_boundary(
         With what may change, see `lamella.surface.boundary.freedom`.
     cells, spacing, pattern
         See `element_network`.
+    limit : StripLimit, optional
     progress : callable
 
     Raises
     ------
     InputError
-        There is no such film, nothing may change, or the net does not close within what is allowed.
+        There is no such film, nothing may change, or the net does not close, or its strips do not keep their limit,
+        within what is allowed.
     """
     freedom = Freedom(film)
     refuse_fixed(freedom)
@@ -134,7 +145,7 @@ def adjust_boundary(
         first.iso, around, DensityRequest.of(cells, spacing), pattern=pattern, names=names, seams=False
     )
     before = worst(first.whole.nearest(first.cells(lattice.step))[0] - first.cells(lattice.step))
-    search = _Search(films, progress)
+    search = _Search(films, progress, limit)
     state, step, after = search.closed(first, lattice)
     final = freedom.changed(state.shares)
     moved = {name: _moved(old, new) for name, old, new in zip(names, film.loops(), final.loops(), strict=True)}
@@ -154,8 +165,8 @@ def adjust_boundary(
 class _Search:
     """Gauss-Newton's method on one boundary."""
 
-    def __init__(self, films: Films, progress: Progress) -> None:
-        self.films, self.progress = films, progress
+    def __init__(self, films: Films, progress: Progress, limit: StripLimit | None = None) -> None:
+        self.films, self.progress, self.limit = films, progress, limit
         self.steps = 0
         # of the limits of what may change: 1, but where it is looked for how much would do
         self.reach = 1.0
@@ -174,7 +185,7 @@ class _Search:
             if lost:
                 self.progress(Report.step(f"{lost[-1]}: other whole numbers of cells"))
             try:
-                return self.polish(self.descend(way, hasty=True))
+                return self.finished(self.descend(way, hasty=True))
             except StuckError as error:
                 lost.append(error)
                 waiting.append(error.aim)
@@ -185,7 +196,7 @@ class _Search:
                 Report.step(f"{lost[-1]}: back to those that were left with {worst(aim.residuals):.2g} cells")
             )
             try:
-                return self.polish(self.descend(aim))
+                return self.finished(self.descend(aim))
             except LostError as error:
                 lost.append(error)
         lost += beyond
@@ -240,6 +251,9 @@ class _Search:
 
     def _least_reach(self, aim: Aim, left: float) -> float:
         """By what the limits have to be multiplied for all but a share of the misses to vanish to first order."""
+        if worst(aim.residuals) < CLOSED:
+            # what is left are the film's own errors
+            return 1.0
         sensitivities, reach = self._rates_of(aim), self.reach
 
         def reaches(log: float) -> bool:
@@ -406,7 +420,69 @@ class _Search:
             found = found - np.outer(there.residuals - expected, scaled) / (scaled @ move)
         return replace(there, sensitivities=found)
 
-    def polish(self, aim: Aim) -> tuple[FilmNet, float, float]:
+    def finished(self, aim: Aim) -> tuple[FilmNet, float, float]:
+        """The final film, the spacing of its lattice, sqrt(m), and what its net misses, cells."""
+        aim = self.polish(aim)
+        for _ in range(EASING_ROUNDS_MAX):
+            eased = self.eased(aim)
+            if eased is aim:
+                return aim.net, aim.step, worst(aim.residuals)
+            aim = self.polish(eased)
+        raise LostError(aim, "strips are used more on the finer surface")
+
+    def eased(self, aim: Aim) -> Aim:
+        """A boundary as near as can be with which strips keep their limit, and the net closes still."""
+        limit = self.limit
+        if limit is None:
+            return aim
+        for _ in range(EASING_STEPS_MAX):
+            surface = aim.net.surface
+            plan = plan_net(surface, step=aim.step, cells=1, pattern=aim.net.pattern, seams=False)
+            network = plan.traced(closing="round", minimum_length=limit.minimum_length).network
+            most = MostUsed.of(network, surface, limit)
+            self.progress(Report.step(f"strips are used up to {most.largest:.3f} of their strength"))
+            if most.largest <= limit.most:
+                return aim
+            self.steps += 1
+            aim = self._polished(self._eased_once(aim, most, limit))
+            self._tell(aim)
+        raise self._beyond_limit(most, limit)
+
+    def _eased_once(self, aim: Aim, most: MostUsed, limit: StripLimit) -> Aim:
+        """A step towards the limit, to first order in shares and spacing."""
+        net = aim.net
+        sensitivities = self.films.cell_sensitivities(net, aim.step)
+        rates = most.rates(net.surface, *self.films.moves(net), limit)
+        for share in EASING_SHARES:
+            level = most.largest - share * (most.largest - EASED * limit.most)
+            planes = rates, level - most.use + rates @ net.shares
+            change = self._allowed(net, sensitivities, aim.residuals, planes=planes)
+            missed = (most.use + rates @ change[:-1]).max() - level
+            if missed <= EASING_MISSED * level:
+                break
+        else:
+            raise self._beyond_limit(most, limit)
+        change = self._shortened(net, change)
+        reason = ""
+        for part in 0.5 ** np.arange(ADJUSTING_HALVINGS_MAX):
+            try:
+                there = self.films.moved(net, net.shares + part * change[:-1])
+                return self._carried(aim, there, sensitivities, part * change)
+            except FollowError as error:
+                reason = str(error)
+        raise LostError(aim, reason)
+
+    def _beyond_limit(self, most: MostUsed, limit: StripLimit) -> InputError:
+        return InputError(
+            f"no boundary was found whose net closes with strips of a utilisation of {limit.most:g}: they are used up "
+            f"to {most.largest:.3g} where the boundary has changed as much as it may ({counted(self.steps, 'step')})",
+            "allow more change (adjust of the loops, adjust_mean_curvature), take thinner strips (their bending and "
+            "torsion are in proportion to the thickness) or lower ones (the helix stress goes with the square of the "
+            "height), or allow more utilisation",
+            "limit",
+        )
+
+    def polish(self, aim: Aim) -> Aim:
         """The film as fine as was asked for, from the elements at hand: its own misses are a little different ones."""
         tolerance = min(self.films.freedom.film.tolerance, ADJUSTING_TOLERANCE)
         for _ in range(REFINEMENTS_MAX):
@@ -424,7 +500,7 @@ class _Search:
                 break
         if worst(aim.residuals) > 0.9 * CLOSES:
             raise LostError(aim, "the finer surface does not follow")
-        return aim.net, aim.step, worst(aim.residuals)
+        return aim
 
     def _on(self, aim: Aim, net: FilmNet) -> Aim:
         """The same whole shifts on another net of the same boundary."""
@@ -457,21 +533,30 @@ class _Search:
         residuals: Complexes,
         near: Floats | None = None,
         kept: float = RIM_DISTANCE_KEPT,
+        planes: tuple[Floats, Floats] | None = None,
     ) -> tuple[Floats, float]:
         """Change of the shares and of the logarithm of the spacing that undoes misses, and what it costs.
 
-        Umbilics keep a share of their distance from the rim.
+        Umbilics keep a share of their distance from the rim; shares x stay where normals x <= bounds of further planes.
         """
         change = LeastChange.of(net, cell_sensitivities, residuals, near)
         limits = self.films.freedom.limits * (self.tight / self.reach)[:, None, None]
-        return change.within(limits, self.films.umbilics_inside(net, kept))
+        normals, bounds = self.films.umbilics_inside(net, kept)
+        if planes is not None:
+            normals, bounds = np.vstack([normals, planes[0]]), np.concatenate([bounds, planes[1]])
+        return change.within(limits, (normals, bounds))
 
     def _allowed(
-        self, net: FilmNet, cell_sensitivities: Complexes, residuals: Complexes, near: Floats | None = None
+        self,
+        net: FilmNet,
+        cell_sensitivities: Complexes,
+        residuals: Complexes,
+        near: Floats | None = None,
+        planes: tuple[Floats, Floats] | None = None,
     ) -> Floats:
         """The same change within what limits mean: linear ones are drawn in where a curve goes further than they."""
         for _ in range(LIMITS_TIGHTENED_MAX):
-            change, _ = self._solved(net, cell_sensitivities, residuals, near)
+            change, _ = self._solved(net, cell_sensitivities, residuals, near, planes=planes)
             over = self.films.freedom.over(net.shares + change[:-1]) / self.reach
             if over.max(initial=0.0) <= 1:
                 break

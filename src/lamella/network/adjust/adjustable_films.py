@@ -53,6 +53,7 @@ class Films:
         self._progress: Progress = as_details(progress)
         self._loops: dict[bytes, tuple[Loop, ...]] = {}
         self._sensitivities: WeakKeyDictionary[FilmNet, Sensitivities] = WeakKeyDictionary()
+        self._moves: WeakKeyDictionary[FilmNet, tuple[Floats, Floats]] = WeakKeyDictionary()
 
     def loops(self, shares: Floats) -> tuple[Loop, ...]:
         """The boundary at some shares."""
@@ -134,6 +135,11 @@ class Films:
         sensitivities = self._sensitivities[net]
         return -sensitivities.depths, (1 - kept) * sensitivities.depth - sensitivities.depths @ net.shares
 
+    def moves(self, net: FilmNet) -> tuple[Floats, Floats]:
+        """How the film's nodes move with each parameter, (p, n, 3), m, and how H changes, (p,), 1/m."""
+        self._found(net)
+        return self._moves[net]
+
     def _found(self, net: FilmNet) -> Sensitivities:
         if net not in self._sensitivities:
             film, h = net.film.equilibrium.film, net.surface.mean_curvature
@@ -142,6 +148,7 @@ class Films:
             if self.freedom.film.volume is not None:
                 curvature = curvature_rates_of_volume(film, h, rim)
             fields = jacobi_fields(film, h, rim, curvature)
+            self._moves[net] = fields[..., None] * film.directions(), curvature
             self._sensitivities[net] = transition_sensitivities(net.surface, film, net.iso, fields, rim)
         return self._sensitivities[net]
 

@@ -20,6 +20,8 @@ from lamella.base.arrays import Floats
 LIMIT_EXCESS = 1e-6
 # of the objective: what is left to be gained at the end; steps at most; share of the way to the nearest limit
 GAP_LEFT, INTERIOR_STEPS_MAX, TO_LIMIT = 1e-12, 80, 0.99
+# of the largest slack: where one is less, no place keeps all planes
+NO_PLACE = 1e-60
 # of the diagonal, where a system has no root
 REGULAR = 1e-14
 
@@ -36,7 +38,7 @@ def least_squares_within(
     right : (m,)
     limits : (n, c, p)
     planes : (m, p) and (m,), optional
-        Normals and bounds: normals x <= bounds, which some x within the limits keeps.
+        Normals and bounds: normals x <= bounds. Where no x within the limits keeps them all, one that breaks some.
     """
     normals, bounds = planes or (np.zeros((0, system.shape[1])), np.zeros(0))
     # of one length, as rounding is
@@ -79,6 +81,8 @@ class _Within:
         for _ in range(INTERIOR_STEPS_MAX):
             here = _Place.of(self, wanted, x, s, y)
             gap = float(s @ y)
+            if s.min() < NO_PLACE * s.max():
+                break
             if gap <= GAP_LEFT * size and np.abs(here.off).max() < LIMIT_EXCESS:
                 break
             _, ds, dy = here.step(np.zeros(len(s)))

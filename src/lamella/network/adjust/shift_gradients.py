@@ -73,6 +73,8 @@ def depth_gradients(surface: ElementSurface, depths: UmbilicDepths) -> Floats:
     own = np.arange(count)
     by_position[own, own] = depths.inwards
     by_shape[own, own] = depths.by_deviator[:, :1] * real + depths.by_deviator[:, 1:] * imaginary
+    if not count:
+        return np.zeros((0, *surface.nodes.shape))
     return _by_nodes(surface, depths.places, by_position, by_shape)
 
 

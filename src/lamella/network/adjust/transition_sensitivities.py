@@ -129,13 +129,13 @@ def transition_sensitivities(
     moves = fields[..., None] * film.directions()
     flat = moves.reshape(len(fields), -1).T
     gradients = shift_gradients(surface, iso)
-    right = gradients.reshape(len(gradients), -1) @ flat
+    right = gradients.reshape(len(gradients), len(flat)) @ flat
     relations = list(vertex_relations(iso.mesh, iso.transitions, iso.across, iso.odd).values())
     still = np.zeros(len(relations), complex)
     shifts = np.zeros(right.shape, complex)
     for number, column in enumerate(right.T):
         shifts[:, number] = best_shifts(iso.gram, column, relations, still)
     umbilics = UmbilicDepths.of(surface)
-    inwards = depth_gradients(surface, umbilics).reshape(len(umbilics.depth), -1) @ flat
+    inwards = depth_gradients(surface, umbilics).reshape(len(umbilics.depth), len(flat)) @ flat
     depths = inwards - np.einsum("zc,pzc->zp", umbilics.inwards, rim_shifts[:, umbilics.rim_node])
     return Sensitivities(shifts, umbilics.depth, depths)

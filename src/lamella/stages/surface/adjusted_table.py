@@ -9,6 +9,7 @@ from typing import Any
 from lamella.base.drawing_origin import NOWHERE, measured_from, reported_from
 from lamella.base.progress import Progress, Report, silent
 from lamella.network.adjust.adjust import adjust_boundary
+from lamella.network.adjust.strip_limit import StripLimit
 from lamella.network.pattern import LAMELLAS, Pattern
 from lamella.project.tables import FormFoundTable
 from lamella.stages.keys import keys
@@ -46,6 +47,7 @@ _KEYS = {
     "surface": "surface",
     "cells": "network.cells",
     "spacing": "network.spacing",
+    "limit": "network.limit",
 }
 
 
@@ -56,6 +58,7 @@ def adjust_table(
     cells: int | None,
     spacing: float | None,
     pattern: Pattern = LAMELLAS,
+    limit: StripLimit | None = None,
     progress: Progress = silent,
 ) -> AdjustedTable:
     """Change the boundary of a table until the net of its surface closes.
@@ -65,7 +68,7 @@ def adjust_table(
     table : FormFoundTable
     folder : Path
         Where relative paths of boundary files begin.
-    cells, spacing, pattern, progress
+    cells, spacing, pattern, limit, progress
         See `lamella.network.adjust.adjust.adjust_boundary`.
 
     Raises
@@ -78,7 +81,9 @@ def adjust_table(
             progress(Report.step(measured_from(table.origin)))
         film = adjustable_film(table, folder)
         with keys("surface", **_KEYS):
-            adjusted = adjust_boundary(film, cells=cells, spacing=spacing, pattern=pattern, progress=progress)
+            adjusted = adjust_boundary(
+                film, cells=cells, spacing=spacing, pattern=pattern, limit=limit, progress=progress
+            )
     return AdjustedTable(changed_table(table, adjusted.film), adjusted.surface, adjusted.step, adjusted.figures)
 
 

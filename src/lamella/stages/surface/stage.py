@@ -110,7 +110,10 @@ def _adjusts(project: Project, wanted: tuple[str, ...]) -> bool:
 
 def _decided_by(project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
     """What decides the surface, without its mesh."""
-    return ("surface", "network") if _adjusts(project, wanted) else ("surface",)
+    if not _adjusts(project, wanted):
+        return ("surface",)
+    limited = ("lamella", "joint", "materials") if project.network.limit is not None else ()
+    return ("surface", "network", *limited)
 
 
 def _found(up: Upstream, progress: Progress) -> tuple[Surface[Any], AdjustedTable | None]:
@@ -119,6 +122,7 @@ def _found(up: Upstream, progress: Progress) -> tuple[Surface[Any], AdjustedTabl
     if not _adjusts(project, up.wanted):
         return make_surface(project, up.folder, progress, up.memory), None
     from lamella.stages.surface.adjusted_table import adjust_table
+    from lamella.stages.surface.strip_limit import strip_limit
 
     assert isinstance(table, FormFoundTable)
     adjusted = adjust_table(
@@ -127,6 +131,7 @@ def _found(up: Upstream, progress: Progress) -> tuple[Surface[Any], AdjustedTabl
         cells=project.network.cells,
         spacing=project.network.spacing,
         pattern=pattern_of(project.network),
+        limit=strip_limit(project),
         progress=progress,
     )
     return adjusted.surface, adjusted
