@@ -19,7 +19,7 @@ from lamella.hardware.rules import CableRules, JointRules
 from lamella.project.surface_tables import MOST_LOOPS
 from lamella.project.tables import EdgeBeamTable, FabricationTable, JointTable, Project
 from lamella.stages.keys import keys
-from lamella.stages.lamellas.section import section_of
+from lamella.stages.section_of_table import section_of
 from lamella.surface.surface import Surface
 
 

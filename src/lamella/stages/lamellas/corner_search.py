@@ -18,8 +18,8 @@ from lamella.base.wording import rounded
 from lamella.network.elements.element_network import ElementNetwork
 from lamella.network.streamlines.streamline_network import TracedNetwork
 from lamella.project.tables import FormFoundTable, Project
-from lamella.stages.lamellas.section import section_of
 from lamella.stages.network.net_of_table import net_of_plan, net_plan
+from lamella.stages.section_of_table import section_of
 from lamella.strip.lamellas import make_lamellas
 from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface

@@ -17,9 +17,9 @@ from lamella.stages.keys import keys
 from lamella.stages.lamellas.developable import developable_warnings
 from lamella.stages.lamellas.figures import FIGURES, REPORT
 from lamella.stages.lamellas.output import LamellasOutput
-from lamella.stages.lamellas.section import section_of
 from lamella.stages.lamellas.warnings import lamella_warnings, layer_warnings
 from lamella.stages.pattern_of_table import pattern_of
+from lamella.stages.section_of_table import section_of
 from lamella.stages.stage import File, Missing, Stage, Upstream
 from lamella.stages.surface.surface_of_table import make_surface
 from lamella.strip.developable_strips import developable_strips

@@ -8,7 +8,7 @@ from lamella.base.arrays import Floats
 from lamella.network.adjust.strip_limit import StripLimit
 from lamella.network.network import Network
 from lamella.project.tables import Project
-from lamella.stages.lamellas.section import section_of
+from lamella.stages.section_of_table import section_of
 from lamella.strip.lamellas import stresses_of
 from lamella.strip.levels import on_levels
 from lamella.strip.stress import stresses
