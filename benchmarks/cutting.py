@@ -77,6 +77,34 @@ def round_ones() -> dict[str, float]:
     return {"pieces": pieces, "bars or sheets": sheets, "used": used, "choice and laying, s": seconds}
 
 
+def _area(points: np.ndarray) -> float:
+    x, y = points.T
+    return abs(float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))) / 2
+
+
+def plates() -> dict[str, float]:
+    """Star washers with long arms and square keys of some sizes on sheets, by rectangles and by their outlines."""
+    from lamella.cutting.nesting import nested
+    from lamella.fabrication.flat import outline_points
+    from lamella.hardware.shape import crossed, rectangle
+
+    rng = np.random.default_rng(1)
+    kinds = [crossed(0.04, 0.012, angle) for angle in rng.uniform(1.3, 1.84, 12)]
+    kinds += [rectangle(size, size) for size in rng.uniform(0.02, 0.03, 12)]
+    outlines = [outline_points(one)[:-1] for one in kinds]
+    count = np.full(len(kinds), -(-PIECES // len(kinds)))
+    area = sum(n * _area(points) for n, points in zip(count.tolist(), outlines, strict=True))
+    seconds, ways = clocked(lambda: nested(outlines, count, SHEET, GAP / 2))
+    sheets = [len(one.ends) for one in ways]
+    return {
+        "pieces": int(count.sum()),
+        "bars or sheets": min(sheets),
+        "by rectangles": sheets[0],
+        "used": area / (min(sheets) * SHEET[0] * SHEET[1]),
+        "choice and laying, s": seconds,
+    }
+
+
 def tables() -> Iterator[Table]:
     """One table: strips of several lengths on bars, arcs on sheets."""
     rows: list[Row] = [
@@ -84,8 +112,9 @@ def tables() -> Iterator[Table]:
         for low, high in ((2.0, 14.0), (3.2, 3.8), (6.5, 7.0))
     ]
     rows.append({"strips": f"arcs of radius {RADIUS:g} m on sheets of {SHEET[0]:g} x {SHEET[1]:g} m", **round_ones()})
+    rows.append({"strips": f"plates on sheets of {SHEET[0]:g} x {SHEET[1]:g} m", **plates()})
     slowest = max(float(row["choice and laying, s"] or 0) for row in rows)
-    *bars, sheets = (1 - float(row["used"] or 0) for row in rows)
+    *bars, sheets = (1 - float(row["used"] or 0) for row in rows[:-1])
     yield Table(
         "Cutting",
         "Pieces cut from stock, splices chosen with the cutting. Used is length of the bars, or area of the sheets.",

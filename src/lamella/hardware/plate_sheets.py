@@ -10,11 +10,15 @@ import numpy as np
 from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.message import Message
-from lamella.cutting.rectangles import Spread, spread
+from lamella.cutting.nesting import nested
+from lamella.cutting.rectangles import Spread
 from lamella.fabrication.flat import outline_points
 from lamella.fabrication.stock import Stock
 from lamella.hardware.item import Hardware, Item
 from lamella.hardware.rules import MM
+
+OUTLINE_ARCS = 64
+"""Straight parts of an arc where plates are laid by their outlines: of half a circle they are off by 3e-4 radii."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,19 +106,19 @@ def plate_sheets(
 
 def _laid(items: tuple[Item, ...], material: str, thickness: float, stocks: list[Stock], gap: float) -> PlateSheets:
     boxes = np.array([_box(item) for item in items])
+    outlines = [outline_points(item.cut.outline, OUTLINE_ARCS) for item in items]
     quantities = np.array([item.quantity for item in items])
     kinds = np.repeat(np.arange(len(items)), quantities)
     copies = np.arange(len(kinds)) - np.repeat(np.cumsum(quantities) - quantities, quantities) + 1
     sizes = boxes[:, 1] - boxes[:, 0]
     best: tuple[float, Stock, Spread, Floats] | None = None
     for stock in stocks:
-        one = spread(sizes[kinds], (stock.length, stock.width), gap)
-        if one is None:
-            continue
-        length = np.minimum(one.ends, stock.length) if stock.kind == "coil" else np.full(len(one.ends), stock.length)
-        cost = float(stock.cost(thickness, items[0].density) * np.sum(length) / stock.length)
-        if best is None or cost < best[0] * (1 - 1e-9):
-            best = cost, stock, one, np.column_stack([length, np.full(len(length), stock.width)])
+        for one in nested(outlines, quantities, (stock.length, stock.width), gap):
+            whole = np.full(len(one.ends), stock.length)
+            length = np.minimum(one.ends, stock.length) if stock.kind == "coil" else whole
+            cost = float(stock.cost(thickness, items[0].density) * np.sum(length) / stock.length)
+            if best is None or cost < best[0] * (1 - 1e-9):
+                best = cost, stock, one, np.column_stack([length, np.full(len(length), stock.width)])
     if best is None:
         largest = items[int(np.argmax(sizes.max(axis=1)))]
         length, width = np.sort(sizes[items.index(largest)])[::-1] + 2 * gap

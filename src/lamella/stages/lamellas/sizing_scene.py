@@ -11,7 +11,7 @@ from lamella.strip.sizing import LEAST_SHARE_TRIED, Sizing
 from lamella.view.scene.curves import Fact, Plot, Series
 from lamella.view.scene.quantity import Quantity, magnitude
 
-NEAR = ("#2b6f4f", "#7fae5a", "#d9c94a", "#e8963a", "#d7372c")
+NEAR_LIMIT = ("#2b6f4f", "#7fae5a", "#d9c94a", "#e8963a", "#d7372c")
 """From far below the limit to it: red is the limit and beyond."""
 MM = 1e3
 
@@ -34,9 +34,11 @@ def sizing_quantities(sizing: Sizing, lamellas: Lamellas, kept: Thinned) -> tupl
     )
     at = f"at a safety of {sizing.safety:g}"
     return (
-        magnitude("limit", f"Share of the limit {at}", "", limit_share(sizing, lamellas)[kept.samples], 1.0, NEAR),
-        magnitude("limit_thickness", f"Thickness over the largest {at}", "", thick, 1.0, NEAR),
-        magnitude("limit_height", f"Height over the largest {at}", "", high, 1.0, NEAR),
+        magnitude(
+            "limit", f"Share of the limit {at}", "", limit_share(sizing, lamellas)[kept.samples], 1.0, NEAR_LIMIT
+        ),
+        magnitude("limit_thickness", f"Thickness over the largest {at}", "", thick, 1.0, NEAR_LIMIT),
+        magnitude("limit_height", f"Height over the largest {at}", "", high, 1.0, NEAR_LIMIT),
     )
 
 
