@@ -92,13 +92,20 @@ def workers(base: Base, *, jobs: int | None, scheduler: str | None) -> Iterator[
             with client:
                 yield Workers(client, base)
             return
-        cluster = LocalCluster(
-            n_workers=jobs or os.cpu_count() or 1,
-            threads_per_worker=1,
-            processes=True,
-            dashboard_address=None,
-            silence_logs=50,
-        )
+        try:
+            cluster = LocalCluster(
+                n_workers=jobs or os.cpu_count() or 1,
+                threads_per_worker=1,
+                processes=True,
+                dashboard_address=None,
+                silence_logs=50,
+            )
+        except RuntimeError as error:
+            raise InputError(
+                f"the processes of a study could not be begun: {error}",
+                "try again with fewer --jobs; with 1 the program itself does it",
+                "--jobs",
+            ) from None
         with cluster, Client(cluster) as client:
             yield Workers(client, base)
 
@@ -129,8 +136,9 @@ class Workers:
 
     def __init__(self, client: Any, base: Base) -> None:
         self._client = client
-        # once to each worker that needs it
-        self._base = client.scatter(base, hash=False)
+        # once to each worker that needs it, and as a task of its own: data that were only sent would be lost with the
+        # worker that holds them
+        self._base = client.submit(_given, base, pure=False)
 
     @property
     def count(self) -> int:
@@ -172,6 +180,10 @@ class Workers:
             future.release()
             if waiting:
                 hand_out(waiting.pop())
+
+
+def _given(base: Base) -> Base:
+    return base
 
 
 def _failed(reason: str) -> Outcome:
