@@ -54,10 +54,13 @@ from lamella.project.tables import (
 from lamella.segments.lists import COLUMNS as SEGMENT_LIST
 from lamella.stages.all_stages import STAGES, WRITES
 from lamella.stages.results import Results
+from lamella.stages.scene import scene_of
 from lamella.stages.schema import summary_schema
 from lamella.studies.tables import STUDY_TABLES, StudyTable, study_schema
 from lamella.view.drawing_picture import draw_part, draw_sheets
 from lamella.view.picture import draw
+from lamella.view.render.png import png_bytes
+from lamella.view.render.render import render
 from lamella.view.surface_picture import Panel, draw_surface
 
 DOCS = Path(__file__).parent
@@ -90,6 +93,16 @@ VIEWS: dict[str, tuple[tuple[float, float], tuple[int, int]]] = {
     "20_steel_interlocked": ((-62, 30), (1200, 900)),
     "21_vault_structure": ((-60, 25), (1200, 900)),
     "22_facade": ((-60, 18), (900, 1200)),
+}
+
+# what is built, as `lamella picture` draws it
+BUILT_VIEWS: dict[str, tuple[str, tuple[int, int]]] = {
+    "15_vault": ("-55,14", (1200, 750)),
+    "17_gridshell": ("-62,8", (1600, 900)),
+    "19_timber_stacked": ("-58,22", (1200, 750)),
+    "20_steel_interlocked": ("-58,22", (1200, 750)),
+    "01_unduloid": ("iso", (1200, 750)),
+    "14_three_columns": ("-60,12", (1200, 750)),
 }
 
 # azimuth and elevation of surfaces without a network
@@ -489,6 +502,10 @@ def make_pictures(results: dict[str, Results], folder: Path) -> None:
             continue
         view, size = VIEWS[name]
         draw(run, folder / f"{name}.png", view=view, size=size)
+    for name, (built_view, size) in BUILT_VIEWS.items():
+        print(f"picture of what is built: {name}")
+        pixels = render(scene_of(results[name]), view=built_view, size=size)
+        (folder / f"built_{name}.png").write_bytes(png_bytes(pixels))
     with tempfile.TemporaryDirectory() as temporary:
         target = Path(temporary) / "run"
         write(results["01_unduloid"], target)

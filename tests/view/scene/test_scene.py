@@ -7,7 +7,7 @@ import pytest
 
 from lamella.view.scene.curves import Curves, Fact
 from lamella.view.scene.frames import Frames, Motion
-from lamella.view.scene.layer import PointsLayer
+from lamella.view.scene.layer import PointsLayer, StripsLayer
 from lamella.view.scene.scene import make_scene
 from lamella.view.scene.thinning import rim_edges
 
@@ -63,3 +63,16 @@ def test_the_rim_is_the_edges_of_one_triangle() -> None:
     """Of a square of two triangles: its four sides."""
     edges = rim_edges(np.array([[0, 1, 2], [0, 2, 3]]))
     assert edges.tolist() == [[0, 1], [1, 2], [2, 3], [3, 0]]
+
+
+def test_the_box_reaches_to_the_edges_of_strips() -> None:
+    """Of a strip 0.2 high that stands on a line and leans by 0.6 to the side."""
+    up = np.tile([0.6, 0.0, 0.8], (2, 1))
+    measures = {"height": 0.2, "thickness": 0.01, "level": 0.05}
+    line = np.array([[0.0, 0, 0], [0, 3, 0]])
+    strips = StripsLayer(
+        name="s", label="S", positions=line, normals=up, offsets=np.array([0, 2]), sides=np.zeros(1), **measures
+    )
+    low, high = make_scene("x", [strips]).box
+    assert low == pytest.approx([-0.03, 0, -0.04])
+    assert high == pytest.approx([0.09, 3, 0.12])

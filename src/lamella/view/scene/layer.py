@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
+import numpy as np
+
 from lamella.base.arrays import Floats, Integers
 from lamella.view.scene.quantity import Quantity
 
@@ -73,6 +75,11 @@ class Layer:
     def points(self) -> Floats:
         """Points that the layer is about, (n, 3): what a camera has to see."""
         raise NotImplementedError
+
+    @property
+    def reach(self) -> Floats:
+        """Points that it reaches to, (n, 3)."""
+        return self.points
 
     @property
     def count(self) -> int:
@@ -221,3 +228,9 @@ class StripsLayer(Layer):
     def points(self) -> Floats:
         """See `Layer`."""
         return self.positions
+
+    @property
+    def reach(self) -> Floats:
+        """The edges of a strip on every sample."""
+        half = self.height / 2
+        return np.concatenate([self.positions + (self.level + side * half) * self.normals for side in (-1, 1)])

@@ -107,9 +107,8 @@ class Scene:
     @property
     def box(self) -> tuple[Floats, Floats]:
         """Lowest and highest coordinates of what is there, without its surroundings."""
-        clouds = [
-            layer.points for layer in self.layers if layer.material not in ("ground", "person") and len(layer.points)
-        ]
+        built = [layer for layer in self.layers if layer.material not in ("ground", "person")]
+        clouds = [layer.reach for layer in built if len(layer.points)]
         if not clouds:
             return np.zeros(3), np.zeros(3)
         return np.min([cloud.min(0) for cloud in clouds], axis=0), np.max([cloud.max(0) for cloud in clouds], axis=0)
