@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+import rhino3dm
 
 from lamella import compute, parse_project, write
+from lamella.stages.lamellas.stage import LamellasStage
 
 CATENOID: dict[str, Any] = {
     "surface": {"kind": "catenoid", "neck_radius": 1.2, "height": [-1.0, 1.5]},
@@ -66,3 +68,23 @@ def test_nothing_unless_asked_for(tmp_path: Path) -> None:
     assert results.summary["lamellas"]["planarity_score"]["developable"] is None
     assert "developable" not in results.summary["lamellas"]
     assert "strips" not in results.project.to_toml()
+
+
+def test_developable_strips_are_in_the_model_and_in_the_view(tmp_path: Path) -> None:
+    """Where they exist: a solid of every piece, and its bending stress; nothing of it without the key."""
+    results = compute(parse_project(CATENOID | ASKED), until="lamellas")
+    write(results, tmp_path / "run")
+    model = rhino3dm.File3dm.Read(str(tmp_path / "run" / "model.3dm"))
+    layers = {layer.Index: layer.Name for layer in model.Layers}
+    drawn = [one for one in model.Objects if layers[one.Attributes.LayerIndex].startswith("developable")]
+    # the waist cuts every lamella in two
+    assert len(drawn) == 2 * len(results.network.ids)
+    shown = list(LamellasStage().scene(results.outputs["lamellas"], results.upstream))
+    stress = results.outputs["lamellas"].developable.bending
+    for family in "AB":
+        (layer,) = (one for one in shown if getattr(one, "name", "") == f"developable {family}")
+        (quantity,) = layer.quantities
+        assert quantity.most == pytest.approx(stress[np.isfinite(stress)].max() * 1e-6, rel=0.2)
+        assert len(layer.positions) == len(quantity.values)
+    plain = compute(parse_project(CATENOID), until="lamellas")
+    assert not list(LamellasStage().model(plain.outputs["lamellas"], plain.upstream))

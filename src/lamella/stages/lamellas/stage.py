@@ -11,6 +11,7 @@ from lamella.base.drawing_origin import drawing_origin
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report
 from lamella.fabrication.defaults import default_slot_width
+from lamella.files.write.drawn_layer import DrawnLayer
 from lamella.project.tables import Project
 from lamella.stages.drawn import in_drawing
 from lamella.stages.keys import keys
@@ -127,6 +128,16 @@ class LamellasStage(Stage[LamellasOutput]):
 
         yield from lamellas_scene(out.lamellas, out.sizing)
         yield from lamella_marks(out.lamellas)
+        if out.developable is not None:
+            from lamella.stages.lamellas.developable_model import developable_scene
+
+            yield from developable_scene(out.lamellas, out.developable)
+
+    def model(self, out: LamellasOutput, up: Upstream) -> Iterator[DrawnLayer]:
+        if out.developable is not None:
+            from lamella.stages.lamellas.developable_model import developable_layers
+
+            yield from developable_layers(out.lamellas, out.developable)
 
 
 def strips_of(project: Project, surface: Surface[Any]) -> partial[Lamellas]:
