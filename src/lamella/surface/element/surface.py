@@ -194,6 +194,10 @@ class ElementSurface(Shown):
         there = self.frames(where)
         return there, *self._shape(there, self._smoothed[0].values(where))
 
+    def shape_everywhere(self, local: Floats) -> tuple[Floats, Complexes]:
+        """Mean curvature H and deviator at the same local coordinates (q, 2) of every element, (m q,) each, 1/m."""
+        return self._shape(self.frames_everywhere(local), self._smoothed[0].everywhere(local))
+
     def _shape(self, there: ElementFrames, smooth: Floats) -> tuple[Floats, Complexes]:
         """Mean curvature and deviator (n,) from the smoothed shape operator (6, n)."""
         u, v = images(smooth.T, there.e_u), images(smooth.T, there.e_v)

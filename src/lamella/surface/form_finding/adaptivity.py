@@ -57,10 +57,19 @@ class Deviation:
     zones: CornerZones
 
 
-def deviation_of(film: Film, mean_curvature: float) -> Deviation:
+def deviation_of(film: Film, mean_curvature: float, cosine: float = 0.0) -> Deviation:
     """Measured from the second derivatives of the positions, inside each element and at its nodes.
 
     The curvature of a polynomial is farthest off at the element's rim, most of all at its vertices.
+
+    Parameters
+    ----------
+    film : Film
+    mean_curvature : float
+        H0, 1/m.
+    cosine : float
+        Where H + cosine |D| is to be H0 (`lamella.surface.constant_angle.relation`), whose difference from it then
+        counts.
     """
     inside, weights = triangle_rule(6)
     # many more places than the nodes can be moved for: between too few of them H would be worse
@@ -70,7 +79,7 @@ def deviation_of(film: Film, mean_curvature: float) -> Deviation:
     position, mean, deviator = curvature_sizes(film.connectivity, corners, points)
     m = len(corners)
     places = position.reshape(-1, 3)
-    off = np.abs(mean - mean_curvature)
+    off = np.abs(mean + cosine * deviator - mean_curvature)
     bend = mean**2 + deviator**2
     flat = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     weight = flat[:, None] * weights

@@ -40,7 +40,7 @@ AT_VERTEX = 0.02
 ELEMENT_BLOCK = 500
 
 
-def redistributed(film: Film, mean_curvature: float) -> Film:
+def redistributed(film: Film, mean_curvature: float, cosine: float = 0.0) -> Film:
     """The film with the nodes inside its elements and edges moved along the tangent planes.
 
     Parameters
@@ -49,6 +49,8 @@ def redistributed(film: Film, mean_curvature: float) -> Film:
         In equilibrium.
     mean_curvature : float
         H0, 1/m.
+    cosine : float
+        Where H + cosine |D| is to be H0 (`lamella.surface.constant_angle.relation`).
     """
     connectivity = film.connectivity
     elements, n = connectivity.elements, connectivity.node_count
@@ -58,7 +60,7 @@ def redistributed(film: Film, mean_curvature: float) -> Film:
     m, k = len(elements), 2 * (elements.shape[1] - 3)
     matrix, pull = np.empty((m, k, k)), np.empty((m, k))
     for rows in blocks(m, ELEMENT_BLOCK):
-        rates, mean, area = variation_of_mean_curvature(film, normals, frames, rows)
+        rates, mean, area = variation_of_mean_curvature(film, normals, frames, rows, cosine)
         weighted = rates * (weights * area)[..., None]
         matrix[rows] = np.matmul(weighted.transpose(0, 2, 1), rates)
         pull[rows] = np.matmul((mean - mean_curvature)[:, None], weighted)[:, 0]
@@ -109,9 +111,12 @@ def check_rule(order: int) -> tuple[Floats, Floats]:
 
 
 def variation_of_mean_curvature(
-    film: Film, normals: Floats, frames: Floats, rows: slice
+    film: Film, normals: Floats, frames: Floats, rows: slice, cosine: float = 0.0
 ) -> tuple[Floats, Floats, Floats]:
     """Mean curvature at the places of `check_rule`, and its change by shifts of nodes within the surface.
+
+    With a cosine H + cosine |D| takes the place of H, and the sum of second derivatives along the principal directions
+    with the weights 1 + cosine and 1 - cosine that of the Laplacian.
 
     Parameters
     ----------
@@ -122,6 +127,7 @@ def variation_of_mean_curvature(
         See `tangent_frames`.
     rows : slice
         Which elements.
+    cosine : float
 
     Returns
     -------
@@ -143,14 +149,18 @@ def variation_of_mean_curvature(
     area = np.sqrt(determinant)
     # Laplace u = g^ab u_ab - along^c u_c, along = g^ab x_ab in the basis x_1, x_2
     g_11, g_12, g_22 = (entry[..., None] for entry in (g / determinant, -f / determinant, e / determinant))
-    bend = g_11 * x_11 + 2 * g_12 * x_12 + g_22 * x_22
+    p_11, p_12, p_22 = g_11, g_12, g_22
+    if cosine:
+        second = [dots(of, crosses(x_1, x_2))[..., None] / area[..., None] for of in (x_11, x_12, x_22)]
+        p_11, p_12, p_22 = _weighted((g_11, g_12, g_22), second, cosine)
+    bend = p_11 * x_11 + 2 * p_12 * x_12 + p_22 * x_22
     by_1, by_2 = dots(bend, x_1)[..., None], dots(bend, x_2)[..., None]
     along_1, along_2 = g_11 * by_1 + g_12 * by_2, g_12 * by_1 + g_22 * by_2
     mean_curvature = dots(bend, crosses(x_1, x_2)) / (2 * area)
     # Laplace(phi n) = phi Laplace n + 2 <grad phi, grad n> + n Laplace phi
-    laplace_n = g_11 * n_11 + 2 * g_12 * n_12 + g_22 * n_22 - along_1 * n_1 - along_2 * n_2
-    laplace_v = g_11 * v_11 + 2 * g_12 * v_12 + g_22 * v_22 - along_1 * v_1 - along_2 * v_2
-    grad_1, grad_2 = g_11 * n_1 + g_12 * n_2, g_12 * n_1 + g_22 * n_2
+    laplace_n = p_11 * n_11 + 2 * p_12 * n_12 + p_22 * n_22 - along_1 * n_1 - along_2 * n_2
+    laplace_v = p_11 * v_11 + 2 * p_12 * v_12 + p_22 * v_22 - along_1 * v_1 - along_2 * v_2
+    grad_1, grad_2 = p_11 * n_1 + p_12 * n_2, p_12 * n_1 + p_22 * n_2
     local = frames[elements[:, 3:]].transpose(0, 2, 1, 3).reshape(len(elements), 3, -1)
 
     def both(of_node: Floats) -> Floats:
@@ -160,6 +170,24 @@ def variation_of_mean_curvature(
     rates = both(value) * np.matmul(laplace_n, local) + both(laplace_v) * np.matmul(n, local)
     rates += 2 * (both(v_1) * np.matmul(grad_1, local) + both(v_2) * np.matmul(grad_2, local))
     return rates / 2, mean_curvature, area
+
+
+def _weighted(inverse: tuple[Floats, ...], second: list[Floats], cosine: float) -> tuple[Floats, ...]:
+    """g^ab + cosine (d1^a d1^b - d2^a d2^b) of the principal directions, from g^ab and second fundamental form."""
+    g_11, g_12, g_22 = inverse
+    l_11, l_12, l_22 = second
+    # raised: g^ac II_cd g^db
+    by_1, by_2 = (g_11 * l_11 + g_12 * l_12, g_11 * l_12 + g_12 * l_22), (g_12 * l_11 + g_22 * l_12,)
+    by_2 += (g_12 * l_12 + g_22 * l_22,)
+    s_11 = by_1[0] * g_11 + by_1[1] * g_12
+    s_12 = by_1[0] * g_12 + by_1[1] * g_22
+    s_22 = by_2[0] * g_12 + by_2[1] * g_22
+    mean = (by_1[0] + by_2[1]) / 2
+    gauss = by_1[0] * by_2[1] - by_1[1] * by_2[0]
+    size = np.sqrt(np.maximum(mean**2 - gauss, np.finfo(float).tiny))
+    return tuple(
+        g + cosine * (s - mean * g) / size for g, s in ((g_11, s_11), (g_12, s_12), (g_22, s_22))
+    )
 
 
 def _part(film: Film, shift: Floats) -> Floats:

@@ -72,6 +72,11 @@ class Variation:
     connectivity : Connectivity
     directions : (n, 3)
         Unit directions of the nodes.
+
+    Attributes
+    ----------
+    volume_points : (q, 2)
+        Local coordinates at which a mean curvature that varies is given.
     """
 
     def __init__(self, connectivity: Connectivity, directions: Floats) -> None:
@@ -81,8 +86,8 @@ class Variation:
         points, self._weights = triangle_rule(2 * p)
         self._value, self._x, self._y = (basis.basis(points, *d) for d in ((0, 0), (1, 0), (0, 1)))
         # phi_i d_i . N is a polynomial of degree 3 p - 2: its rule is exact, so that the second variation is symmetric
-        points, self._volume_weights = triangle_rule(3 * p - 2 + p % 2)
-        self._volume_basis = tuple(basis.basis(points, *d) for d in ((0, 0), (1, 0), (0, 1)))
+        self.volume_points, self._volume_weights = triangle_rule(3 * p - 2 + p % 2)
+        self._volume_basis = tuple(basis.basis(self.volume_points, *d) for d in ((0, 0), (1, 0), (0, 1)))
         self._local = np.ascontiguousarray(directions[connectivity.elements].transpose(2, 0, 1))  # (3, m, k)
         # pairs i > j below the diagonal, where d_i x d_j is; the packed triangle has the diagonal as well
         i, j = np.tril_indices(k)
@@ -123,12 +128,20 @@ class Variation:
             float((area * self._weights).sum()), area_gradient, volume_gradient, np.stack([a, b]), normal, area
         )
 
+    def weighted_sweep(self, nodes: Floats, values: Floats) -> Floats:
+        """Integrals of values (m, q) at `volume_points` times phi_i d_i . N, at nodes (n, 3), (n,)."""
+        value, x, y = self._volume_basis
+        normal = _cross(*self._tangents(nodes, x, y))
+        return self._gather((normal * (self._volume_weights * values)) @ value)
+
     def across(self, first: FirstVariation) -> Floats:
         """Cosines d_i . n of each element's directions and the normals at its integration points, (m, q, k)."""
         return _across(first.normals, self._local)
 
-    def second(self, nodes: Floats, first: FirstVariation, mean_curvature: float) -> Floats:
+    def second(self, nodes: Floats, first: FirstVariation, mean_curvature: float | Floats) -> Floats:
         """Second variation of A + 2 H V at nodes (n, 3), as packed blocks (m, k (k + 1) / 2).
+
+        H is one number, or is given at `volume_points`, (m, q), and held.
 
         With e_1 = a / |a|, e_2 = n x e_1 the part of dN_i across n is D_i (-phi_i,1 |N| / |a|) along e_1 and
         D_i (phi_i,1 b . e_1 - phi_i,2 |a|) along e_2, D_i = d_i . n.
@@ -137,10 +150,13 @@ class Variation:
         result = np.empty((m, k * (k + 1) // 2))
         for some in blocks(m, VARIATION_BLOCK):
             self._second_of(some, first, result[some])
-        if mean_curvature:
+        if np.any(mean_curvature):
             _, x, y = self._volume_basis
             a, b = self._tangents(nodes, x, y)
-            mixed = (2 * mean_curvature) * (b @ self._volume_tables[0] - a @ self._volume_tables[1])
+            if np.ndim(mean_curvature):
+                a, b = a * mean_curvature, b * mean_curvature
+            mixed = b @ self._volume_tables[0] - a @ self._volume_tables[1]
+            mixed *= 2 if np.ndim(mean_curvature) else 2 * mean_curvature
             result[:, self._below] += (mixed * self._cross).sum(0)
         return result
 
