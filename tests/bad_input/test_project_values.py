@@ -132,6 +132,7 @@ def test_surfaces_that_do_not_exist(refused: Callable[..., str], text: str, word
         ("network", "spacing = 3", ["network.spacing", 3, 2.5]),
         ("network", "cells = 24\nspacing = 0.5", [24, 0.5]),
         ("network", "angle = 60", ["network.angle", 60, 90]),
+        ("network", "angle = 20", ["network.angle", 20, 30, 150]),
         ("network", 'closing = "closed"', ["network.closing", "closed", "open", "round", "adjust"]),
         ("network", "minimum_length = -1", ["network.minimum_length", -1]),
         ("lamella", "height = 0", ["lamella.height", 0]),

@@ -25,3 +25,6 @@ LOAD_LIMITS: dict[str, tuple[str, float, float]] = {
 }
 # N/m and N m/rad of springs of supports and joints
 LEAST_STIFFNESS, MOST_STIFFNESS = 1e-3, 1e15
+
+LEAST_NODE_ANGLE, LARGEST_NODE_ANGLE = 30.0, 150.0
+"""deg; between lamellas of surfaces found for another angle than 90: beyond, hardly any surface exists."""

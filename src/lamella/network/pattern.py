@@ -39,11 +39,14 @@ class Pattern:
         p, q: one in p curves of family A is kept, one in q of family B.
     normal_curvature : float, optional
         Of the curves, 1/m, where it is not H: they cross at other angles than 90 degrees then.
+    angle : float
+        Degrees; what a surface of other node angles than 90 was found for, which node angles are compared with.
     """
 
     kind: NetKind = "lamellas"
     every: tuple[int, int] = (1, 1)
     normal_curvature: float | None = None
+    angle: float = 90.0
 
     @property
     def factor(self) -> complex:

@@ -67,9 +67,12 @@ class WrittenLines:
         return np.stack([network.node_angles, network.angles_between(self.tangents)])
 
 
-def angle_figures(angles: Floats) -> dict[str, float]:
-    """What summary.json tells of node angles (2, n) deg: the worse of both ways to measure them."""
-    off = np.abs(90 - angles).max(0)
+def angle_figures(angles: Floats, wanted: float = 90.0) -> dict[str, float]:
+    """What summary.json tells of node angles (2, n), deg: the worse of both ways to measure them, and off a wanted one.
+
+    Angles between lines are those up to 90 degrees.
+    """
+    off = np.abs(min(wanted, 180 - wanted) - angles).max(0)
     return {
         "node_angle_min_deg": float(angles.min()),
         "node_angle_max_deg": float(angles.max()),

@@ -239,6 +239,16 @@ class FormFoundTable(Table):
         default=None,
         examples=[40.0],
     )
+    normal_curvature: float | None = number(
+        "Normal curvature c of the lamellas, instead of mean_curvature: with network.angle = 2 phi the surface has "
+        "cos^2 phi k1 + sin^2 phi k2 = c, for 90 deg mean curvature c. 0, straight strips, when an angle is given "
+        "alone.",
+        "1/m",
+        ge=-1e6,
+        le=1e6,
+        default=None,
+        examples=[0.0],
+    )
     order: int = _order()
     tolerance: float = _tolerance()
     branch: Literal["stable", "unstable"] = Field(
@@ -257,7 +267,7 @@ class FormFoundTable(Table):
     @model_validator(mode="before")
     @classmethod
     def _default(cls, values: Any) -> Any:
-        if isinstance(values, dict) and "mean_curvature" not in values and "volume" not in values:
+        if isinstance(values, dict) and not {"mean_curvature", "volume", "normal_curvature"} & set(values):
             return values | {"mean_curvature": 0.0}
         return values
 
@@ -286,6 +296,13 @@ class FormFoundTable(Table):
                 f"mean_curvature = {self.mean_curvature:g} 1/m and volume = {self.volume:g} m3 are both given",
                 "keep one of them",
                 "volume",
+            )
+        if self.normal_curvature is not None and (self.volume is not None or self.mean_curvature):
+            given = "mean_curvature" if self.volume is None else "volume"
+            raise Refusal(
+                f"normal_curvature = {self.normal_curvature:g} 1/m and {given} are both given",
+                "keep one of them",
+                given,
             )
         if self.volume is not None and self.adjust_mean_curvature:
             raise Refusal(

@@ -7,10 +7,11 @@ from typing import Annotated, Any, Literal
 import tomli_w
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from lamella.base.limits import CELLS_MIN, DEFAULT_CELLS
+from lamella.base.limits import CELLS_MIN, DEFAULT_CELLS, LARGEST_NODE_ANGLE, LEAST_NODE_ANGLE
 from lamella.base.material import MATERIALS, Material, find_material
 from lamella.base.number_lists import Refusal
 from lamella.base.wording import is_byte, shown
+from lamella.project.angle_keys import check_angle, with_angle
 from lamella.project.boundary_tables import (
     AdjustTable,
     ArcTable,
@@ -129,7 +130,12 @@ class NetworkTable(Table):
         examples=[0.0],
     )
     angle: float = number(
-        "Angle between the families at the nodes; other than 90 is not offered yet.", "deg", default=90.0
+        "Angle between the families at the nodes, bisected by the direction of the larger principal curvature. Other "
+        "than 90 the surface is found for it, between curves (form-found), with surface.normal_curvature.",
+        "deg",
+        ge=LEAST_NODE_ANGLE,
+        le=LARGEST_NODE_ANGLE,
+        default=90.0,
     )
     closing: Literal["open", "round", "adjust"] = Field(
         default="open",
@@ -167,10 +173,6 @@ class NetworkTable(Table):
         if self.cells is not None and self.spacing is not None:
             raise Refusal(
                 f"cells = {self.cells} and spacing = {self.spacing:g} m are both given", "keep one of them", "spacing"
-            )
-        if self.angle != 90:
-            raise Refusal(
-                f"angle = {self.angle:g} deg: only 90 deg is offered", "write angle = 90 or leave it out", "angle"
             )
         if self.limit is not None and (self.closing != "adjust" or self.kind == "principal"):
             reason = f'closing = "{self.closing}"' if self.closing != "adjust" else 'kind = "principal"'
@@ -352,6 +354,11 @@ class Project(Table):
 
     @model_validator(mode="before")
     @classmethod
+    def _angled(cls, values: Any) -> Any:
+        return with_angle(values)
+
+    @model_validator(mode="before")
+    @classmethod
     def _analysed(cls, values: Any) -> Any:
         # what holds it and what acts on it asks for the structure's analysis
         if isinstance(values, dict) and "structure" not in values and set(ACTION_TABLES) & set(values):
@@ -361,6 +368,7 @@ class Project(Table):
     @model_validator(mode="after")
     def _possible(self) -> Project:
         check_stock(self.stock or ())
+        check_angle(self.surface, self.network.angle, self.network.normal_curvature, self.network.closing)
         if self.structure is not None:
             check_actions(self.structure, self.load or (), self.combination or ())
         if self.joint is not None and self.joint.slot_width is not None and self.fabrication.slot_width is not None:

@@ -11,7 +11,7 @@ from lamella.stages.keys import keys
 def pattern_of(table: NetworkTable) -> Pattern:
     """Which curves of the isothermic lattice the net has."""
     p, q = (table.every, table.every) if isinstance(table.every, int) else table.every
-    return Pattern(table.kind, (p, q), table.normal_curvature)
+    return Pattern(table.kind, (p, q), table.normal_curvature, table.angle)
 
 
 @keys("network")
@@ -36,6 +36,8 @@ def _surely_traced(project: Project) -> bool:
     if isinstance(table, MeshTable):
         # a mesh that is fitted may turn out to be a minimal surface, but no other H is met to the last digit
         return wanted != (0.0 if table.mean_curvature == "fit" else table.mean_curvature)
+    if project.network.angle != 90:
+        return True
     if isinstance(table, FormFoundTable):
         return table.volume is not None or wanted != (table.mean_curvature or 0.0)
     return False

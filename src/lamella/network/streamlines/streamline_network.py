@@ -88,7 +88,7 @@ class TracedNetwork:
     def describe(self) -> dict[str, Any]:
         """Further figures of the network for summary.json."""
         lines = self.network.pattern.kind == "lamellas"
-        return angle_figures(self.angles) | {
+        return angle_figures(self.angles, self.network.pattern.angle) | {
             "node_angle_mean_deg": float(self.angles.mean()),
             "normal_curvature_deviation_max": self.missed[0] if lines else None,
             "normal_curvature_deviation_p95": self.missed[1] if lines else None,

@@ -106,6 +106,9 @@ def _right_angled(summary: dict[str, Any]) -> bool:
 def _off_square_rows(value: float, summary: dict[str, Any]) -> Rows:
     if _right_angled(summary):
         yield "Node angle off 90°, largest", format(value, ".2g"), "°"
+    elif "node_angle" in summary["surface"]:
+        wanted = summary["surface"]["node_angle"]
+        yield f"Node angle off {wanted:g}°, largest", format(value, ".2g"), "°"
 
 
 def _angle_rows(label: str) -> Callable[[float, dict[str, Any]], Rows]:
@@ -228,7 +231,7 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
     Figure(
         "node_angle_deviation_max_deg",
         "deg",
-        "largest difference from 90 degrees, at regular nodes" + BY_POINTS,
+        "largest difference from 90 degrees, or from `network.angle`, at regular nodes" + BY_POINTS,
         _angle("node_angle_deviation_max_deg"),
         NUMBER,
         rows=_off_square_rows,
@@ -236,7 +239,7 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
     Figure(
         "node_angle_deviation_mean_deg",
         "deg",
-        "mean difference from 90 degrees, at regular nodes" + BY_POINTS,
+        "mean difference from 90 degrees, or from `network.angle`, at regular nodes" + BY_POINTS,
         _angle("node_angle_deviation_mean_deg"),
         NUMBER,
     ),

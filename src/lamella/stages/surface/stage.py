@@ -111,7 +111,7 @@ def _adjusts(project: Project, wanted: tuple[str, ...]) -> bool:
 def _decided_by(project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
     """What decides the surface, without its mesh."""
     if not _adjusts(project, wanted):
-        return ("surface",)
+        return ("surface",) if project.network.angle == 90 else ("surface", "network.angle")
     limited = ("lamella", "joint", "materials") if project.network.limit is not None else ()
     return ("surface", "network", *limited)
 

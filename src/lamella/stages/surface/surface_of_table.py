@@ -69,7 +69,7 @@ def make_surface(
     try:
         if isinstance(table, FormFoundTable):
             progress(Report.step("finding the surface between its curves"))
-            return film_of_table(table, folder, progress, memory)
+            return film_of_table(table, folder, progress, memory, angle=project.network.angle)
         progress(Report.step("reading the mesh"))
         return surface_of_mesh_table(table, folder, progress)
     except InputError as error:
@@ -79,9 +79,17 @@ def make_surface(
 
 
 def film_of_table(
-    table: FormFoundTable, folder: Path, progress: Progress = silent, memory: Memory | None = None
+    table: FormFoundTable,
+    folder: Path,
+    progress: Progress = silent,
+    memory: Memory | None = None,
+    *,
+    angle: float = 90.0,
 ) -> ElementSurface:
-    """The film in the boundary of a table, see `make_surface`; with a memory that follows, from the last one."""
+    """The film in the boundary of a table, see `make_surface`; with a memory that follows, from the last one.
+
+    With an angle other than 90 degrees the surface on which lamellas cross at that.
+    """
     # heavy, and closed forms do without
     from lamella.stages.surface.boundary_of_tables import boundary_loops, with_origin
     from lamella.surface.boundary.corner_cost import corner_cost
@@ -96,13 +104,28 @@ def film_of_table(
         for remark in (*remarks, corner_cost(loops, table.most_nodes, table.tolerance)):
             if remark:
                 progress(Report.step(remark))
-        with keys("surface", loops="surface.boundary"):
+        curvature = table.mean_curvature or table.normal_curvature or 0.0
+        with keys("surface", loops="surface.boundary", angle="network.angle"):
+            if angle != 90:
+                from lamella.surface.constant_angle.find_angle import find_angle, notes_on_angle
+
+                bent = find_angle(
+                    loops,
+                    angle,
+                    curvature,
+                    order=table.order,
+                    tolerance=table.tolerance,
+                    most_nodes=table.most_nodes,
+                    progress=progress,
+                )
+                notes = remarks + notes_on_angle(bent)
+                return bent.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
             if memory and memory.follow:
                 film: FollowedFilm = memory.followed("film", partial(_followed, table, loops, progress))
                 return film.assessed
             found = find_film(
                 loops,
-                table.mean_curvature or 0.0,
+                curvature,
                 volume=table.volume,
                 order=table.order,
                 tolerance=table.tolerance,
@@ -121,7 +144,7 @@ def _followed(
     from lamella.surface.form_finding.followed_film import FilmRequest, FollowedFilm
     from lamella.surface.form_finding.kept_elements import Boundary
 
-    boundary = Boundary(loops, table.mean_curvature or 0.0, table.volume)
+    boundary = Boundary(loops, table.mean_curvature or table.normal_curvature or 0.0, table.volume)
     request = FilmRequest(table.order, table.tolerance, table.branch, table.most_nodes)
     origin = table.origin or NOWHERE
     if last is None or (last.request, last.origin) != (request, origin):

@@ -1,8 +1,8 @@
 """From boundary loops to the surface on which lamellas of one normal curvature cross at one angle.
 
 The film of mean curvature c is the surface of 90 degrees. From there one step leads to the angle, or, where it fails,
-smaller ones: the angle, and c where that film does not exist, go on a straight way, elements being made anew on it. Only
-a surface whose own second derivatives keep the relation is taken: on coarse elements rounds settle beyond the last
+smaller ones: the angle, and c where that film does not exist, go on a straight way, elements being made anew on it.
+Only a surface whose own second derivatives keep the relation is taken: on coarse elements rounds settle beyond the last
 surface too. Where no step leads on the surface there is the last, and its angle is told.
 """
 
@@ -18,6 +18,7 @@ from lamella.base.drawing_origin import coordinates
 from lamella.base.errors import InputError
 from lamella.base.message import Message
 from lamella.base.progress import Progress, Report, patient, silent
+from lamella.base.wording import counted, rounded
 from lamella.surface.constant_angle.angle_surface import AngleSurface
 from lamella.surface.constant_angle.refined import Refined, refined
 from lamella.surface.constant_angle.relation import Relation
@@ -31,11 +32,11 @@ WAY_TOLERANCE = 1e-2
 """Of the elements on the way."""
 START_TOLERANCE = 2e-2
 """Of the film that it starts from."""
-LEAST_TURN = 0.1
+LEAST_ANGLE_STEP = 0.1
 """deg: the last angle is told to about this."""
 WAY_STEPS_MAX = 40
-PAST_ANGLE_FOUND = 1.0
-"""Of the tolerance that curvature is off by: what is asked of A k1 + B k2 is half of what is asked of H alone."""
+MOST_TOLD = 6
+"""Umbilics that a note names by their places."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ def find_angle(
     order, most_nodes
         Of the elements, see `find_film`.
     tolerance : float
-        Half of it is the largest |A k1 + B k2 - c| at the check points, over the curvature scale.
+        Largest |A k1 + B k2 - c| at the check points, over the curvature scale.
     progress : callable
 
     Raises
@@ -126,10 +127,9 @@ def find_angle(
             "loops",
         )
     start, film = _begin(loops, wanted, order, most_nodes, progress)
-    aim = PAST_ANGLE_FOUND * tolerance
     try:
-        last, steps = _way(film, start, wanted, max(aim, WAY_TOLERANCE), most_nodes, progress)
-        found = refined(last, wanted, aim, most_nodes, progress)
+        last, steps = _way(film, start, wanted, max(tolerance, WAY_TOLERANCE), most_nodes, progress)
+        found = refined(last, wanted, tolerance, most_nodes, progress)
     except NoFilmError as error:
         raise InputError(
             f"a surface of {angle:g} deg breaks on finer elements: {error}",
@@ -137,11 +137,12 @@ def find_angle(
             "angle",
         ) from None
     off = found.deviation
-    if found.shortfall and off.largest > aim:
+    if found.shortfall and off.largest > tolerance:
         raise InputError(
-            f"A k1 + B k2 is off by up to {off.largest:.2g} of the curvature scale {off.scale:.3g} 1/m, more than half "
-            f"of tolerance = {tolerance:g}, near ({coordinates(_worst(found))}) m: {found.shortfall}",
-            f"write tolerance = {2.4 * off.largest:.1g}, raise most_nodes, or make the boundary smoother there",
+            f"A k1 + B k2 is off by up to {off.largest:.2g} of the curvature scale {off.scale:.3g} 1/m, more than "
+            f"tolerance = {tolerance:g}, near ({coordinates(_worst(found))}) m: {found.shortfall}",
+            f"write tolerance = {rounded(1.2 * off.largest, up=True, digits=1):g}, raise most_nodes, or make the "
+            "boundary smoother there",
             "tolerance",
         )
     progress(Report.step(f"{angle:g} deg: {found.rounds} rounds on {found.film.connectivity.node_count:,} nodes"))
@@ -180,7 +181,7 @@ def _way(
     InputError
         The way ends before.
     """
-    least = LEAST_TURN / max(abs(wanted.angle - start.angle), LEAST_TURN)
+    least = LEAST_ANGLE_STEP / max(abs(wanted.angle - start.angle), LEAST_ANGLE_STEP)
     done, step = 0.0, 1.0
     for number in range(1, WAY_STEPS_MAX + 1):
         next_ = min(done + step, 1.0)
@@ -231,6 +232,19 @@ def _worst(found: Refined) -> np.ndarray[Any, np.dtype[np.float64]]:
 def notes_on_angle(found: FoundAngle) -> tuple[Message, ...]:
     """What a user should know about such a surface before building it."""
     notes = []
+    umbilics = varying_of(found.refined.film).umbilics
+    if len(umbilics.orders):
+        places = "; ".join(f"({coordinates(point)}) m" for point in umbilics.position[:MOST_TOLD])
+        c = found.relation.normal_curvature
+        what = "flat points" if c == 0 else f"points of curvature {c:g} 1/m to all sides"
+        notes.append(
+            Message(
+                "angle_umbilics",
+                f"{counted(len(umbilics.orders), 'umbilic')} ({what}) at {places}"
+                f"{'; ...' if len(umbilics.orders) > MOST_TOLD else ''}: lamellas have no direction there, and turn "
+                "quickly beside them",
+            )
+        )
     crossing = self_crossing(found.refined.film)
     if crossing is not None:
         place = crossing[np.linalg.norm(crossing - crossing.mean(0), axis=1).argmin()]

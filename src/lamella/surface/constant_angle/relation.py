@@ -1,8 +1,8 @@
 """What makes lamellas of one normal curvature cross at one angle.
 
 A line at the angle phi to the first principal direction has the normal curvature A k1 + B k2, A = cos^2 phi and
-B = sin^2 phi (Euler). Where that is a constant c, two families of lines of normal curvature c cross at 2 phi everywhere,
-bisected by the first principal direction: a linear Weingarten surface. With D = (k1 - k2) / 2 it reads
+B = sin^2 phi (Euler). Where that is a constant c, two families of lines of normal curvature c cross at 2 phi, bisected
+by the first principal direction: a linear Weingarten surface. With D = (k1 - k2) / 2 it reads
 
     H + cos(2 phi) D = c,
 
@@ -19,9 +19,7 @@ import numpy as np
 
 from lamella.base.arrays import Floats
 from lamella.base.errors import InputError
-
-LEAST_ANGLE, LARGEST_ANGLE = 30.0, 150.0
-"""deg; beyond, the frozen relation contracts too slowly, and lamellas hardly cross."""
+from lamella.base.limits import LARGEST_NODE_ANGLE, LEAST_NODE_ANGLE
 
 
 @dataclass(frozen=True)
@@ -40,9 +38,10 @@ class Relation:
     normal_curvature: float
 
     def __post_init__(self) -> None:
-        if not LEAST_ANGLE <= self.angle <= LARGEST_ANGLE:
+        if not LEAST_NODE_ANGLE <= self.angle <= LARGEST_NODE_ANGLE:
             raise InputError(
-                f"angle = {self.angle:g} deg is out of range: has to be from {LEAST_ANGLE:g} to {LARGEST_ANGLE:g}",
+                f"angle = {self.angle:g} deg is out of range: has to be from {LEAST_NODE_ANGLE:g} to "
+                f"{LARGEST_NODE_ANGLE:g}",
                 "write an angle in that range, 90 for a surface of constant mean curvature",
                 "angle",
             )

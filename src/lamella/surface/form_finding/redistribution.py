@@ -176,18 +176,16 @@ def _weighted(inverse: tuple[Floats, ...], second: list[Floats], cosine: float) 
     """g^ab + cosine (d1^a d1^b - d2^a d2^b) of the principal directions, from g^ab and second fundamental form."""
     g_11, g_12, g_22 = inverse
     l_11, l_12, l_22 = second
-    # raised: g^ac II_cd g^db
-    by_1, by_2 = (g_11 * l_11 + g_12 * l_12, g_11 * l_12 + g_12 * l_22), (g_12 * l_11 + g_22 * l_12,)
-    by_2 += (g_12 * l_12 + g_22 * l_22,)
+    # mixed: g^ac II_cb, then raised
+    by_1 = (g_11 * l_11 + g_12 * l_12, g_11 * l_12 + g_12 * l_22)
+    by_2 = (g_12 * l_11 + g_22 * l_12, g_12 * l_12 + g_22 * l_22)
     s_11 = by_1[0] * g_11 + by_1[1] * g_12
     s_12 = by_1[0] * g_12 + by_1[1] * g_22
     s_22 = by_2[0] * g_12 + by_2[1] * g_22
     mean = (by_1[0] + by_2[1]) / 2
     gauss = by_1[0] * by_2[1] - by_1[1] * by_2[0]
     size = np.sqrt(np.maximum(mean**2 - gauss, np.finfo(float).tiny))
-    return tuple(
-        g + cosine * (s - mean * g) / size for g, s in ((g_11, s_11), (g_12, s_12), (g_22, s_22))
-    )
+    return tuple(g + cosine * (s - mean * g) / size for g, s in ((g_11, s_11), (g_12, s_12), (g_22, s_22)))
 
 
 def _part(film: Film, shift: Floats) -> Floats:
