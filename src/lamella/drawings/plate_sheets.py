@@ -25,7 +25,7 @@ PLATE_ARCS = 24
 """Straight parts of an arc."""
 FIRST_ROW, SECOND_ROW = 8.0, 14.5
 """mm: from a plate to its first and to its second row of dimensions."""
-MOST_CORNERS = 7
+CORNERS_TOLD = 7
 """Different places of corners along an axis up to which their distances are told."""
 CHAINED = 4
 """Holes up to this number are told by their places, and round ones; more are slots at the angles of a hub's rays."""
@@ -110,7 +110,7 @@ def _steps(page: Page, words: Terms, view: View, item: Item, axis: int) -> bool:
     corners = np.concatenate([item.cut.outline[:, :2], *(fold.line for fold in item.folds)])
     stops = np.unique(np.round(corners[:, axis], 7))
     told = [text_width(words.mm(step), TEXT_EM) + 2 for step in np.diff(stops).tolist()]
-    if not 3 <= len(stops) <= MOST_CORNERS or item.cut.outline[:, 2].any() or (np.diff(stops) * view.mm < told).any():
+    if not 3 <= len(stops) <= CORNERS_TOLD or item.cut.outline[:, 2].any() or (np.diff(stops) * view.mm < told).any():
         return False
     ends = np.full((len(stops), 2), corners[:, 1].min() if axis == 0 else corners[:, 0].max())
     ends[:, axis] = stops
