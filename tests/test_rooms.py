@@ -47,6 +47,7 @@ STAGE_NEEDS = (
     "structure.model",
     "structure.analysis",
     "structure.export",
+    "structure.export.saf",
     "erection",
     "panels",
     "project",
@@ -111,6 +112,15 @@ MAY_IMPORT: dict[str, tuple[str, ...]] = {
         "structure.beam",
         "structure.model",
         "structure.analysis",
+    ),
+    "structure.export.saf": (
+        "base",
+        "files",
+        "files.write",
+        "structure.actions",
+        "structure.model",
+        "structure.analysis",
+        "structure.export",
     ),
     "cutting": ("base",),
     "erection": (

@@ -41,6 +41,7 @@ def list_key(model: type[Table]) -> Any:
 
 Way = Literal["x", "y", "z", "rx", "ry", "rz"]
 JointHold = Literal["locked", "hinged"]
+Export = Literal["opensees", "saf"]
 
 
 def _stiffness(description: str, unit: str) -> Any:
@@ -98,6 +99,12 @@ class StructureTable(Table):
         default="listed",
         description='"listed": those of [[combination]] alone; else those of EN 1990 for persistent situations as '
         "well, made from the categories of the loads.",
+    )
+    exports: Annotated[tuple[Export, ...], Field(strict=False)] = Field(
+        default=("opensees", "saf"),
+        description='Programs that the model is written for: "opensees" a script, "saf" a workbook of the Structural '
+        "Analysis Format (SCIA Engineer, Allplan, AxisVM, Dlubal RFEM, FEM-Design and others).",
+        examples=[["opensees", "saf"]],
     )
     serviceability: Literal["none", "characteristic", "frequent", "quasi-permanent"] = Field(
         default="none", description="Combinations of EN 1990 for the serviceability limit state, besides."

@@ -21,6 +21,7 @@ from lamella.stages.structure.output import StructureOutput
 from lamella.surface.surface import Surface
 
 if TYPE_CHECKING:
+    from lamella.structure.analysis.analyse import Analysis
     from lamella.view.scene.scene import Shown
 
 
@@ -56,7 +57,8 @@ class StructureStage(Stage[StructureOutput]):
             "supports or strips, or without some parts, beside the designed one",
         ),
         ("structure/curvatures.csv", "what the strips of each element were bent and twisted by"),
-        ("structure/opensees.py", "the model as a script for OpenSees"),
+        ("structure/opensees.py", "the model as a script for OpenSees, where `structure.exports` names it"),
+        ("structure/saf.xlsx", "the same as a workbook of the Structural Analysis Format"),
     )
     figures = FIGURES
     report = ("Structure", REPORT)
@@ -141,7 +143,9 @@ class StructureStage(Stage[StructureOutput]):
 
         signed: Any = {"name": up.project.name, "version": __version__}
         yield File("structure/results.json", lambda path: write_results(path, out.analysis, **signed))
-        yield from _exports(out, signed | {"origin": drawing_origin(up.surface)})
+        signed |= {"origin": drawing_origin(up.surface)}
+        yield from _exports(out, signed)
+        yield from _for_programs(out.analysis, up.project, signed)
 
     def scene(self, out: StructureOutput, up: Upstream) -> Iterator[Shown]:
         from lamella.stages.structure.frames import structure_frames
@@ -165,10 +169,9 @@ def _memory(elements: int, cases: int) -> str:
 
 
 def _exports(out: StructureOutput, signed: Any) -> Iterator[File]:
-    """Tables, and the model in the formats of other programs."""
+    """Tables."""
     from lamella.structure.export.further_tables import FurtherTables, write_page
     from lamella.structure.export.imposed_curvatures import write_imposed_curvatures
-    from lamella.structure.export.opensees import write_opensees
     from lamella.structure.export.result_tables import CSV_TABLES, write_result_book, write_result_table
 
     model, cases = out.analysis.model, out.analysis.cases
@@ -180,4 +183,18 @@ def _exports(out: StructureOutput, signed: Any) -> Iterator[File]:
         yield File(f"structure/{page[0]}.csv", partial(write_page, page=page, **plain))
     yield File("structure/results.xlsx", lambda path: write_result_book(path, cases, further.pages(), **signed))
     yield File("structure/curvatures.csv", lambda path: write_imposed_curvatures(path, model, **signed))
-    yield File("structure/opensees.py", lambda path: write_opensees(path, out.analysis, **signed))
+
+
+def _for_programs(analysis: Analysis, project: Project, signed: Any) -> Iterator[File]:
+    """The model in the formats of other programs, those that are asked for."""
+    from lamella.stages.actions_of_tables import combinations_of
+    from lamella.structure.export.opensees import write_opensees
+    from lamella.structure.export.saf.workbook import write_saf
+
+    exports = (project.structure or StructureTable()).exports
+    if "opensees" in exports:
+        yield File("structure/opensees.py", lambda path: write_opensees(path, analysis, **signed))
+    if "saf" in exports:
+        acting = {load.name: load.acts_as for load in project.load or ()}
+        combinations = combinations_of(project)
+        yield File("structure/saf.xlsx", lambda path: write_saf(path, analysis, acting, combinations, **signed))

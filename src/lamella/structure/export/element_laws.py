@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lamella.base.arrays import Floats
-from lamella.structure.beam.beams import BeamState
+from lamella.structure.beam.beams import Beams, BeamState
 from lamella.structure.beam.columns import turned_product
 from lamella.structure.export.script_rows import rounded
 
@@ -69,7 +69,7 @@ class ElementLaws:
         stretch, strong_strain = strains.values[0], strains.values[4]
         weak = stiffness[5] + _plate_bending(state)
         constant, cubic = _plate_torsion(state)
-        left, s_strong, hinges = _strong(state)
+        left, s_strong, hinges = _strong(state.beams)
         left = left - np.where(helix, stiffness[0] * law.gyration, 0.0)
         s_weak = stiffness[1] * law.length**2 / 12
         laws = (
@@ -94,18 +94,24 @@ class ElementLaws:
         return cls(beams, stiffness[0], strain, radius, hinges)
 
 
-def _strong(state: BeamState) -> tuple[Floats, Floats, Floats]:
-    """Strong-axis stiffness of bending and of bending that changes its sign, of whole strips, N m2; `hinges`."""
-    law, sections = state.beams.law, state.beams.sections
-    whole, flexible = (
-        np.array(values, float)[state.beams.section]
-        for values in zip(*((kind.bending_u, 1 / kind.shear_n) for kind in sections), strict=True)
-    )
+def slot_hinges(beams: Beams) -> Floats:
+    """What slots make elements turn by about their strong axis beside what whole strips do, rad/(N m), (m,)."""
+    law = beams.law
+    whole = np.array([kind.bending_u for kind in beams.sections], float)[beams.section]
     hinges = law.length**2 / law.stiffness[4] - law.length / whole
-    slotted = hinges * whole > SOFT * law.length
-    bent = np.where(slotted, whole, law.stiffness[4] / law.length)
+    return np.where(hinges * whole > SOFT * law.length, hinges, 0.0)
+
+
+def _strong(beams: Beams) -> tuple[Floats, Floats, Floats]:
+    """Strong-axis stiffness of bending and of bending that changes its sign, of whole strips, N m2; `slot_hinges`."""
+    law, hinges = beams.law, slot_hinges(beams)
+    whole, flexible = (
+        np.array(values, float)[beams.section]
+        for values in zip(*((kind.bending_u, 1 / kind.shear_n) for kind in beams.sections), strict=True)
+    )
+    bent = np.where(hinges > 0, whole, law.stiffness[4] / law.length)
     s_bent = 1 / (1 / whole + 12 * flexible / law.length**2)
-    return bent, np.where(slotted, s_bent, law.stiffness[2] * law.length / 12), np.where(slotted, hinges, 0.0)
+    return bent, np.where(hinges > 0, s_bent, law.stiffness[2] * law.length / 12), hinges
 
 
 def _plate_bending(state: BeamState) -> Floats:
