@@ -58,6 +58,8 @@ def test_of_any_stage(project: Path, tmp_path: Path, until: str) -> None:
         (("--size", "9000x100"), "--size"),
         (("--colour", "beauty"), "--colour"),
         (("--until", "harvest"), "harvest"),
+        (("--frames", "erection:first"), "--frames"),
+        (("--frames", "erection:0"), "--frames"),
     ],
 )
 def test_what_cannot_be_is_refused(

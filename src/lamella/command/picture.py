@@ -26,6 +26,7 @@ examples:
   lamella picture roof.toml
   lamella picture out/roof --view eye --size 1600x1000 --out roof.png
   lamella picture roof.toml --view=-120,15 --colour utilisation
+  lamella picture roof.toml --frames erection:10
 """
 
 
@@ -54,6 +55,12 @@ def add_picture(commands: Any) -> None:
         "as their material looks)",
     )
     parser.add_argument("--surface", action="store_true", help="show the surface too")
+    parser.add_argument(
+        "--frames",
+        default="",
+        metavar="NAME:K",
+        help="frame K (from 0, -1 is the last) of what the report's slider shows: erection:0 is the flat state",
+    )
     parser.add_argument("--until", metavar="STAGE", help="last stage that is computed (default: what is built)")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
@@ -68,11 +75,13 @@ def run_picture(arguments: argparse.Namespace) -> None:
     from lamella.view.render.png import png_bytes
     from lamella.view.render.render import refuse_size, render
     from lamella.view.render.standpoint import direction_of
+    from lamella.view.scene.still import at_frame
 
     size = size_of(arguments.size)
     # before anything is computed
     refuse_size(size)
     direction_of(arguments.view)
+    name, frame = frame_of(arguments.frames)
     file = project_file(arguments.project)
     target = arguments.out or Path(f"{arguments.project.stem if file != arguments.project else file.stem}.png")
     if not target.parent.is_dir():
@@ -80,7 +89,7 @@ def run_picture(arguments: argparse.Namespace) -> None:
     project = read_project(file)
     screen = Screen(verbose=False)
     try:
-        until = arguments.until or _until(project)
+        until = arguments.until or (None if name else _until(project))
         progress = silent if arguments.quiet else screen
         results = compute(project, until=until, folder=file.parent, progress=progress)
     except InputError as error:
@@ -88,8 +97,9 @@ def run_picture(arguments: argparse.Namespace) -> None:
     finally:
         screen.clear()
     with reported_from(results.origin):
+        scene = scene_of(results)
         pixels = render(
-            scene_of(results),
+            at_frame(scene, name, frame) if name else scene,
             view=arguments.view,
             size=size,
             colour="layer" if arguments.colour == "family" else arguments.colour,
@@ -111,6 +121,20 @@ def size_of(text: str) -> tuple[int, int]:
     if len(parts) != 2 or not all(part.isascii() and part.isdigit() for part in parts):
         raise InputError(f"size {text!r}", "write width and height in pixels: 1600x1000", "--size")
     return int(parts[0]), int(parts[1])
+
+
+def frame_of(text: str) -> tuple[str, int]:
+    """Name and number of "erection:0"; the name alone stands for the first frame.
+
+    Raises
+    ------
+    InputError
+    """
+    name, _, number = text.partition(":")
+    try:
+        return name, int(number or 0)
+    except ValueError:
+        raise InputError(f"frame {number!r}", "write a whole number: erection:0", "--frames") from None
 
 
 def project_file(given: Path) -> Path:

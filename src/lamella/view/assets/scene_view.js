@@ -5,7 +5,7 @@ import { cellOf, isAround, recentred } from "./layers.js";
 import { around, moved } from "./moving.js";
 import { Overlay } from "./overlay.js";
 import { Stage } from "./stage.js";
-import { reach } from "./standpoint.js";
+import { boxOf, reach } from "./standpoint.js";
 
 export class SceneView extends Stage {
   /**
@@ -93,8 +93,13 @@ export class SceneView extends Stage {
     }
     const names = new Set(scene.layers.map((/** @type {any} */ layer) => layer.name));
     const kept = this.scene.layers.filter((/** @type {any} */ layer) => !names.has(layer.name));
-    this.scene = { ...scene, centre: shift, layers: [...kept, ...scene.layers] };
-    if (scene.labels.length) this.overlay.setLabels(scene.labels);
+    // lists that the scene leaves out stay as they are
+    const lists = ["frames", "labels", "marks", "curves"].filter((list) => scene[list].length);
+    const given = Object.fromEntries(lists.map((list) => [list, scene[list]]));
+    const built = [...this.drawn.values()].filter((one) => !isAround(one.layer));
+    const [low, high] = boxOf(built.map(({ points }) => points));
+    this.scene = { ...this.scene, ...given, centre: shift, low, high, layers: [...kept, ...scene.layers] };
+    if (given.labels) this.overlay.setLabels(scene.labels);
     for (const [palette, key] of this.palettes) this.colour(palette, key);
     this.select(this.selected);
     this.applyVisibility();

@@ -48,6 +48,24 @@ export function reach(clouds) {
 }
 
 /**
+ * Lowest and highest coordinates of some points.
+ *
+ * @param {Float32Array[]} clouds
+ */
+export function boxOf(clouds) {
+  const [low, high] = [
+    [Infinity, Infinity, Infinity],
+    [-Infinity, -Infinity, -Infinity],
+  ];
+  for (const points of clouds)
+    for (let i = 0; i < points.length; i++) {
+      low[i % 3] = Math.min(low[i % 3], points[i]);
+      high[i % 3] = Math.max(high[i % 3], points[i]);
+    }
+  return low[0] <= high[0] ? [low, high] : [[0, 0, 0], [0, 0, 0]];
+}
+
+/**
  * Turn a camera about what it looks at, or go nearer.
  *
  * @param {any} camera

@@ -1,7 +1,7 @@
 // Strips with their thickness: rectangles swept along curves.
 
 /** Rectangles are swept up to so many samples times layers; beyond, each layer is a surface without thickness. */
-export const BOX_LIMIT = 200000;
+export const BOX_LIMIT = 120000;
 
 /**
  * The two edges of the ruled strip on every sample: 6 numbers each, below and above.

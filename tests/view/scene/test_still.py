@@ -1,0 +1,47 @@
+"""A scene in one frame: layers moved, hidden and coloured as the slider says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lamella.base.errors import InputError
+from lamella.view.scene.frames import Frames, Motion
+from lamella.view.scene.layer import PointsLayer
+from lamella.view.scene.quantity import magnitude
+from lamella.view.scene.scene import Scene, make_scene
+from lamella.view.scene.still import at_frame
+
+PLACES = np.array([[0.0, 0, 0], [1, 2, 3]])
+
+
+def layer(name: str, group: str) -> PointsLayer:
+    use = magnitude("use", "Use", "", np.zeros(2), 1.0)
+    return PointsLayer(name=name, label=name, positions=PLACES, groups=(group,), quantities=(use,))
+
+
+@pytest.fixture
+def scene() -> Scene:
+    steps = np.arange(3.0)[:, None, None] * np.ones((3, 2, 3))
+    values = np.arange(6.0).reshape(3, 2)
+    motions = (Motion("a", displacements=steps, values={"use": values}), Motion("own", positions=PLACES + steps))
+    own = (layer("own", "x"),)
+    frames = Frames("f", "F", np.arange(3.0), motions=motions, layers=own, hides=("b", "group:h"), exaggeration=4)
+    return make_scene("x", [layer("a", "g"), layer("b", "g"), layer("c", "h"), layer("d", "g"), frames])
+
+
+def test_layers_are_where_the_frame_has_them(scene: Scene) -> None:
+    still = at_frame(scene, "f", 2)
+    assert [one.name for one in still.layers] == ["a", "d", "own"]
+    np.testing.assert_array_equal(still.layer("a").points, PLACES + 8)
+    np.testing.assert_array_equal(still.layer("own").points, PLACES + 2)
+    np.testing.assert_array_equal(still.layer("d").points, PLACES)
+    assert still.layer("a").quantities[0].values.tolist() == [4, 5]
+    np.testing.assert_array_equal(at_frame(scene, "f", -3).layer("a").points, PLACES)
+
+
+@pytest.mark.parametrize(("name", "frame"), [("g", 0), ("f", 3), ("f", -4)])
+def test_frames_that_are_not_there_are_refused(scene: Scene, name: str, frame: int) -> None:
+    with pytest.raises(InputError) as error:
+        at_frame(scene, name, frame)
+    assert error.value.where == "--frames"
