@@ -111,7 +111,7 @@ def test_examples_warn_of_what_is_known_of_them_and_of_nothing_else(name):
     assert MISSED not in left
 
 
-FREE = ("lamella", "fabrication", "files", "joint", "cables", "edge_beam")
+FREE = ("network", "lamella", "fabrication", "files", "joint", "cables", "edge_beam", "structure", "erection")
 
 
 @pytest.mark.parametrize("name", NUMBERS)

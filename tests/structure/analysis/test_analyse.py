@@ -1,6 +1,7 @@
 """Analyses of a net: cases, balance, overload, cables put on later, and mechanisms by name."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from lamella.structure.model.model import make_model
 from lamella.structure.model.rules import ModelRules
 from lamella.structure.structure import make_structure
 from structure.model.nets import PATCH, central_node, held_at, pinned_rim, pushed
-from structure.strips import STRIP
+from structure.strips import STRIP, orders
 
 STEEL = Material(7850, 210e9, 81e9, 355e6)
 COARSE = ModelRules(elements=2)
@@ -169,3 +170,16 @@ def test_temperature_moves_a_net_on_one_node_as_a_whole():
     assert grown == pytest.approx(exact, abs=2e-2 * np.abs(exact).max())
     assert warm.von_mises_max == pytest.approx(rest.von_mises_max, rel=1e-3)
     assert np.abs(warm.reaction_total).max() < 1e-5
+
+
+def test_stresses_converge_under_load():
+    """At the nodes, of 2, 4, 8 and 16 elements a cell: with the second order of elements that are twisted."""
+    case = pushed(PATCH, (0, 0, -30.0))
+    found = []
+    for elements in (2, 4, 8, 16):
+        shape = model(rules=ModelRules(elements=elements, slots="whole"))
+        stress = analyse(shape, [case], buckling=0, frequencies=0).cases[1].use.von_mises
+        found.append(stress[::elements, 0].copy())
+    steps = [np.sqrt(np.mean((b - a) ** 2)) for a, b in pairwise(found)]
+    assert orders(steps)[-1] > 1.6
+    assert steps[1] < 3e-3 * found[-1].max()

@@ -45,11 +45,12 @@ HIDDEN = (
 
 @dataclass(frozen=True, eq=False)
 class _State:
-    """A frame: a pose, what it is called, and what strips and cables have there."""
+    """A frame: a pose, the one that its shifts are drawn from, what it is called, and what strips and cables have."""
 
     caption: str
     value: float
     poses: Poses
+    origin: Poses
     use: Floats
     stress: Floats
     cables: Floats
@@ -81,7 +82,8 @@ def _of_case(number: float, case: CaseResult) -> _State:
     if not case.converged:
         told += f", {case.load_factor:.3g} of the load"
     use = case.use
-    return _State(told, number, case.equilibrium.poses, use.utilisation, TO_MPA * use.von_mises, case.cable_forces)
+    poses, designed = case.equilibrium.poses, case.model.structure.poses
+    return _State(told, number, poses, designed, use.utilisation, TO_MPA * use.von_mises, case.cable_forces)
 
 
 def _steps(case: CaseResult) -> list[_State]:
@@ -94,14 +96,14 @@ def _steps(case: CaseResult) -> list[_State]:
 
 
 def _modes(analysis: Analysis, case: CaseResult, modes: Floats, captions: Sequence[str]) -> list[_State]:
-    """Motions from the state they are about."""
+    """Motions from the state they are about, drawn from the designed shape."""
     size, count = case.equilibrium.structure.size, len(case.equilibrium.poses.points)
     use, states = case.use, []
     for k, (mode, caption) in enumerate(zip(modes, captions, strict=True)):
         shift = np.abs(mode[: 6 * count].reshape(-1, 6)[:, :3]).max()
         moved = case.equilibrium.poses.moved(MODE_SHARE * size / max(float(shift), np.finfo(float).tiny) * mode)
         still = np.zeros_like(use.utilisation)
-        states.append(_State(caption, k + 1, moved, still, still, case.cable_forces))
+        states.append(_State(caption, k + 1, moved, case.equilibrium.poses, still, still, case.cable_forces))
     return states
 
 
@@ -130,7 +132,9 @@ def _frames(
         some, begin = _of_lamellas(offsets, own)
         motion = SampleMotion.of(model, samples[some])
         places = [motion.at(state.poses) for state in states]
-        shifts = np.stack([place - motion.points for place, _ in places])
+        shifts = np.stack(
+            [place - motion.at(state.origin)[0] for (place, _), state in zip(places, states, strict=True)]
+        )
         largest = max(largest, float(np.linalg.norm(shifts, axis=2).max(initial=0.0)))
         values = {
             "case_use": np.stack([motion.values(state.use) for state in states]),
@@ -188,7 +192,7 @@ def _cables(name: str, analysis: Analysis, states: Sequence[_State], colour: str
     structure = analysis.model.structure
     attachment = structure.cables.attachment
     designed = attachment.ends(structure.poses)[0].reshape(-1, 3)
-    moved = np.stack([attachment.ends(state.poses)[0].reshape(-1, 3) for state in states])
+    shifts = np.stack([(attachment.ends(at.poses)[0] - attachment.ends(at.origin)[0]).reshape(-1, 3) for at in states])
     forces = np.stack([np.repeat(state.cables, 2) for state in states])
     count = len(structure.cables)
     layer = LinesLayer(
@@ -204,7 +208,7 @@ def _cables(name: str, analysis: Analysis, states: Sequence[_State], colour: str
         width=2.0,
     )
     values = {"cable_force": forces} if colour else {}
-    return layer, Motion(layer.name, displacements=moved - designed, values=values)
+    return layer, Motion(layer.name, displacements=shifts, values=values)
 
 
 def _round_factor(factor: float) -> float:

@@ -15,13 +15,16 @@ from lamella.strip.stress import Stresses, stresses
 from lamella.structure.beam.beams import BeamState
 from lamella.structure.beam.columns import turned_product
 
+# of the stiffness of a section: what stress has to leave of it
+LEAST_LEFT = 0.2
+
 
 def curvatures_at_ends(state: BeamState) -> Floats:
     """tg, -kn, kg at both ends of each element, 1/m, (m, 2, 3).
 
-    The mean of the element, and for bending what the moments at the ends differ from its mean moment: those balance the
-    loads at the nodes, which makes them more exact than the element's own change of curvature where a strip is under
-    tension.
+    The mean of the element, and what the moments at the ends differ from its mean moment, by the tangent stiffness of
+    twist and both bendings: those balance the loads at the nodes, which makes them more exact than the element's own
+    change of curvature where a strip is under tension. Errors are of the second order.
     """
     law, frame = state.beams.law, state.motion.frame
     mean = state.motion.local_theta / law.length
@@ -30,14 +33,25 @@ def curvatures_at_ends(state: BeamState) -> Floats:
     on_ends = state.on_ends(state.stress)
     frame_b = state.motion.frame_at_b()
     moments = (-turned_product(frame, on_ends[3:6]), turned_product(frame_b, on_ends[9:]))
+    tangent = _tangent(state)
     ends = []
     for moment in moments:
-        curvature = mean.copy()
-        for axis in (1, 2):
-            # stiffness holds the length
-            curvature[axis] += (moment - mean_moment)[axis] * law.length / law.stiffness[axis + 3]
-        ends.append(curvature.T)
+        turn = np.linalg.solve(tangent, (moment - mean_moment).T[..., None])[..., 0]
+        ends.append((mean + turn.T / law.length).T)
     return np.stack(ends, 1)
+
+
+def _tangent(state: BeamState) -> Floats:
+    """Derivative of twist and bending moments with respect to turns at an unchanged axial force, (m, 3, 3).
+
+    Where the stress takes most of the stiffness away, that of the section alone.
+    """
+    law, first = state.beams.law, state.strains.first[3:, 3:]
+    of_section = np.einsum("kim,km,kjm->mij", first, law.stiffness[3:], first)
+    whole = of_section + np.moveaxis(state.strains.second(law.stiffness * state.strains.values)[3:, 3:], -1, 0)
+    scale = 1 / np.sqrt(np.einsum("mii->mi", of_section))
+    left = np.linalg.eigvalsh(scale[:, :, None] * whole * scale[:, None, :])[:, 0]
+    return np.asarray(np.where((left > LEAST_LEFT)[:, None, None], whole, of_section))
 
 
 def strip_stresses(
