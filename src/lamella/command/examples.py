@@ -25,12 +25,12 @@ def _all() -> dict[str, Traversable]:
 
 
 REMEDY = "name another folder with --copy"
-MESHES = "optimise"
-"""Folder of quad meshes for `lamella optimise`; its name stands for all of them."""
+FOLDERS = ("optimise", "studies")
+"""Folders of quad meshes for `lamella optimise` and of studies; the name of one stands for all that is in it."""
 
 
-def _meshes() -> dict[str, Traversable]:
-    return {f"{MESHES}/{item.name}": item for item in sorted((_folder() / MESHES).iterdir(), key=lambda i: i.name)}
+def _inside(folder: str) -> dict[str, Traversable]:
+    return {f"{folder}/{item.name}": item for item in sorted((_folder() / folder).iterdir(), key=lambda i: i.name)}
 
 
 def _beside(name: str) -> list[str]:
@@ -44,9 +44,9 @@ def list_examples() -> list[tuple[str, str]]:
     return _titled(_all())
 
 
-def list_meshes() -> list[tuple[str, str]]:
-    """The same of the quad meshes."""
-    return _titled(_meshes())
+def list_further() -> list[tuple[str, str]]:
+    """The same of the quad meshes and studies."""
+    return [item for folder in FOLDERS for item in _titled(_inside(folder))]
 
 
 def _titled(files: dict[str, Traversable]) -> list[tuple[str, str]]:
@@ -62,26 +62,27 @@ def copy_examples(names: list[str], target: Path) -> list[Path]:
         Unknown name; a file of that name is there already.
     """
     known = _all()
-    names = names or [*known, MESHES]
-    meshes = _meshes() if MESHES in names else {}
-    wanted = [name if name.endswith(".toml") else f"{name}.toml" for name in names if name != MESHES]
+    names = names or [*known, *FOLDERS]
+    folders = [folder for folder in FOLDERS if folder in names]
+    further = {name: item for folder in folders for name, item in _inside(folder).items()}
+    wanted = [name if name.endswith(".toml") else f"{name}.toml" for name in names if name not in FOLDERS]
     for name in wanted.copy():
         if name not in known:
             near = get_close_matches(Path(name).stem, [Path(one).stem for one in known], 1, 0.6)
             raise InputError(
                 f"no example {name[:80]!r}" + (f", did you mean {near[0] + '.toml'!r}?" if near else ""),
-                f"there are {', '.join(known)}, {MESHES}",
+                f"there are {', '.join(known)}, {', '.join(FOLDERS)}",
             )
         wanted += _beside(name)
-    known = {item.name: item for item in _folder().iterdir()} | meshes
-    wanted += meshes
+    known = {item.name: item for item in _folder().iterdir()} | further
+    wanted += further
     for name in wanted:
         if os.path.lexists(target / name):
             raise InputError(f"{target / name} is there already", REMEDY)
     if target.exists() and not target.is_dir():
         raise InputError(f"{target} is a file", "name a folder with --copy")
     target.mkdir(parents=True, exist_ok=True)
-    if meshes:
-        (target / MESHES).mkdir(exist_ok=True)
+    for folder in folders:
+        (target / folder).mkdir(exist_ok=True)
     write_new_whole({target / name: known[name].read_bytes() for name in wanted}, REMEDY)
     return [target / name for name in wanted]

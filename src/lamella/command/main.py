@@ -212,12 +212,12 @@ def _new(arguments: argparse.Namespace) -> None:
 
 
 def _examples(arguments: argparse.Namespace) -> None:
-    from lamella.command.examples import copy_examples, list_examples, list_meshes
+    from lamella.command.examples import copy_examples, list_examples, list_further
 
     if arguments.copy is None and arguments.names:
         raise InputError("no folder to copy into", f"lamella examples --copy DIR {' '.join(arguments.names)}")
     if arguments.copy is None:
-        for name, title in [*list_examples(), *list_meshes()]:
+        for name, title in [*list_examples(), *list_further()]:
             print(f"{name:28s} {title}")
         print("\ncopy them with: lamella examples --copy DIR [NAME ...]")
         return
