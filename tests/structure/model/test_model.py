@@ -291,3 +291,41 @@ def test_stacked_lamellas_lie_beside_their_nodes():
     there = loaded(at_rest(model.structure, loads))
     mass = 7850 * section.height * section.thickness * lamellas.network.lengths.sum()
     assert there.reactions[:, 2].sum() == pytest.approx(mass * GRAVITY + 5.0 * model.nodes, rel=1e-8)
+
+
+@pytest.mark.parametrize("level", [0.02, 0.05])
+def test_strips_on_two_levels_are_bent_on_edge_by_what_they_were_not_cut_to(level):
+    """On a catenoid strips cut straight are bent about the strong axis by -z tg^2 / (1 + z^2 tg^2), A below the surface
+    and B above it (`lamella.strip.levels`); those cut to their own outline are not."""
+    network = lamella.net(lamella.Catenoid(1.0, (-0.5, 0.5)), cells=12)
+    errors = []
+    for elements in (2, 4):
+        lamellas = network.strips(Section(height=0.05, layers=1, level=level), STEEL)
+        model = make_model(lamellas, pinned_rim(network), ModelRules(elements=elements))
+        structure, lines = model.structure, model.lines
+        tg = lamellas.network.sample_darboux.tg
+        middle = lines.arclengths.mean(1)[:, None]
+        of = CurveSamples.of_centre_lines(lamellas.network)
+        tg = of.integrated(lines.lamella[:, None], middle, tg)[:, 0]
+        side = np.where(lamellas.network.families[lines.lamella] == "A", -level, level)
+        # tg on the level is tg / (1 + z^2 tg^2) of that on the surface, and so tg^2 / w^2 is tg_z^2 w^2
+        root = (1 - np.sqrt(1 - 4 * level**2 * tg**2)) / (2 * level**2 * np.abs(tg))
+        expected = -side * root**2 / (1 + level**2 * root**2)
+        strains = structure.beams.at(structure.poses).strains.values[4]
+        errors.append(np.abs(-strains - expected).max() / np.abs(expected).max())
+    assert errors[-1] < 0.02
+    assert orders(errors)[0] > 1.8
+    cut = network.strips(Section(height=0.05, layers=1, level=level, layer_curves="cut"), STEEL)
+    structure = make_model(cut, pinned_rim(network), ModelRules(elements=2)).structure
+    assert np.abs(structure.beams.at(structure.poses).strains.values[4]).max() < 1e-12
+
+
+def test_layers_cut_to_their_own_outline_are_not_bent_on_edge():
+    """Beside the centre line the normal curvature is another one by d tg'; strips cut straight are bent by that."""
+    bent = {}
+    for curves in ("offset", "cut"):
+        lamellas = PATCH.strips(Section(layers=2, offset=0.03, layer_curves=curves), STEEL)
+        structure = make_model(lamellas, pinned_rim(PATCH), ModelRules(elements=4, layers="each")).structure
+        bent[curves] = np.abs(structure.beams.at(structure.poses).strains.values[4]).max()
+    assert bent["cut"] < 1e-12
+    assert bent["offset"] == pytest.approx(0.015 * np.abs(PATCH.sample_slopes).max(), rel=0.05)

@@ -172,10 +172,26 @@ def _beams(
         joints=joints,
     )
     beams = beams.unstrained(poses, np.arange(len(beams)) >= of_lamellas)
+    if lamellas.section.layer_curves == "cut":
+        # what lies on the centre lines of the surface is cut straight, or to one radius, as it is
+        beams = _cut_to_their_own(beams, poses, lines.layer >= 0 if not lamellas.section.level else lines.layer >= -1)
     if rules.slots == "whole":
         return beams
     slots = np.concatenate((lines.crossed.sum(1), np.zeros(of_rims)))
     return slotted(beams, slots.astype(float), lamellas.section.height, rules.slot_width)
+
+
+def _cut_to_their_own(beams: Beams, poses: Poses, some: Booleans) -> Beams:
+    """The same, of which some of the first elements are of strips with the outline of their own curve.
+
+    They are bent about the weak axis and twisted, and not bent about the strong one.
+    """
+    count = len(some)
+    points, frames = beams.attachment.ends(poses)
+    turn = RelativeMotion.between(points[:count], frames[:count]).local_theta[1] / beams.law.length[:count]
+    natural = beams.law.natural.copy()
+    natural[:count, 1] = np.where(some, turn, natural[:count, 1])
+    return beams.with_natural(natural)
 
 
 def _at_nodes(lamellas: Lamellas, divisions: Divisions) -> Integers:
