@@ -17,7 +17,20 @@ from bench import THREADS
 
 HERE = Path(__file__).parent
 PAGE = HERE.parent / "docs" / "benchmarks.md"
-MODULES = ("growth", "film", "follow", "adjust", "network", "memory", "projection", "beam", "cutting", "start", "peers")
+MODULES = (
+    "growth",
+    "film",
+    "follow",
+    "studio",
+    "adjust",
+    "network",
+    "memory",
+    "projection",
+    "beam",
+    "cutting",
+    "start",
+    "peers",
+)
 """Benches in the order of the page, each a file of this folder (see `bench.py`)."""
 
 BEGIN, END = "<!-- {} -->\n", "<!-- end of {} -->\n"

@@ -35,6 +35,7 @@ TOPICS: dict[str, tuple[str, ...]] = {
         "run",
     ),
     "Studies": ("study", "Study"),
+    "The studio": ("studio", "Studio"),
     "Quad meshes": ("quad_mesh", "QuadMesh", "read_quad_mesh"),
     "Guided projection": ("asymptotic", "sphere_stars", "straighten", "deform", "planar_strips", "foot_surface"),
     "COMPAS": ("write_compas", "network_of_compas", "quad_mesh_of_compas", "compas_at"),

@@ -18,6 +18,8 @@ from lamella.files.read.loop import read_loop as read_loop
 from lamella.files.read.network_json import network_of_compas as network_of_compas
 from lamella.files.read.network_json import read_network as read_network
 from lamella.files.write.compas_graph import write_compas as write_compas
+from lamella.interactive.notebook import Studio as Studio
+from lamella.interactive.notebook import studio as studio
 from lamella.network.elements.followed_net import FollowedNet as FollowedNet
 from lamella.network.elements.followed_net import follow_net as follow_net
 from lamella.network.elements.level_lines import LevelLines as LevelLines

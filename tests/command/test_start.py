@@ -24,6 +24,7 @@ NOTHING = ("numpy", "scipy", "pydantic", "orjson", "ezdxf", "rhino3dm", "tomli_w
         (["--help"], NOTHING),
         (["--version"], NOTHING),
         (["optimise", "--help"], NOTHING),
+        (["studio", "--help"], NOTHING),
         (["examples"], NOTHING),
         (["schema", "project"], ("scipy", "orjson", *STAGES)),
         (["new", "unduloid", "--out", "-"], ("scipy", "orjson", *STAGES)),

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
+from lamella.base.errors import InputError
+
 # s without a line
 LONGEST_SILENCE = 2.0
 
@@ -32,12 +34,15 @@ class Report:
         Name of the stage; empty outside of the stages of a project.
     fraction : float or None
         Share of the work under way that is done, 0 to 1, where it is known.
+    refusal : InputError or None
+        What will be refused, where that is known before a remedy is looked for, which may take seconds.
     """
 
     text: str
     level: Level = Level.STEP
     stage: str = ""
     fraction: float | None = None
+    refusal: InputError | None = None
 
     @classmethod
     def heading(cls, text: str) -> Report:
@@ -53,6 +58,11 @@ class Report:
     def detail(cls, text: str, fraction: float | None = None) -> Report:
         """Of a detail of a step."""
         return cls(text, Level.DETAIL, fraction=fraction)
+
+    @classmethod
+    def foreseen(cls, refusal: InputError) -> Report:
+        """That something will be refused, and that a remedy is looked for."""
+        return cls(f"looking for what there is instead: {refusal.message}", Level.DETAIL, refusal=refusal)
 
     def __str__(self) -> str:
         """The line on a screen, indented by its level."""

@@ -21,6 +21,7 @@ from lamella.base.wording import readable
 from lamella.command.optimise import add_optimise, run_optimise
 from lamella.command.picture import add_picture, run_picture
 from lamella.command.screen import Screen
+from lamella.command.studio import add_studio, run_studio
 from lamella.command.study import add_study, run_study
 
 _ABOUT = """\
@@ -34,6 +35,7 @@ twisting leave in the strips.
   lamella check unduloid.toml     only look for mistakes
   lamella study variants.toml     compute many variants of a project, and find the best
   lamella picture unduloid.toml   draw it as a PNG file, without a screen
+  lamella studio unduloid.toml    design it on a page in the browser
   lamella optimise net.obj ...    make a net of a quad mesh from elsewhere
 
 Open out/unduloid/report.html in a browser, model.3dm in Rhino, fabrication/*.dxf at the laser."""
@@ -123,6 +125,7 @@ def _parser() -> argparse.ArgumentParser:
     add_optimise(commands)
     add_study(commands)
     add_picture(commands)
+    add_studio(commands)
 
     examples = commands.add_parser("examples", help="list the examples, or copy them")
     examples.add_argument("names", nargs="*", metavar="NAME", help="with --copy: the examples to copy (default: all)")
@@ -250,6 +253,7 @@ _COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
     "optimise": run_optimise,
     "study": run_study,
     "picture": run_picture,
+    "studio": run_studio,
     "examples": _examples,
     "schema": _schema,
 }

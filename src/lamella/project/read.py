@@ -73,14 +73,44 @@ def read_project(path: str | Path) -> Project:
         raise InputError(
             f"not a text file in UTF-8 (byte {error.start})", "a project file is TOML text, saved as UTF-8", str(path)
         ) from None
-    project = parse_project(_toml(text, str(path)), source=str(path), text=text)
+    return project_of_text(text, path)
+
+
+def project_of_text(text: str, path: Path) -> Project:
+    """The project of the text that a file holds, or is to hold.
+
+    Parameters
+    ----------
+    text : str
+    path : Path
+        Its name is the project's where the text has none.
+
+    Raises
+    ------
+    InputError
+        Whatever is wrong with it, with file, line and key.
+    """
+    project = parse_project(toml_values(text, str(path)), source=str(path), text=text)
     if project.name.strip():
         return project
     # a file name may hold bytes that are no text
     return project.model_copy(update={"name": one_line(os.fsencode(path.stem).decode("utf-8", "replace"))})
 
 
-def _toml(text: str, source: str) -> dict[str, Any]:
+def toml_values(text: str, source: str) -> dict[str, Any]:
+    """The values of a text, as nested dictionaries.
+
+    Parameters
+    ----------
+    text : str
+    source : str
+        File name, for errors.
+
+    Raises
+    ------
+    InputError
+        It is not TOML.
+    """
     deep = _DEEP.search(text)
     if deep:
         line = text.count("\n", 0, deep.start()) + 1
@@ -220,12 +250,17 @@ def located(error: InputError, path: Path) -> InputError:
     return InputError(error.message, error.remedy, _where(str(path), text, error.where))
 
 
-def _where(source: str, text: str, key: str) -> str:
+def line_of(text: str, key: str) -> int:
+    """Line of a key in a project's text, from 1, or of the table that it is missed in; 0 where there is none."""
     line, at = 0, key
-    # a key that is not there itself is missed in its table
     while at and not line:
         line = _line_of(text, at)
         at = at.rpartition(".")[0]
+    return line
+
+
+def _where(source: str, text: str, key: str) -> str:
+    line = line_of(text, key)
     file = f"{source}:{line}" if source and line else source
     return ": ".join(part for part in (file, cut(key)) if part)
 

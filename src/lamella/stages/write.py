@@ -16,7 +16,6 @@ from lamella.files.side_by_side import run_side_by_side
 from lamella.files.whole import write_whole
 from lamella.files.write.model_3dm import model_bytes
 from lamella.files.write.rhino_file import Frame
-from lamella.network.network import Network
 from lamella.project.read import located, moved, read_project
 from lamella.stages import all_stages
 from lamella.stages.computation import compute
@@ -171,9 +170,8 @@ def _files(results: Results) -> Iterator[File]:
     yield File("project.toml", lambda path: _write_project(results, path))
     for stage in _run_stages(results):
         yield from stage.files(results.outputs[stage.name], results.upstream)
-    network = results.network
-    if network is not None:
-        yield File("model.3dm", lambda path: write_whole(path, _model(results, network)))
+    if results.network is not None:
+        yield File("model.3dm", lambda path: write_whole(path, model_of(results)))
     yield File("report.html", lambda path: write_report(path, report_data(results)))
 
 
@@ -187,9 +185,9 @@ def _write_project(results: Results, path: Path) -> None:
     write_whole(path, (heading + moved(results.project, results.folder, path.parent).to_toml()).encode())
 
 
-def _model(results: Results, network: Network) -> bytes:
-    """The model of all stages for Rhino."""
-    content: Any = {"surface": results.mesh, "network": network, "lamellas": results.lamellas}
+def model_of(results: Results) -> bytes:
+    """model.3dm: the model of all stages for Rhino; results that have a network."""
+    content: Any = {"surface": results.mesh, "network": results.network, "lamellas": results.lamellas}
     models = (stage.model(results.outputs[stage.name], results.upstream) for stage in _run_stages(results))
     further = [layer for model in models for layer in model]
     frame = Frame(results.project.files.unit, results.origin)

@@ -344,7 +344,7 @@ class NetPlan:
             minimum_length=minimum_length,
         )
         joints = tuple(
-            Joint(_named(piece, mesh, self.names), float(miss), not np.isnan(whole))
+            Joint(joint_name(piece, mesh, self.names), float(miss), not np.isnan(whole))
             for piece, miss, whole in zip(iso.transitions, off, wanted, strict=True)
             if not piece.stub
         )
@@ -483,7 +483,7 @@ def element_network(
     return laid.traced(closing=closing, minimum_length=minimum_length)
 
 
-def _named(piece: Transition, mesh: IntegrationMesh, names: tuple[str, ...]) -> str:
+def joint_name(piece: Transition, mesh: IntegrationMesh, names: tuple[str, ...]) -> str:
     """What a piece of the cut lies between."""
 
     def one(end: int) -> str:

@@ -29,6 +29,8 @@ class LevelLines(Result):
         Where each line's points begin.
     families : (c,) str
         "A" or "B".
+    places : Places
+        Of the points, on the elements that the isothermic coordinates were integrated on.
 
     Examples
     --------
@@ -43,6 +45,7 @@ class LevelLines(Result):
     points: Floats
     offsets: Integers
     families: NDArray[np.str_]
+    places: Places
 
     def _line(self) -> str:
         return f"{len(self.families):,} lines of {len(self.points):,} points"
@@ -66,7 +69,6 @@ def level_lines(cells: IntegerGridMap, cut: Booleans, grid: SmallGrid | None = N
     element = np.append(curves.element, curves.element[curves.last])
     local = np.concatenate([curves.local_start, curves.local_end[curves.last]])
     order = np.argsort(np.append(curves.owner, np.arange(count)), kind="stable")
-    points = cells.positions(Places(element, local))[order]
-    return LevelLines(
-        points, np.append(curves.first, len(curves.owner)) + np.arange(count + 1), np.array(FAMILIES)[curves.family]
-    )
+    places = Places(element, local)[order]
+    offsets = np.append(curves.first, len(curves.owner)) + np.arange(count + 1)
+    return LevelLines(cells.positions(places), offsets, np.array(FAMILIES)[curves.family], places)

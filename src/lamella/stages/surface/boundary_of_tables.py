@@ -88,7 +88,7 @@ def with_origin(table: FormFoundTable, folder: Path) -> FormFoundTable:
         return table
     outer = table.boundary[0]
     shift = np.zeros(3) if outer.place is None else np.array(outer.place.shift)
-    origin = origin_of(_points_on(outer, folder, _key(0)) + shift)
+    origin = origin_of(points_on(outer, folder, _key(0)) + shift)
     return table.model_copy(update={"origin": origin}) if any(origin) else table
 
 
@@ -142,7 +142,7 @@ def _changed(loop: BoundaryTable, curve: BoundaryCurve) -> BoundaryTable:
     return loop.model_copy(update=changed)
 
 
-def _points_on(table: BoundaryTable, folder: Path, where: str) -> Floats:
+def points_on(table: BoundaryTable, folder: Path, where: str) -> Floats:
     """Points on a curve or beside it, as far apart as it is large, m, (n, 3)."""
     if table.file is not None:
         with np.errstate(all="ignore"):

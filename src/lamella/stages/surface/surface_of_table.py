@@ -121,7 +121,7 @@ def film_of_table(
                 notes = remarks + notes_on_angle(bent)
                 return bent.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
             if memory and memory.follow:
-                film: FollowedFilm = memory.followed("film", partial(_followed, table, loops, progress))
+                film: FollowedFilm = memory.followed("film", partial(followed_film, table, loops, progress))
                 return film.assessed
             found = find_film(
                 loops,
@@ -137,10 +137,25 @@ def film_of_table(
         return found.surface("form-found", notes, tolerance=table.tolerance, **origin_figure(table.origin))
 
 
-def _followed(
+def followed_film(
     table: FormFoundTable, loops: tuple[Loop, ...], progress: Progress, last: FollowedFilm | None
 ) -> FollowedFilm:
-    """The film of a table from the last one; from nothing where that was another request."""
+    """The film of a table from the last one; from nothing where that was another request.
+
+    Parameters
+    ----------
+    table : FormFoundTable
+        With its origin.
+    loops : tuple of Loop
+        Its boundary.
+    progress : callable
+    last : FollowedFilm or None
+
+    Raises
+    ------
+    InputError
+        There is no such film, or none was found.
+    """
     from lamella.surface.form_finding.followed_film import FilmRequest, FollowedFilm
     from lamella.surface.form_finding.kept_elements import Boundary
 

@@ -184,11 +184,13 @@ def find_film(
             if unstable:
                 refuse_single(loops, mean_curvature)
         except ImpossibleError as error:
+            progress(Report.foreseen(InputError(error.message, where=error.where)))
             raise impossible(error, tries, mean_curvature, unstable) from None
     search = FirstFilm(loops, order, progress)
     try:
         return _found(loops, mean_curvature, volume, order, tolerance, unstable, most_nodes, progress, search)
     except SearchError as error:
+        progress(Report.foreseen(InputError(f"the search did not arrive at a film. {error}", where="loops")))
         raise not_found(search, error, mean_curvature, volume, unstable, tries) from None
 
 
