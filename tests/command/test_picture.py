@@ -49,6 +49,14 @@ def test_of_any_stage(project: Path, tmp_path: Path, until: str) -> None:
     assert (tmp_path / "x.png").read_bytes()[:4] == b"\x89PNG"
 
 
+def test_of_a_surface_that_has_no_net(tmp_path: Path) -> None:
+    """A sphere: the run ends with it, and so does the picture."""
+    path = tmp_path / "ball.toml"
+    circle = "circle = {center = [0, 0, 0], radius = 2}"
+    path.write_text(f'[surface]\nkind = "form-found"\nmean_curvature = -0.2\n[[surface.boundary]]\n{circle}\n')
+    assert main(["picture", str(path), "--out", str(tmp_path / "x.png"), *SMALL]) == 0
+
+
 @pytest.mark.parametrize(
     ("options", "where"),
     [

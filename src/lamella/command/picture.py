@@ -12,7 +12,9 @@ from lamella.base.wording import readable
 from lamella.command.screen import Screen
 
 if TYPE_CHECKING:
+    from lamella.base.progress import Progress
     from lamella.project.tables import Project
+    from lamella.stages.results import Results
 
 BUILT = "fabrication"
 """Stage whose output is what is built: no later one changes what a picture shows."""
@@ -70,7 +72,6 @@ def run_picture(arguments: argparse.Namespace) -> None:
     from lamella.base.drawing_origin import reported_from
     from lamella.files.whole import write_whole
     from lamella.project.read import located, read_project
-    from lamella.stages.computation import compute
     from lamella.stages.scene import scene_of
     from lamella.view.render.png import png_bytes
     from lamella.view.render.render import refuse_size, render
@@ -89,9 +90,8 @@ def run_picture(arguments: argparse.Namespace) -> None:
     project = read_project(file)
     screen = Screen(verbose=False)
     try:
-        until = arguments.until or (None if name else _until(project))
         progress = silent if arguments.quiet else screen
-        results = compute(project, until=until, folder=file.parent, progress=progress)
+        results = _computed(project, arguments.until, file.parent, progress, whole=bool(name))
     except InputError as error:
         raise located(error, file) from None
     finally:
@@ -153,9 +153,17 @@ def project_file(given: Path) -> Path:
     return file
 
 
-def _until(project: Project) -> str | None:
-    """What is built, where the project comes as far; as far as it comes otherwise."""
+def _computed(project: Project, until: str | None, folder: Path, progress: Progress, *, whole: bool) -> Results:
+    """A project as far as it comes, but no farther than what is built where not the whole is wanted."""
+    from lamella.stages.clock import Clock
+    from lamella.stages.computation import Computation
+    from lamella.stages.memory import Memory
     from lamella.stages.wanted import wanted_stages
 
-    stages, _ = wanted_stages(project, None)
-    return BUILT if BUILT in [stage.name for stage in stages] else None
+    wanted, _ = wanted_stages(project, until)
+    names = [stage.name for stage in wanted]
+    if until is None and not whole and BUILT in names:
+        wanted = wanted[: names.index(BUILT) + 1]
+    computation = Computation(project, wanted, folder, Memory(), Clock(progress))
+    computation.run_all(wanted, ends=until is None)
+    return computation.results()

@@ -116,7 +116,7 @@ def _part(layer: Layer, scene: Scene, colour: str, eye: Floats, piece: float) ->
             return _soup(layer, places.reshape(-1, 3), faces, colours)
         case LinesLayer():
             kept = _spaced(layer.positions, layer.offsets, piece)
-            return _bands(layer, kept, _element_colours(layer, colour), eye, piece / 2)
+            return _bands(layer, kept, _element_colours(layer, colour), eye, piece / 4)
     return None
 
 
