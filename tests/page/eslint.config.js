@@ -1,6 +1,6 @@
 const browser = [
   "addEventListener atob btoa Blob cancelAnimationFrame clearTimeout CSS customElements document Event fetch File",
-  "FileReader getComputedStyle history HTMLElement KeyboardEvent location matchMedia Node performance PointerEvent",
+  "FileReader getComputedStyle history HTMLCanvasElement HTMLElement HTMLSelectElement SVGSVGElement KeyboardEvent location matchMedia Node performance PointerEvent",
   "requestAnimationFrame ResizeObserver setTimeout TextDecoder TextEncoder URL WebSocket window sessionStorage crypto",
 ].join(" ");
 
