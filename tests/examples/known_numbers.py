@@ -10,7 +10,7 @@ from lamella import Places, Unduloid, spline
 from lamella.network.isothermic.holonomy import around_vertex, holonomies
 from lamella.network.isothermic.mesh_layout import make_integration_mesh
 from lamella.network.isothermic.seamless_transitions import integrate
-from lamella.network.network import REGULAR, SINGULAR
+from lamella.network.network import BOUNDARY, REGULAR, SINGULAR
 from lamella.stages.surface.boundary_of_tables import boundary_loops
 from lamella.surface.element.geometry import normal_and_area, tangents
 from lamella.surface.element.quadrature import triangle_rule
@@ -408,6 +408,18 @@ def _facade(results):
     return np.linalg.norm(end - start, axis=1)[around].max(), 2 * (2.4 + 0.2) * np.sin(np.pi / 28)
 
 
+def _node_angle(results):
+    """Of revolution with k1 / k2 = -tan^2 35 deg: the normal's radial part times r^(tan^2 35 deg) is one at both rims."""
+    network = results.network
+    rim = network.node_kinds == BOUNDARY
+    point, normal = network.node_points[rim], network.node_normals[rim]
+    radius = np.linalg.norm(point[:, :2], axis=1)
+    radial = (point[:, :2] * normal[:, :2]).sum(axis=1) / radius
+    low = point[:, 2] < 1
+    assert min(low.sum(), (~low).sum()) >= 26
+    return radial[low].mean() / radial[~low].mean(), (2.4 / 3.2) ** np.tan(np.radians(35)) ** 2
+
+
 NUMBERS = {
     "01_unduloid": (_delaunay, 1e-12),
     "02_nodoid": (_nodoid, 1e-9),
@@ -436,4 +448,5 @@ NUMBERS = {
     # faces of the net for the area of the plan, straight from node to node along the rim
     "21_vault_structure": (_snow, 5e-3),
     "22_facade": (_facade, 1e-12),
+    "23_node_angle": (_node_angle, 1e-4),
 }

@@ -91,7 +91,11 @@ def test_example(name):
     assert ruler["family_sign_errors"] == 0
     assert ruler["node_angle_measured"] == ruler["regular_nodes"] > (200 if name < "19" else 80)
     assert ruler["normal_curvature_error_p95"] <= 1e-3 * ruler["curvature_scale"]
-    if name in ASKEW:
+    if "node_angle" in figures["surface"]:
+        off = abs(90 - figures["surface"]["node_angle"])
+        assert ruler["node_angle_deviation_max_deg"] == pytest.approx(off, abs=0.05)
+        assert figures["network"]["node_angle_deviation_max_deg"] <= 0.05
+    elif name in ASKEW:
         reported = figures["network"]["node_angle_deviation_max_deg"]
         assert ruler["node_angle_deviation_max_deg"] == pytest.approx(reported, abs=0.1)
     elif name not in OPEN:

@@ -35,6 +35,8 @@ START_TOLERANCE = 2e-2
 LEAST_ANGLE_STEP = 0.1
 """deg: the last angle is told to about this."""
 WAY_STEPS_MAX = 40
+TOLERANCE_SHARE = 0.5
+"""What A k1 + B k2 may be off by, of the tolerance: directions come from the measured curvature, not from a known H."""
 MOST_TOLD = 6
 """Umbilics that a note names by their places."""
 
@@ -109,7 +111,7 @@ def find_angle(
     order, most_nodes
         Of the elements, see `find_film`.
     tolerance : float
-        Largest |A k1 + B k2 - c| at the check points, over the curvature scale.
+        Half of it is the largest |A k1 + B k2 - c| at the check points, over the curvature scale.
     progress : callable
 
     Raises
@@ -126,10 +128,11 @@ def find_angle(
             "hold the whole boundary: take slide out, or write angle = 90",
             "loops",
         )
+    aim = TOLERANCE_SHARE * tolerance
     start, film = _begin(loops, wanted, order, most_nodes, progress)
     try:
-        last, steps = _way(film, start, wanted, max(tolerance, WAY_TOLERANCE), most_nodes, progress)
-        found = refined(last, wanted, tolerance, most_nodes, progress)
+        last, steps = _way(film, start, wanted, max(aim, WAY_TOLERANCE), most_nodes, progress)
+        found = refined(last, wanted, aim, most_nodes, progress)
     except NoFilmError as error:
         raise InputError(
             f"a surface of {angle:g} deg breaks on finer elements: {error}",
@@ -137,11 +140,11 @@ def find_angle(
             "angle",
         ) from None
     off = found.deviation
-    if found.shortfall and off.largest > tolerance:
+    if found.shortfall and off.largest > aim:
         raise InputError(
             f"A k1 + B k2 is off by up to {off.largest:.2g} of the curvature scale {off.scale:.3g} 1/m, more than "
-            f"tolerance = {tolerance:g}, near ({coordinates(_worst(found))}) m: {found.shortfall}",
-            f"write tolerance = {rounded(1.2 * off.largest, up=True, digits=1):g}, raise most_nodes, or make the "
+            f"half of tolerance = {tolerance:g}, near ({coordinates(_worst(found))}) m: {found.shortfall}",
+            f"write tolerance = {rounded(2.4 * off.largest, up=True, digits=1):g}, raise most_nodes, or make the "
             "boundary smoother there",
             "tolerance",
         )
