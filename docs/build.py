@@ -162,9 +162,9 @@ ABOUT: dict[str, str] = {
     "22_facade": "Flat panels 0.2 m outside of an inflated tube, through every second node of its net: the diagonals "
     "of the cells are principal lines, and the quads between them are flat as they are. 476 panels are of 12 kinds, "
     "one or two rings each.",
-    "23_node_angle": "The surface between two rings on which straight lamellas cross at 70 degrees everywhere. Beside the "
-    "film of these rings, with as many lamellas: they twist by 0.29/m at most instead of 0.42/m, bend by 0.09/m instead "
-    "of 0.15/m, and are 150 m long in all instead of 178 m.",
+    "23_node_angle": "The surface between two rings on which straight lamellas cross at 70 degrees everywhere. Beside "
+    "the film of these rings, with as many lamellas: they twist by 0.29/m at most instead of 0.42/m, bend by 0.09/m "
+    "instead of 0.15/m, and are 150 m long in all instead of 178 m.",
 }
 
 # tables inside the tables of a boundary, by their keys
