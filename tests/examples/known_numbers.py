@@ -409,7 +409,7 @@ def _facade(results):
 
 
 def _node_angle(results):
-    """Of revolution, k1 / k2 = -tan^2 35 deg: the normal's radial part times r^(tan^2 35 deg) is the same at both rims."""
+    """k1 / k2 = -tan^2 35 deg around an axis: the normal's radial part times r^(tan^2 35 deg) is one at both rims."""
     network = results.network
     rim = network.node_kinds == BOUNDARY
     point, normal = network.node_points[rim], network.node_normals[rim]
