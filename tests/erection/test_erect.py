@@ -10,10 +10,17 @@ import pytest
 
 import lamella
 from lamella import InputError, Section
+from lamella.erection.cut import proposed_cut
 from lamella.erection.erect import erect
 from lamella.erection.erection import Erection
+from lamella.erection.flat_shape import FlatShape
+from lamella.erection.free_net import free_net
+from lamella.erection.laid_flat import laid_flat
 from lamella.erection.samples import sampled
 from lamella.strip.stress import shortening
+from lamella.structure.beam.beams import make_beams
+from lamella.structure.loads import no_loads
+from lamella.structure.static import at_rest
 from validation.measure_network import arc_length, derivatives
 
 PATCH = lamella.Enneper(2, 0.6, 3.0)
@@ -165,6 +172,46 @@ def test_arcs_lie_on_a_sphere() -> None:
 
 
 @pytest.mark.slow
+def test_arcs_without_stiffness_about_their_weak_axis_lie_on_the_sphere() -> None:
+    """What a net is off the sphere of radius 1/H, and that sphere's own radius, go to zero with that stiffness: half of
+    it, half of them. Bent about the weak axis strips gain by a little twist, which the sphere has not."""
+    loop = [
+        [3, 0, 0],
+        [2, 2.4, 0.5],
+        [0, 2.8, 0],
+        [-2.2, 2, 0.4],
+        [-3, 0, 0],
+        [-2, -2, 0.5],
+        [0, -2.8, 0],
+        [2.2, -2.2, 0.3],
+    ]
+    net = lamella.net(lamella.film([lamella.spline(loop)], mean_curvature=-0.12), spacing=0.84)
+    model = free_net(net.strips(Section(0.1, 0.001, layers=1)), 2)
+    off, larger = [], []
+    for soft in (1.0, 0.5, 0.25):
+        beams = model.structure.beams
+        attachment, law = beams.attachment, beams.law
+        kinds = tuple(replace(kind, bending_n=soft * kind.bending_n) for kind in beams.sections)
+        softer = make_beams(
+            attachment.nodes,
+            law.length,
+            kinds,
+            section=beams.section,
+            natural=law.natural,
+            turns=attachment.turns,
+            offsets=attachment.offsets,
+            joints=attachment.joints,
+        )
+        free = replace(model.structure, beams=softer)
+        locked = at_rest(replace(free, held_joints=np.ones_like(free.held_joints)), no_loads(free))
+        flat = FlatShape.of(replace(model, structure=free), laid_flat(locked, free).poses)
+        off.append(flat.off)
+        larger.append(flat.radius - 1 / 0.12)
+    assert [off[0] / off[1], off[1] / off[2]] == pytest.approx([2, 2], rel=0.1)
+    assert [larger[0] / larger[1], larger[1] / larger[2]] == pytest.approx([2, 2], rel=0.1)
+
+
+@pytest.mark.slow
 def test_a_net_that_closes_around_is_named() -> None:
     made = erect(lamella.net(lamella.Catenoid(1.0, (-1.5, 1.5)), cells=6).strips(STRIP), states=3, elements=1)
     assert "not_flat" in {warning.key for warning in made.warnings}
@@ -194,3 +241,25 @@ def test_a_state_prints_in_a_line() -> None:
     made = erected()
     assert "planar" in repr(made)
     assert "J" in repr(made.states[0])
+
+
+@pytest.mark.slow
+def test_a_limit_point_on_the_way_is_named_and_what_was_reached_is_kept() -> None:
+    """A net with a hexagonal node, whose strips overlap when it is laid flat: no path leads there."""
+    net = lamella.net(lamella.Enneper(3, 1.2, 2.0), cells=8)
+    section = Section(0.06, 0.001, layers=1)
+    made = erect(net.strips(section), states=5, elements=1)
+    assert made.stop is not None
+    assert 0 <= made.stop.node < len(net.node_points)
+    shares = [state.share for state in made.states]
+    # the flat one, and those from where the way ends to the designed shape
+    assert shares == sorted(shares)
+    assert (shares[0], shares[-1]) == (0, 1)
+    assert shares[1] == pytest.approx(made.stop.share)
+    assert len(shares) == 5 - made.stop.state + 1
+    assert "driver_stops" in {warning.key for warning in made.warnings}
+    assert len(made.flat.overlaps)
+    cut = proposed_cut(made, lambda part: part.strips(section))
+    assert cut is not None
+    assert cut.lamella in net.ids
+    assert cut.left is None or cut.left < len(made.flat.overlaps)

@@ -13,6 +13,7 @@ import lamella
 from lamella import InputError
 from lamella.erection.samples import sampled
 from lamella.stages.check import check_project
+from lamella.stages.erection.stage import STATE_BYTES
 from lamella.stages.scene import scene_of
 from lamella.view.scene.encode import encode_scene
 from stages.csv_rows import rows
@@ -399,3 +400,17 @@ def test_the_view_has_a_slider() -> None:
     for state, turns in zip(made.states, moved["erection joints"].values["joint_turn"], strict=True):
         np.testing.assert_allclose(turns, state.angles - 90)
     assert len(encode_scene(scene)) > 10_000
+
+
+def test_the_size_of_large_files_is_told_before(run: Path) -> None:
+    """What is told is what is written, but for a tenth; of small files nothing is."""
+    states = (run / "erection" / "states.json").stat().st_size
+    network = json.loads((run / "network.json").read_text())
+    samples = sum(len(one["centreline"]) for one in network["lamellas"]) + len(network["nodes"])
+    assert states == pytest.approx(PROJECT["erection"]["states"] * samples * STATE_BYTES, rel=0.1)
+    said: list[str] = []
+    lamella.compute(
+        lamella.parse_project(driven(states=2)), until="erection", progress=lambda report: said.append(report.text)
+    )
+    assert any(text.startswith("laid flat") for text in said)
+    assert not any("MB" in text for text in said)

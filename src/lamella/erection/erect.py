@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, silent
+from lamella.erection.device_states import farthest
 from lamella.erection.driver import Driver
 from lamella.erection.erection import Erection
 from lamella.erection.flat_shape import FlatShape
@@ -18,6 +19,7 @@ from lamella.erection.path import driven_states, joint_moment, turned_states
 from lamella.erection.rigid_motion import moved_onto
 from lamella.erection.state import State
 from lamella.erection.warnings import erection_warnings
+from lamella.erection.way import Snap
 from lamella.strip.lamellas import Lamellas
 from lamella.structure.equilibrium import Equilibrium
 from lamella.structure.loads import no_loads
@@ -62,7 +64,7 @@ def erect(lamellas: Lamellas, *, states: int = 20, elements: int = 2, progress: 
     lying = laid_flat(locked, free, progress)
     driver = Driver.between(lying.poses, locked.poses)
     progress(Report.step("driven from the designed shape to flat"))
-    told, each_joint = _states(model, locked, lying, driver, states, progress)
+    told, each_joint, stop = _states(model, locked, lying, driver, states, progress)
     off = moved_onto(locked.poses.points[: model.nodes], free.poses.points[: model.nodes])
     result = Erection(
         model=model,
@@ -75,6 +77,7 @@ def erect(lamellas: Lamellas, *, states: int = 20, elements: int = 2, progress: 
         locked=State.of(model, locked, 1.0, 0.0, stable=locked.negative == 0),
         spring_back=float(off.max()),
         warnings=(),
+        stop=stop,
     )
     return replace(result, warnings=tuple(erection_warnings(result)))
 
@@ -87,8 +90,8 @@ def _moment(lying: Equilibrium, largest: float) -> float:
 
 def _states(
     model: Model, locked: Equilibrium, lying: Equilibrium, driver: Driver, states: int, progress: Progress
-) -> tuple[tuple[State, ...], bool]:
-    """From flat to designed; and whether each joint had to be turned."""
+) -> tuple[tuple[State, ...], bool, Snap | None]:
+    """From flat to designed; whether each joint had to be turned; and where no equilibrium was found on the way."""
 
     def driven(found: Iterable[Equilibrium]) -> list[State]:
         return [
@@ -102,9 +105,28 @@ def _states(
         nodes = slice(0, model.nodes)
         away = float(moved_onto(first.poses.points[nodes], locked.poses.points[nodes]).max())
         if away <= LET_GO * model.structure.size:
-            return tuple(driven([first, *way])[::-1]), False
+            found, whole = _reached(way)
+            if whole:
+                return tuple(driven([first, *found])[::-1]), False, None
+    found, whole = _reached(turned_states(locked, driver, states, progress))
     turned = [
         State.of(model, one, driver.share(one.poses), joint_moment(one, driver), stable=one.negative == 0)
-        for one in turned_states(locked, driver, states, progress)
+        for one in found
     ]
-    return tuple(turned[::-1]), True
+    if whole:
+        return tuple(turned[::-1]), True, None
+    # the flat state is known whatever lies between
+    flat = State.of(model, lying, 0.0, 0.0, stable=lying.negative == 0)
+    before = found[-2] if len(found) > 1 else lying
+    stop = farthest(before, found[-1], turned[-1].share, states - len(found), model.nodes)
+    return (flat, *turned[::-1]), True, stop
+
+
+def _reached(way: Iterator[Equilibrium]) -> tuple[list[Equilibrium], bool]:
+    """The states of a way up to where no further equilibrium is found, and whether that is its end."""
+    found: list[Equilibrium] = []
+    try:
+        found.extend(way)
+    except InputError:
+        return found, False
+    return found, True

@@ -15,7 +15,7 @@ from lamella.erection.flat_shape import FlatShape
 from lamella.erection.joint_angles import twist_over_depth
 from lamella.erection.slot_room import slot_width_needed
 from lamella.erection.state import State
-from lamella.erection.way import RangeOfMotion, Way
+from lamella.erection.way import RangeOfMotion, Snap, Way
 from lamella.structure.model.model import Model
 
 # deg off square: no slot is wide enough to turn farther
@@ -52,6 +52,8 @@ class Erection(Result):
         Of the device that drives the net; None where its joints' angles are driven.
     motion : RangeOfMotion or None
         Of a net driven as a mechanism.
+    stop : Snap or None
+        Where no equilibrium is found between flat and designed: states from there to the flat one are missing.
     """
 
     model: Model
@@ -67,6 +69,7 @@ class Erection(Result):
     braced: dict[str, float | None] = field(default_factory=dict)
     way: Way | None = None
     motion: RangeOfMotion | None = None
+    stop: Snap | None = None
 
     @property
     def slot_width_needed(self) -> float | None:

@@ -91,13 +91,25 @@ def _turned(plane: Plane, poses: Poses, model: Model) -> Plane:
 
 
 def _overlaps(model: Model, poses: Poses, plane: Plane) -> Integers:
-    lines, attachment = model.lines, model.structure.beams.attachment
+    """Pairs of lamellas (o, 2)."""
+    crossed = _crossed(model, poses, plane)
+    return np.unique(np.sort(model.lines.lamella[crossed], axis=1), axis=0)
+
+
+def overlapping_nodes(model: Model, poses: Poses, plane: Plane) -> Integers:
+    """Nodes of the network before the places where lamellas overlap, on either one, (c, 2)."""
+    return np.unique(_edge_ends(model)[_crossed(model, poses, plane), 0], axis=0)
+
+
+def _crossed(model: Model, poses: Poses, plane: Plane) -> Integers:
+    """Elements that cross in the plan where their lamellas are not joined, (c, 2)."""
+    attachment = model.structure.beams.attachment
     shares = np.linspace(0, 1, CROSSED_PIECES + 1)
     along, _ = points_between(*attachment.ends(poses), shares)
     flat = plane.project(along)
     pieces = np.stack((flat[:, :-1], flat[:, 1:]), 2).reshape(-1, 2, 2)
     crossed, _ = crossings_beside_nodes(pieces, np.repeat(_edge_ends(model), CROSSED_PIECES, axis=0))
-    return np.unique(np.sort(lines.lamella[crossed // CROSSED_PIECES], axis=1), axis=0)
+    return crossed // CROSSED_PIECES
 
 
 def _edge_ends(model: Model) -> Integers:

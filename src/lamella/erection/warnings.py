@@ -14,6 +14,7 @@ from lamella.erection.lift_cases import LiftCase, least_bracing
 from lamella.erection.slot_room import largest_turn
 
 if TYPE_CHECKING:
+    from lamella.erection.cut import Cut
     from lamella.erection.erection import Erection
     from lamella.erection.way import Way
 
@@ -67,6 +68,14 @@ def erection_warnings(erection: Erection) -> Iterator[Message]:
             "one moment shared by all joints does not lead the net to its designed shape: the states have each joint "
             "turned to its own angle, in proportion",
         )
+    if erection.stop is not None:
+        stop = erection.stop
+        yield Message(
+            "driver_stops",
+            f"on the way from the designed shape to flat the net meets a limit point at {100 * stop.share:.0f} % of "
+            f"the way, in the step to state {stop.state}: node {stop.node} moves farthest, by {stop.distance:.3g} m; "
+            "no equilibrium is found beyond, and the states up to there and the flat one are kept",
+        )
     if erection.way is not None:
         yield from way_warnings(erection, erection.way)
     loose = [state for state in erection.states if not state.stable]
@@ -113,6 +122,20 @@ def spring_back_warning(erection: Erection) -> Iterator[Message]:
             f"with its joints locked and nothing else holding it the net springs back by {erection.spring_back:.3g} m: "
             "brace it before it is moved, by diagonals or edge beams",
         )
+
+
+def cut_warning(cut: Cut | None) -> Iterator[Message]:
+    """Of a net that overlaps when it is laid flat."""
+    if cut is None:
+        return
+    parts = "what is left" if cut.parts == 1 else f"{cut.parts} parts"
+    if cut.left == 0:
+        what = f"{parts} then can be laid flat without overlap"
+    elif cut.left is None:
+        what = f"{parts} would not come to rest: divide it into smaller segments"
+    else:
+        what = f"{counted(cut.left, 'pair')} would overlap still: divide it into smaller segments"
+    yield Message("flat_cut", f"cut along {cut.lamella}, midway between what overlaps, {what}")
 
 
 def lifting_warnings(lifts: Mapping[str, Sequence[LiftCase]]) -> Iterator[Message]:

@@ -11,6 +11,7 @@ from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report
 from lamella.erection.braced import spring_backs
 from lamella.erection.bracings import Bracings
+from lamella.erection.cut import Cut, proposed_cut
 from lamella.erection.erection import Erection
 from lamella.erection.lift_cases import LiftCase, LiftRules, lift_cases
 from lamella.hardware.axis_ends import EdgeBeamAxes
@@ -22,6 +23,7 @@ from lamella.stages.fabrication.defaults import cable_rules
 from lamella.stages.fabrication.making import edge_beams_of
 from lamella.stages.fabrication.slot_widths import erected_net, segment_lamellas
 from lamella.stages.keys import keys
+from lamella.stages.lamellas.stage import strips_of
 from lamella.stages.stage import Upstream
 from lamella.strip.lamellas import Lamellas
 from lamella.structure.actions.hardware_masses import hardware_masses
@@ -69,7 +71,16 @@ def _whole(up: Upstream, progress: Progress) -> ErectedSegment:
     lamellas = up.outputs["lamellas"].lamellas
     bracings = _bracings(up, edge_beams_of(up, lamellas))
     made = _braced(up, erected_net(up, lamellas, progress), bracings, progress)
-    return ErectedSegment("", 0.0, made, lifts=_lifts(up, lamellas, bracings, _masses(up), progress))
+    lifts = _lifts(up, lamellas, bracings, _masses(up), progress)
+    return ErectedSegment("", 0.0, made, lifts=lifts, cut=_cut(up, made, progress))
+
+
+def _cut(up: Upstream, made: Erection, progress: Progress) -> Cut | None:
+    """Proposed where a flat net overlaps."""
+    if not len(made.flat.overlaps) or not made.laid:
+        return None
+    progress(Report.step("overlaps: where to cut the net"))
+    return proposed_cut(made, strips_of(up.project, up.surface))
 
 
 def _bracings(up: Upstream, edge_beams: EdgeBeamAxes | None) -> Bracings:
@@ -122,6 +133,5 @@ def _segment(up: Upstream, segment: Segment, divided: Segments, number: int, pro
     except InputError as error:
         return ErectedSegment(segment.id, segment.mass, None, error.message)
     nodes = network_part(up.outputs["network"].network, divided.of_node == number).nodes
-    return ErectedSegment(
-        segment.id, segment.mass, made, lifts=_lifts(up, lamellas, bracings, _masses(up)[nodes], progress)
-    )
+    lifts = _lifts(up, lamellas, bracings, _masses(up)[nodes], progress)
+    return ErectedSegment(segment.id, segment.mass, made, lifts=lifts, cut=_cut(up, made, progress))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from lamella.base.message import Message
+from lamella.erection.cut import Cut
 from lamella.erection.erection import Erection
 from lamella.erection.lift_cases import LiftCase
 
@@ -24,6 +25,8 @@ class ErectedSegment:
         Why there is none.
     lifts : tuple of LiftCase
         Where it is asked for.
+    cut : Cut or None
+        Where lamellas overlap in the flat state, and a cut is proposed.
     """
 
     id: str
@@ -31,6 +34,7 @@ class ErectedSegment:
     made: Erection | None
     fault: str = ""
     lifts: tuple[LiftCase, ...] = ()
+    cut: Cut | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from lamella.view.scene.scene import Shown
 
 
+# of states.json, for a sample or a node in a state, and from which size on it is told before
+STATE_BYTES, TOLD_BYTES = 76, 100e6
+
+
 class ErectionStage(Stage["ErectionOutput"]):
     """See `lamella.stages.stage.Stage`."""
 
@@ -68,7 +72,12 @@ class ErectionStage(Stage["ErectionOutput"]):
         return f"how the net lies flat and is erected (checked up to {MOST_CHECKED_STATES:,} elements times states)"
 
     def heading(self, up: Upstream) -> str:
-        return "laid flat, and driven to the designed shape"
+        table = up.project.erection
+        assert table is not None
+        network = up.outputs["network"].network
+        size = table.states * STATE_BYTES * (len(network.sample_points) + len(network.node_points))
+        told = f"; states.json takes about {size / 1e6:.2g} MB" if size > TOLD_BYTES else ""
+        return f"laid flat, and driven to the designed shape{told}"
 
     def run(self, up: Upstream, progress: Progress) -> ErectionOutput:
         from lamella.stages.erection.erecting import erected
@@ -81,7 +90,7 @@ class ErectionStage(Stage["ErectionOutput"]):
         return f"{pieces}flat on {length:.3g} x {width:.3g} m, springs back by {figures['spring_back']:.3g} m"
 
     def warnings(self, out: ErectionOutput, up: Upstream, progress: Progress) -> Iterator[Message]:
-        from lamella.erection.warnings import lifting_warnings, slot_warning, spring_back_warning
+        from lamella.erection.warnings import cut_warning, lifting_warnings, slot_warning, spring_back_warning
 
         project = up.project
         slot = project.fabrication.slot_width or (project.joint.slot_width if project.joint else None)
@@ -91,7 +100,11 @@ class ErectionStage(Stage["ErectionOutput"]):
             if one.made is None:
                 yield Message("segment_not_erected", f"segment {one.id}: {one.fault}")
                 continue
-            said = [*one.made.warnings, *slot_warning(one.made, slot or 2 * project.lamella.thickness)]
+            said = [
+                *one.made.warnings,
+                *cut_warning(one.cut),
+                *slot_warning(one.made, slot or 2 * project.lamella.thickness),
+            ]
             if one.made is springiest:
                 said += spring_back_warning(one.made)
             for message in said:
