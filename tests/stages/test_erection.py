@@ -412,5 +412,5 @@ def test_the_size_of_large_files_is_told_before(run: Path) -> None:
     lamella.compute(
         lamella.parse_project(driven(states=2)), until="erection", progress=lambda report: said.append(report.text)
     )
-    assert any(text.startswith("laid flat") for text in said)
+    assert any("laid flat, and driven" in text for text in said)
     assert not any("MB" in text for text in said)

@@ -22,7 +22,7 @@ from lamella.structure.loads import no_loads
 from lamella.structure.static import at_rest
 
 # overlaps that are looked at, evenly chosen
-LOOKED_AT = 64
+OVERLAPS_LOOKED_AT = 64
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def proposed_cut(erection: Erection, remake: Callable[[Network], Lamellas]) -> C
     pairs = overlapping_nodes(model, erection.states[0].poses, erection.flat.plane)
     if not len(pairs):
         return None
-    chosen = np.unique(np.linspace(0, len(pairs) - 1, LOOKED_AT).round().astype(np.int64))
+    chosen = np.unique(np.linspace(0, len(pairs) - 1, OVERLAPS_LOOKED_AT).round().astype(np.int64))
     lamella = _between(network, pairs[chosen])
     if lamella is None:
         return None
