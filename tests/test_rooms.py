@@ -50,6 +50,7 @@ STAGE_NEEDS = (
     "structure.export.saf",
     "erection",
     "panels",
+    *PROJECTIONS,
     "project",
     *FILES,
     "view.scene",

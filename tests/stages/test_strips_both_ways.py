@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import rhino3dm
 
+import lamella
 from lamella import compute, parse_project, write
 from lamella.stages.lamellas.stage import LamellasStage
 
@@ -28,6 +29,21 @@ def test_places_without_a_strip_are_named(tmp_path: Path) -> None:
     told = figures["developable"]
     assert told["height_min"] == 0.0
     assert told["recommended"] == "twisted"
+    # borders that move make all quads planar; where no developable strip is the rulings jump
+    moved = told["optimised"]
+    assert moved["lamellas"] == len(results.network.ids)
+    assert moved["fault"] is None
+    assert moved["planarity_max"] < 5e-4 < moved["planarity_before_max"]
+    assert 0.01 < moved["shift_max"] < 0.2
+    assert moved["turn_max_deg"] > 10
+    layers = list(LamellasStage().model(results.outputs["lamellas"], results.upstream))
+    (borders,) = (layer for layer in layers if layer.name == "strips made planar")
+    assert len(borders.curves) == 2 * len(results.network.ids)
+    # the upper border lies on the parallel surface at the strips' height
+    feet = lamella.foot_surface(results.surface)
+    for curve, off in zip(borders.curves[:4], (0.0, 0.1) * 2, strict=True):
+        foot = feet.foot(curve)
+        assert np.einsum("ij,ij->i", curve - foot.position, foot.normal) == pytest.approx(off, abs=1e-5)
     assert [place["lamella"] for place in told["places"]] == list(results.network.ids)
     assert all(abs(place["point"][2]) < 0.1 for place in told["places"])
     keys = [message.key for message in results.summary["warnings"]]
@@ -86,5 +102,8 @@ def test_developable_strips_are_in_the_model_and_in_the_view(tmp_path: Path) -> 
         (quantity,) = layer.quantities
         assert quantity.most == pytest.approx(stress[np.isfinite(stress)].max() * 1e-6, rel=0.2)
         assert len(layer.positions) == len(quantity.values)
+    upper = CATENOID | {"surface": CATENOID["surface"] | {"height": [1.0, 2.0]}}
+    whole = compute(parse_project(upper | {"lamella": ASKED["lamella"] | {"height": 0.04}}), until="lamellas")
+    assert whole.summary["lamellas"]["developable"]["optimised"] is None
     plain = compute(parse_project(CATENOID), until="lamellas")
     assert not list(LamellasStage().model(plain.outputs["lamellas"], plain.upstream))

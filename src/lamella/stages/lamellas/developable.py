@@ -26,6 +26,24 @@ SCHEMA = record(
     meeting_off_max=nullable(NUMBER),
     recommended=TEXT,
     lamellas=INTEGER,
+    optimised=nullable(
+        record(
+            (
+                "planarity_before_max",
+                "planarity_max",
+                "shift_max",
+                "tilt_max_deg",
+                "turn_max_deg",
+            ),
+            lamellas=INTEGER,
+            fault=nullable(TEXT),
+            planarity_before_max=NUMBER,
+            planarity_max=NUMBER,
+            shift_max=NUMBER,
+            tilt_max_deg=NUMBER,
+            turn_max_deg=NUMBER,
+        )
+    ),
     places=list_of(
         record(lamella=TEXT, start=NUMBER, end=NUMBER, height_min=NUMBER, point=list_of(NUMBER)),
     ),
@@ -36,6 +54,11 @@ MEANING = (
     "`stress_bending_max` (Pa) at its faces, "
     "`utilisation_max`, and `meeting_off_max` (m), how far from the normal two strips meet at their edges; "
     "`recommended`: `twisted` or `developable`, and how many `lamellas` are stressed less as developable strips; "
+    "`optimised`, null where strips exist everywhere: of the `lamellas` along which none does somewhere, strips "
+    "between the surface and its parallel surface at their height, both borders moved until they are planar: largest "
+    "planarity score before and after, how far borders moved (`shift_max`, m), how far rulings lean "
+    "(`tilt_max_deg`), and how much they turn between two quads (`turn_max_deg`: they jump where no developable strip "
+    "is); or the `fault` that prevented it; "
     "`places` where none exists, with `start` and `end` (m along the lamella), `height_min` (m) and the `point` of that"
 )
 
@@ -74,6 +97,7 @@ def developable_figure(out: LamellasOutput) -> Any:
         "meeting_off_max": float(off.max()) if len(off) else None,
         "recommended": recommended(out, strips),
         "lamellas": int(np.sum(_better(out, strips))),
+        "optimised": None if out.optimised is None else out.optimised.figures(),
         "places": places,
     }
 

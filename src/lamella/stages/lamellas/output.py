@@ -8,6 +8,7 @@ from typing import Any
 
 from lamella.base.material import Material
 from lamella.network.network import Network
+from lamella.stages.lamellas.optimising import Optimised
 from lamella.strip.developable_strips import DevelopableStrips
 from lamella.strip.lamellas import Lamellas
 from lamella.strip.sizing import Sizing
@@ -27,6 +28,8 @@ class LamellasOutput:
         What made the net, as `lamella.stages.network.stage.NetworkOutput.made`.
     developable : DevelopableStrips or None
         Along the same lamellas, where the project asks for them.
+    optimised : Optimised or None
+        Where some of these do not exist everywhere: their borders moved until they do.
     sizing : Sizing or None
         Largest measures, where the project asks for them.
     """
@@ -37,6 +40,7 @@ class LamellasOutput:
     material: Material
     made: Any
     developable: DevelopableStrips | None = None
+    optimised: Optimised | None = None
     sizing: Sizing | None = None
 
     @cached_property

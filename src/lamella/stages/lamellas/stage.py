@@ -17,6 +17,7 @@ from lamella.stages.drawn import in_drawing
 from lamella.stages.keys import keys
 from lamella.stages.lamellas.developable import developable_warnings
 from lamella.stages.lamellas.figures import FIGURES, REPORT
+from lamella.stages.lamellas.optimising import optimised_layers, optimised_strips
 from lamella.stages.lamellas.output import LamellasOutput
 from lamella.stages.lamellas.warnings import lamella_warnings, layer_warnings
 from lamella.stages.pattern_of_table import pattern_of
@@ -72,14 +73,17 @@ class LamellasStage(Stage[LamellasOutput]):
         net = up.outputs["network"]
         with keys("lamella", section="lamella", network="network"):
             lamellas = strips_of(up.project, up.surface)(net.network)
-        developable = developable_strips(lamellas) if up.project.lamella.strips == "developable" else None
+        developable, optimised = None, None
+        if up.project.lamella.strips == "developable":
+            developable = developable_strips(lamellas)
+            optimised = optimised_strips(lamellas, developable, up.surface, progress)
         table, material = up.project.sizing, up.project.material()
         sizing = None
         if table is not None:
             progress(Report.step("largest measures that stay elastic"))
             sizing = largest_measures(lamellas.network, lamellas.section, material, table.safety)
         named = up.project.lamella.material, material
-        return LamellasOutput(lamellas.network, lamellas, *named, net.made, developable, sizing)
+        return LamellasOutput(lamellas.network, lamellas, *named, net.made, developable, optimised, sizing)
 
     def result(self, figures: Mapping[str, Any], out: LamellasOutput) -> str:
         return f"{figures['total_length']:.4g} m of lamella, utilisation up to {figures['utilisation_max']:.2f}"
@@ -138,6 +142,8 @@ class LamellasStage(Stage[LamellasOutput]):
             from lamella.stages.lamellas.developable_model import developable_layers
 
             yield from developable_layers(out.lamellas, out.developable)
+        if out.optimised is not None:
+            yield from optimised_layers(out.optimised)
 
 
 def strips_of(project: Project, surface: Surface[Any]) -> partial[Lamellas]:
