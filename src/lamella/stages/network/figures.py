@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from lamella.stages.figure import (
 )
 from lamella.stages.network.output import NetworkOutput
 from lamella.strip.planarity import planarity_score
+from lamella.strip.principal_strips import principal_strips
 
 Rows = Iterator[tuple[str, str, str]]
 ORDER_AND_RAYS = {"point": POINT, "order": INTEGER, "rays": INTEGER}
@@ -52,6 +54,16 @@ def _singular_nodes(out: NetworkOutput) -> list[dict[str, Any]]:
 
 def _is_principal(network: Network) -> bool:
     return network.pattern.kind == "principal"
+
+
+def _principal_strips(out: NetworkOutput) -> Any:
+    return asdict(principal_strips(out.network)) if _is_principal(out.network) else ABSENT
+
+
+def _principal_rows(value: dict[str, Any], summary: dict[str, Any]) -> Rows:
+    yield "Strips on these lines: different outlines", f"{value['different']:,}", ""
+    yield "Curvature of their outlines", f"{value['edgewise_min']:.3g} … {value['edgewise_max']:.3g}", "1/m"
+    yield "Bent by, largest", format(value["bend_max"], ".3g"), "1/m"
 
 
 def _curvature_deviation(out: NetworkOutput) -> float | None:
@@ -242,6 +254,16 @@ FIGURES: tuple[Figure[NetworkOutput], ...] = (
         "mean difference from 90 degrees, or from `network.angle`, at regular nodes" + BY_POINTS,
         _angle("node_angle_deviation_mean_deg"),
         NUMBER,
+    ),
+    Figure(
+        "principal_strips",
+        "",
+        "principal nets: what strips on its lines would be: `different` outlines, `bend_max` and `twist_max` (kg and "
+        "tg, 1/m; not twisted), `edgewise_min` and `edgewise_max` (kn, the curvature of their outlines, 1/m)",
+        _principal_strips,
+        record(different=INTEGER, bend_max=NUMBER, twist_max=NUMBER, edgewise_min=NUMBER, edgewise_max=NUMBER),
+        always=False,
+        rows=_principal_rows,
     ),
     Figure(
         "normal_curvature",
@@ -455,6 +477,7 @@ REPORT = (
     "cell_edge_min",
     "cell_edge_median",
     "cell_edge_max",
+    "principal_strips",
     "adjustment",
     "unreal_area_share",
     "node_angle_deviation_max_deg",
