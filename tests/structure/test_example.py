@@ -6,4 +6,4 @@ import lamella.structure
 
 
 def test_example():
-    assert doctest.testmod(lamella.structure, optionflags=doctest.NORMALIZE_WHITESPACE) == (0, 20)
+    assert doctest.testmod(lamella.structure, optionflags=doctest.NORMALIZE_WHITESPACE) == (0, 23)

@@ -183,3 +183,16 @@ def test_stresses_converge_under_load():
     steps = [np.sqrt(np.mean((b - a) ** 2)) for a, b in pairwise(found)]
     assert orders(steps)[-1] > 1.6
     assert steps[1] < 3e-3 * found[-1].max()
+
+
+def test_a_case_that_needs_too_many_steps_ends_with_what_it_has(monkeypatch):
+    """The state that was reached is one of equilibrium, and its share of the load is told."""
+    monkeypatch.setattr("lamella.structure.analysis.analyse.FURTHER_STEPS", 1)
+    told = []
+    _, case = analyse(model(), [pushed(PATCH, (0, 0, -30.0))], frequencies=0, steps=4, progress=told.append).cases
+    assert case.converged
+    monkeypatch.setattr("lamella.structure.analysis.analyse.FURTHER_STEPS", -2)
+    _, case = analyse(model(), [pushed(PATCH, (0, 0, -30.0))], frequencies=0, steps=4, progress=told.append).cases
+    assert (case.converged, case.load_factor) == (False, 0.5)
+    assert np.abs(case.load_total + case.reaction_total).max() < 1e-9 * np.abs(case.load_total).max()
+    assert any("0.5 of the load" in report.text for report in told)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
@@ -27,6 +27,9 @@ from lamella.structure.model.case_loads import case_loads
 from lamella.structure.model.model import Model
 from lamella.structure.static import at_rest, load_path, loaded
 from lamella.structure.vibration import vibration
+
+FURTHER_STEPS = 60
+"""Load steps of a case beyond those that are asked for; what needs more gives way bit by bit."""
 
 RESIDUAL = "residual"
 """Name of the state without loads."""
@@ -142,9 +145,10 @@ def analyse(
             swinging = vibration(rest, frequencies)
             swings, modes = swinging.frequencies, swinging.modes
         for k, case in enumerate(cases):
-            progress(Report.step(f"load case {case.name}", k / len(cases)))
+            report = _reporter(progress, case.name, k / len(cases))
+            report(0.0)
             loads = case_loads(model, case, node_masses)
-            found.append(_case(model, case.name, rest, loads, buckling, steps))
+            found.append(_case(model, case.name, rest, loads, buckling, steps, report))
     return Analysis(model, tuple(found), swings, not supported, stages, modes, tuple(cases), node_masses)
 
 
@@ -171,7 +175,25 @@ def _braced(rest: Equilibrium, model: Model, rules: CableRules) -> tuple[Equilib
     return last, replace(model, structure=structure)
 
 
-def _case(model: Model, name: str, rest: Equilibrium, loads: Loads, buckling: int, steps: int) -> CaseResult:
+def _reporter(progress: Progress, name: str, share: float) -> Callable[[float], None]:
+    """Tells how much of a case's load is on."""
+
+    def report(factor: float) -> None:
+        on = f", {factor:.3g} of the load" if factor else ""
+        progress(Report.step(f"load case {name}{on}", share))
+
+    return report
+
+
+def _case(
+    model: Model,
+    name: str,
+    rest: Equilibrium,
+    loads: Loads,
+    buckling: int,
+    steps: int,
+    report: Callable[[float], None],
+) -> CaseResult:
     start = stable = last = replace(rest, loads=loads)
     reason, states = "", []
     try:
@@ -179,6 +201,11 @@ def _case(model: Model, name: str, rest: Equilibrium, loads: Loads, buckling: in
             states.append(replace(last))
             if last.negative == 0:
                 stable = last
+            if last.factor != 1:
+                report(last.factor)
+                if len(states) >= steps + FURTHER_STEPS:
+                    reason = f"{len(states)} load steps lead no farther than to the load factor {last.factor:.6g}"
+                    break
     except InputError as error:
         reason = error.message
     factors, modes = np.zeros(0), np.zeros((0, 0))
