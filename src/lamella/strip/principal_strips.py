@@ -15,7 +15,7 @@ import numpy as np
 from lamella.base.arrays import Floats
 from lamella.network.network import Network
 
-ALIKE = 1e-4
+SAME_OUTLINE = 1e-4
 """Of lengths, over the longest, and of turnings (rad) by which strips that are cut alike differ at most."""
 
 
@@ -69,5 +69,5 @@ def _different(network: Network, kn: Floats) -> int:
     length = arc[ends] / arc[ends].max()
     ways = np.stack([turns, turns[:, ::-1], -turns, -turns[:, ::-1]])
     row = np.concatenate([np.broadcast_to(length[None, :, None], (4, len(length), 1)), ways], 2)
-    ranks = np.unique(np.rint(row / ALIKE).reshape(-1, 5) + 0.0, axis=0, return_inverse=True)[1].reshape(4, -1)
+    ranks = np.unique(np.rint(row / SAME_OUTLINE).reshape(-1, 5) + 0.0, axis=0, return_inverse=True)[1].reshape(4, -1)
     return len(np.unique(ranks.min(axis=0)))
