@@ -143,9 +143,9 @@ class StructureStage(Stage[StructureOutput]):
 
         signed: Any = {"name": up.project.name, "version": __version__}
         yield File("structure/results.json", lambda path: write_results(path, out.analysis, **signed))
-        signed |= {"origin": drawing_origin(up.surface)}
-        yield from _exports(out, signed)
-        yield from _for_programs(out.analysis, up.project, signed)
+        placed = signed | {"origin": drawing_origin(up.surface)}
+        yield from _exports(out, placed)
+        yield from _for_programs(out.analysis, up.project, placed)
 
     def scene(self, out: StructureOutput, up: Upstream) -> Iterator[Shown]:
         from lamella.stages.structure.frames import structure_frames
