@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
+from itertools import islice
+from typing import Any
 
 import numpy as np
 import pytest
 
 import lamella
 from lamella import InputError, Section
+from lamella.erection import erect as erect_module
 from lamella.erection.cut import proposed_cut
 from lamella.erection.erect import erect
 from lamella.erection.erection import Erection
@@ -19,6 +23,7 @@ from lamella.erection.laid_flat import laid_flat
 from lamella.erection.samples import sampled
 from lamella.strip.stress import shortening
 from lamella.structure.beam.beams import make_beams
+from lamella.structure.equilibrium import Equilibrium
 from lamella.structure.loads import no_loads
 from lamella.structure.static import at_rest
 from validation.measure_network import arc_length, derivatives
@@ -243,23 +248,43 @@ def test_a_state_prints_in_a_line() -> None:
     assert "J" in repr(made.states[0])
 
 
+def test_what_was_reached_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A way that ends before: named with place and step, the states up to there and the flat one kept."""
+    whole = erect_module.turned_states
+
+    def ending(*given: Any) -> Iterator[Equilibrium]:
+        yield from islice(whole(*given), 3)
+        raise InputError("no equilibrium", "", "loads")
+
+    monkeypatch.setattr(erect_module, "turned_states", ending)
+    # as if the driver alone let the net go
+    monkeypatch.setattr(erect_module, "LET_GO", -1.0)
+    net = lamella.net(PATCH, spacing=0.9)
+    made = erect(net.strips(STRIP), states=5, elements=1)
+    assert made.stop is not None
+    assert [state.share for state in made.states] == pytest.approx([0, 0.5, 0.75, 1], abs=1e-9)
+    assert made.stop.share == pytest.approx(0.5)
+    # numbered from the flat one on
+    assert made.stop.state == 2
+    assert 0 <= made.stop.node < len(net.node_points)
+    (warning,) = [text for text in made.warnings if text.key == "driver_stops"]
+    assert "50 %" in warning
+    assert f"node {made.stop.node}" in warning
+
+
 @pytest.mark.slow
-def test_a_limit_point_on_the_way_is_named_and_what_was_reached_is_kept() -> None:
-    """A net with a hexagonal node, whose strips overlap when it is laid flat: no path leads there."""
+def test_a_cut_is_proposed_where_a_flat_net_overlaps() -> None:
+    """A net with a hexagonal node, 540 degrees of cells around it: cut, far fewer of its lamellas overlap."""
     net = lamella.net(lamella.Enneper(3, 1.2, 2.0), cells=8)
     section = Section(0.06, 0.001, layers=1)
-    made = erect(net.strips(section), states=5, elements=1)
-    assert made.stop is not None
-    assert 0 <= made.stop.node < len(net.node_points)
-    shares = [state.share for state in made.states]
-    # the flat one, and those from where the way ends to the designed shape
-    assert shares == sorted(shares)
-    assert (shares[0], shares[-1]) == (0, 1)
-    assert shares[1] == pytest.approx(made.stop.share)
-    assert len(shares) == 5 - made.stop.state + 1
-    assert "driver_stops" in {warning.key for warning in made.warnings}
+    made = erect(net.strips(section), states=2, elements=1)
     assert len(made.flat.overlaps)
+    assert "flat_overlaps" in {warning.key for warning in made.warnings}
     cut = proposed_cut(made, lambda part: part.strips(section))
     assert cut is not None
     assert cut.lamella in net.ids
-    assert cut.left is None or cut.left < len(made.flat.overlaps)
+    assert cut.parts >= 1
+    assert cut.left is not None
+    assert cut.left < 0.5 * len(made.flat.overlaps)
+    # where nothing overlaps there is nothing to cut
+    assert proposed_cut(erected(1, 3), lambda part: part.strips(STRIP)) is None
