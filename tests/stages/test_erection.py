@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import ezdxf
 import numpy as np
@@ -14,6 +15,7 @@ from lamella import InputError
 from lamella.erection.samples import sampled
 from lamella.stages.check import check_project
 from lamella.stages.erection.stage import STATE_BYTES
+from lamella.stages.fabrication.slot_widths import _needed
 from lamella.stages.scene import scene_of
 from lamella.view.scene.encode import encode_scene
 from stages.csv_rows import rows
@@ -414,3 +416,12 @@ def test_the_size_of_large_files_is_told_before(run: Path) -> None:
     )
     assert any("laid flat, and driven" in text for text in said)
     assert not any("MB" in text for text in said)
+
+
+def test_joints_that_fold_up_do_not_widen_all_slots() -> None:
+    """Those within 15 degrees of straight are held on the floor: the widest of the others counts."""
+    net = lamella.net(lamella.Enneper(2, 0.6, 3.0), spacing=0.6).strips()
+    folded = SimpleNamespace(
+        turned=(np.array([10.0, 82.0]), np.array([5.0, 30.0])), model=SimpleNamespace(lamellas=net)
+    )
+    assert _needed(folded) == pytest.approx(0.0015 * np.sqrt(3), rel=1e-12)

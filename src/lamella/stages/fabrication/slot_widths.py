@@ -11,11 +11,15 @@ import hashlib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report
 from lamella.base.wording import rounded
 from lamella.erection.erect import erect
 from lamella.erection.erection import Erection
+from lamella.erection.slot_room import slot_width_needed
+from lamella.erection.warnings import FOLDED_ANGLE
 from lamella.network.network_part import network_part
 from lamella.segments.segments import Segments
 from lamella.stages.driven_net import driven_net
@@ -113,11 +117,18 @@ def _erected_segments(up: Upstream, segments: Segments, progress: Progress) -> I
 
 def _width(section: Section, made: Iterator[Erection] | list[Erection]) -> float:
     """Of slots that all of them can turn in, m: as far as half the strip between the slots of two layers is left."""
-    needed = max((one.slot_width_needed or 0.0 for one in made), default=0.0)
+    needed = max((_needed(one) for one in made), default=0.0)
     most = section.height / 4
     if section.layers > 1:
         most = min(most, section.offset / 2)
     return min(rounded(needed, up=True, digits=2), rounded(most, up=False, digits=2)) if needed else 0.0
+
+
+def _needed(made: Erection) -> float:
+    """Of slots that all joints can turn in that do not fold up, m: what folds is held on the floor instead."""
+    turned = np.concatenate(made.turned)
+    kept = turned[turned <= 90 - FOLDED_ANGLE]
+    return float(slot_width_needed(np.radians(kept.max(initial=0.0)), made.model.lamellas.section.thickness))
 
 
 def _filled(up: Upstream, width: float) -> Upstream:
