@@ -1,7 +1,7 @@
 // The view of a design: one frame after the other in the shared viewer, and the pinned state as grey lines over it.
 
 import { decodeScene } from "./decode.js";
-import { pairsOf } from "./drawn.js";
+import { pairsOf } from "./drawn_base.js";
 import { pieceStarts } from "./strips.js";
 import { Viewer } from "./viewer.js";
 

@@ -10,7 +10,7 @@ import { Link } from "./link.js";
 import { Sketch } from "./sketch.js";
 import { TextPanel } from "./text_panel.js";
 import { drawTriad } from "./triad.js";
-import { noView } from "./viewer.js";
+import { noView } from "./stage.js";
 
 const BASE = document.body.dataset.base ?? "/";
 const REFUSED_MS = 7000;
