@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from lamella import compute, parse_project
-from lamella.stages.structure.stage import StructureStage
+from lamella.stages.structure.export_remarks import export_remarks
+from lamella.stages.structure.stage import StructureStage, _for_programs
 from lamella.structure.export.opensees import fine_elements
 from lamella.structure.model.model import divided
 from stages.csv_rows import rows
@@ -96,3 +97,25 @@ def test_the_script_has_fibres_for_strips_alone(run: tuple[Any, Path]) -> None:
     assert len(parts["HINGES"]) == 2 * slotted
     assert len(parts["CABLES"]) == len(analysis.model.structure.cables)
     assert [case[0] for case in parts["CASES"]] == ["residual", "snow"]
+
+
+def test_a_run_says_what_files_leave_out() -> None:
+    warm = {"name": "summer", "kind": "temperature", "value": 30.0}
+    project = parse_project(PROJECT | {"load": [*PROJECT["load"], warm]})
+    texts = [remark.text for remark in export_remarks(project)]
+    assert ["saf.xlsx" in texts[0], "opensees.py" in texts[1], "summer" in texts[1], len(texts)] == [
+        True,
+        True,
+        True,
+        2,
+    ]
+    none = PROJECT | {"structure": {"exports": []}}
+    assert list(export_remarks(parse_project(none))) == []
+
+
+def test_only_files_that_are_asked_for_are_written(run: tuple[Any, Path]) -> None:
+    analysis, folder = run
+    assert {"opensees.py", "saf.xlsx"} <= {path.name for path in folder.iterdir()}
+    project = parse_project(PROJECT | {"structure": {"exports": ["saf"]}})
+    names = [file.name for file in _for_programs(analysis, project, {})]
+    assert names == ["structure/saf.xlsx"]

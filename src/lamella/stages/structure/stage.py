@@ -134,8 +134,11 @@ class StructureStage(Stage[StructureOutput]):
         )
 
     def warnings(self, out: StructureOutput, up: Upstream, progress: Progress) -> Iterator[Message]:
+        from lamella.stages.structure.export_remarks import export_remarks
         from lamella.stages.structure.warnings import structure_warnings
 
+        for remark in export_remarks(up.project):
+            progress(remark)
         yield from structure_warnings(out)
 
     def files(self, out: StructureOutput, up: Upstream) -> Iterator[File]:
