@@ -12,6 +12,7 @@ import pytest
 
 import lamella
 from interactive.designs import CATENOID, RINGS, served, write
+from interactive.dragging import drag_example
 from lamella.interactive.server import Server
 from view.browser import Browser, Page
 
@@ -127,18 +128,16 @@ def test_sliders_lists_text_and_sketches(browser: Browser, server: Server) -> No
     assert RINGS.split("\n")[int(line) - 1].startswith("cells")
     page.value("document.getElementById('undo').click()")
     page.until("document.getElementById('problem').hidden")
+    page.value("document.getElementById('show-text').click()")
     page.value("document.getElementById('sketch').click()")
     page.value("document.getElementById('stage').scrollIntoView()")
     box = page.value(
         "(() => { const b = document.getElementById('stage').getBoundingClientRect();"
         "return [b.x, b.y, b.width, b.height] })()"
     )
-    for x, y in ((0.3, 0.3), (0.6, 0.3), (0.6, 0.6), (0.3, 0.6)):
+    for number, (x, y) in enumerate(((0.3, 0.45), (0.6, 0.45), (0.6, 0.75), (0.3, 0.75)), 1):
         page.click(box[0] + x * box[2], box[1] + y * box[3])
-    page.value("document.getElementById('sketch-cancel').click()")
-    page.value("document.getElementById('sketch').click()")
-    for x, y in ((0.3, 0.35), (0.7, 0.35), (0.7, 0.75), (0.3, 0.75)):
-        page.click(box[0] + x * box[2], box[1] + y * box[3])
+        page.until(f"document.getElementById('sketch-count').textContent === 'number {number}'")
     page.value("document.getElementById('sketch-close').click()")
     page.until(f"{KNOWN}.state.handles.filter(one => one.id.startsWith('0.points')).length === 4")
     assert page.value(
@@ -179,3 +178,11 @@ def test_pages_without_the_token_see_nothing(browser: Browser, server: Server) -
     )
     assert page.value(socket) == "refused"
     page.close()
+
+
+@pytest.mark.slow
+def test_random_dragging(browser: Browser) -> None:
+    """Some seconds of what `interactive.dragging` does for minutes: it ends where it began, without complaint."""
+    dragged = drag_example(browser, "08_two_rings", 10.0, 3)
+    assert dragged.drags >= 1
+    assert dragged.complaints == []

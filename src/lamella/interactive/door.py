@@ -19,6 +19,7 @@ import orjson
 from lamella import __version__
 from lamella.base.errors import InputError
 from lamella.interactive.door_curves import taken_in
+from lamella.interactive.one_at_a_time import computing
 from lamella.project.read import parse_project
 from lamella.stages.computation import compute
 from lamella.stages.drawn import in_drawing
@@ -75,7 +76,8 @@ def _made(name: str, body: bytes) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="lamella-") as there:
         folder = Path(there)
         project = parse_project(taken_in(asked["project"], folder))
-        results = compute(project, until=UNTIL[name], folder=folder)
+        with computing:
+            results = compute(project, until=UNTIL[name], folder=folder)
         summary = results.summary
         return {
             "version": __version__,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -13,6 +14,7 @@ from lamella.base.progress import Cancelled, Level, Progress, Report, cancelled_
 from lamella.interactive.edits import Design
 from lamella.interactive.exact_frame import exact_frame, exact_results
 from lamella.interactive.frame import Frame
+from lamella.interactive.one_at_a_time import computing
 from lamella.interactive.session import Session
 from lamella.interactive.warm_frame import WarmFrames
 from lamella.stages.memory import Memory
@@ -62,11 +64,8 @@ class Worker:
     def _frames(self, revision: int, design: Design, draft: bool) -> None:
         session = self.session
         try:
-            closing = None
-            if draft or self._warm.serves(design.project):
-                closing = self._coarse(revision, design, draft).details
-            if not draft:
-                self._exact(revision, design, closing)
+            with computing:
+                self._compute(revision, design, draft)
         except Cancelled:
             return
         except InputError as error:
@@ -80,6 +79,13 @@ class Worker:
         finally:
             session.put_busy(revision, None)
 
+    def _compute(self, revision: int, design: Design, draft: bool) -> None:
+        closing = None
+        if draft or self._warm.serves(design.project):
+            closing = self._coarse(revision, design, draft).details
+        if not draft:
+            self._exact(revision, design, closing)
+
     def _coarse(self, revision: int, design: Design, draft: bool) -> Frame:
         begun = time.monotonic()
         progress = self._reporting(revision, lambda: time.monotonic() - begun > PATIENCE, draft)
@@ -87,7 +93,9 @@ class Worker:
             frame = self._warm.frame(design.project, self.session.folder, progress)
         else:
             folder = self.session.folder
-            frame = exact_frame(exact_results(design.project, folder, self._memory, progress, parts=False))
+            exact = exact_frame(exact_results(design.project, folder, self._memory, progress, parts=False))
+            # without the parts, which come when it is let go
+            frame = replace(exact, level="coarse")
         self.session.put_frame(revision, design.text, frame, time.monotonic() - begun, None)
         return frame
 
