@@ -56,7 +56,7 @@ export class DesignView {
   /** @param {any} message a frame, or null */
   pin(message) {
     this.pinned = message;
-    for (const lines of this.ghost.children) lines.geometry.dispose();
+    for (const lines of /** @type {any[]} */ (this.ghost.children)) lines.geometry.dispose();
     this.ghost.clear();
     if (message) {
       const scene = sceneOf(message);

@@ -21,7 +21,11 @@ export class Handles {
    * @param {(handle: any) => void} chosen
    */
   constructor(root, view, options, moved, chosen) {
-    Object.assign(this, { root, view, options, moved, chosen });
+    this.root = root;
+    this.view = view;
+    this.options = options;
+    this.moved = moved;
+    this.chosen = chosen;
     /** @type {any[]} */
     this.all = [];
     this.grips = new Map();

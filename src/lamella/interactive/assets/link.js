@@ -9,24 +9,31 @@ export class Link {
    * @param {(isOpen: boolean) => void} changed
    */
   constructor(address, received, changed) {
-    Object.assign(this, { address, received, changed });
+    this.address = address;
+    this.received = received;
+    this.changed = changed;
     this.acknowledged = 0;
-    this.open();
+    this.isClosed = false;
+    this.socket = this.open();
   }
 
   open() {
-    this.socket = new WebSocket(this.address);
-    this.socket.binaryType = "arraybuffer";
-    this.socket.addEventListener("open", () => this.changed(true));
-    this.socket.addEventListener("message", ({ data }) => {
+    const socket = new WebSocket(this.address);
+    socket.binaryType = "arraybuffer";
+    socket.addEventListener("open", () => this.changed(true));
+    socket.addEventListener("message", ({ data }) => {
       const message = typeof data === "string" ? JSON.parse(data) : unpacked(data);
       this.received(message);
       if (message.type === "frame") this.drawn(message.number);
     });
-    this.socket.addEventListener("close", () => {
+    socket.addEventListener("close", () => {
       this.changed(false);
-      if (!this.isClosed) setTimeout(() => this.open(), AGAIN_MS);
+      if (this.isClosed) return;
+      setTimeout(() => {
+        this.socket = this.open();
+      }, AGAIN_MS);
     });
+    return socket;
   }
 
   /**

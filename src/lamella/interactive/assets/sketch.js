@@ -9,7 +9,8 @@ export class Sketch {
    * @param {(count: number) => void} changed
    */
   constructor(root, view, changed) {
-    Object.assign(this, { root, view, changed });
+    this.view = view;
+    this.changed = changed;
     /** @type {number[][]} */
     this.points = [];
     this.isOn = false;
@@ -45,7 +46,7 @@ export class Sketch {
 
   draw() {
     const onScreen = this.view.viewer.onScreen();
-    const places = this.points.map((point) => onScreen(this.view.inside(point), 0).slice(0, 2).map((value) => value.toFixed(1)));
+    const places = this.points.map((point) => onScreen(this.view.inside(point), 0).slice(0, 2).map((/** @type {number} */ value) => value.toFixed(1)));
     const dots = places.map(([x, y]) => `M${x} ${y} m-3 0 a3 3 0 1 0 6 0 a3 3 0 1 0 -6 0`).join(" ");
     this.path.setAttribute("d", places.length ? `M${places.map((one) => one.join(" ")).join(" L")} Z ${dots}` : "");
   }
