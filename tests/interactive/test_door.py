@@ -35,6 +35,7 @@ def test_what_comes_out_is_what_the_library_makes() -> None:
     assert net["net"]["schema"] == "lamella/network/1"
 
 
+@pytest.mark.slow
 def test_rhino_reads_what_comes_out() -> None:
     _, made = ask("net", "rhino")
     objects = [rhino3dm.CommonObject.Decode(one["object"]) for one in made["net"]]
