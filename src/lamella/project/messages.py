@@ -115,7 +115,7 @@ def _unknown(leaf: str, parent: dict[str, Any], at_top: bool) -> tuple[str, str]
     if homes:
         return f"unknown key here: it belongs in the table [{homes[0]}]", f"move it below [{homes[0]}]"
     lists = [name for name, model in LIST_TABLES.items() if leaf in model.model_fields]
-    if lists and not near:
+    if lists:
         return f"unknown key here: it belongs in a table [[{lists[0]}]]", f"move it below [[{lists[0]}]]"
     if near:
         return "unknown key" + _meant(near), f"write {near}; keys here: {known}"

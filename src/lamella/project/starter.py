@@ -56,7 +56,7 @@ _ACTIVE: dict[str, Any] = {
 _OWN: dict[str, dict[str, Any]] = {"unduloid": {"network.cells": 25}, "mesh": {"network.cells": 16}}
 
 
-def _key(table: str, name: str, field: FieldInfo, active: dict[str, Any]) -> str:
+def _key(table: str, name: str, field: FieldInfo, active: dict[str, Any], plain: dict[str, Any]) -> str:
     extra = field.json_schema_extra
     unit = extra.get("unit", "") if isinstance(extra, dict) else ""
     about = (field.description or "") + (f" [{unit}]" if unit else "")
@@ -68,6 +68,9 @@ def _key(table: str, name: str, field: FieldInfo, active: dict[str, Any]) -> str
     value = active.get(f"{table}.{name}", value)
     if value is None:
         return "\n".join([*lines, f"# {name} ="])
+    if isinstance(value, BaseModel) and isinstance(plain.get(name), str):
+        # a table that a word stands for
+        value = plain[name]
     if isinstance(value, BaseModel):
         inside = ", ".join(f"{key} = {number}" for key, number in value.model_dump().items())
         return "\n".join([*lines, f"# {name} = {{{inside}}}"])
@@ -78,7 +81,8 @@ def _key(table: str, name: str, field: FieldInfo, active: dict[str, Any]) -> str
 
 
 def _table(name: str, model: type[BaseModel], active: dict[str, Any], skip: frozenset[str] = frozenset()) -> str:
-    keys = [_key(name, key, field, active) for key, field in model.model_fields.items() if key not in skip]
+    plain = model.model_construct().model_dump(mode="json", warnings=False)
+    keys = [_key(name, key, field, active, plain) for key, field in model.model_fields.items() if key not in skip]
     about = textwrap.wrap((model.__doc__ or "").strip(), 98, initial_indent="# ", subsequent_indent="# ")
     field = Project.model_fields[name]
     # a table that changes what is made by being there stands as a comment
