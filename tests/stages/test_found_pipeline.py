@@ -45,7 +45,9 @@ def found(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> tu
         def describe(self) -> dict[str, Any]:
             return {"stability": "stable"}
 
-    def surface_of_table(table: FormFoundTable | MeshTable, folder: Path, progress: Progress, *further: Any) -> Found:
+    def surface_of_table(
+        table: FormFoundTable | MeshTable, folder: Path, progress: Progress, *further: Any, **named: Any
+    ) -> Found:
         assert table.kind == request.param
         asked.append(folder)
         progress(Report.detail("Newton step 1"))

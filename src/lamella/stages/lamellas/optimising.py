@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,13 +15,13 @@ from lamella.base.arrays import Floats, Integers
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report
 from lamella.files.write.drawn_layer import DrawnLayer
-from lamella.projection.foot_points import foot_surface
-from lamella.projection.problems.planar_strips import PlanarStrips, planar_strips
 from lamella.strip.developable_strips import DevelopableStrips
 from lamella.strip.lamellas import Lamellas
 from lamella.surface.closed_forms.closed_form import ClosedForm
-from lamella.surface.element.surface import ElementSurface
 from lamella.surface.surface import Surface
+
+if TYPE_CHECKING:
+    from lamella.projection.problems.planar_strips import PlanarStrips
 
 QUADS = 8
 """Pieces of a cell edge before they are halved once: what is told of a quad is that of sixteen a cell."""
@@ -75,6 +75,11 @@ def optimised_strips(
     lamellas: Lamellas, strips: DevelopableStrips, surface: Surface[Any], progress: Progress
 ) -> Optimised | None:
     """Strips of the lamellas that have a place without a developable one; None where there are none."""
+    # heavy, and most projects do without
+    from lamella.projection.foot_points import foot_surface
+    from lamella.projection.problems.planar_strips import planar_strips
+    from lamella.surface.element.surface import ElementSurface
+
     network = lamellas.network
     some = np.unique(np.array([lamella for lamella, _, _ in strips.gaps(network)], np.int64))
     curves = [_curve(lamellas, lamella) for lamella in some.tolist()]
