@@ -117,9 +117,10 @@ def test_a_folder_that_no_study_wrote_is_left_alone(folder: Path) -> None:
     ("change", "key"),
     [
         ({"project": "other.toml"}, "other.toml"),
-        ({"until": "roof"}, "--until"),
+        ({"until": "roof"}, "until: "),
         ({"variable": [{"key": "lamella.hight", "range": [0.1, 0.2]}]}, "lamella.hight"),
         ({"variable": [{"key": "surface.boundary.0.name", "values": ["a"]}]}, "surface.boundary"),
+        ({"variable": [{"key": "network.cells", "range": [10.5, 14.5]}]}, "whole = true"),
         ({"variable": [{"loop": "rim", "freedom": "move", "range": [0.1, 0.2]}]}, "variable[0].loop"),
     ],
 )

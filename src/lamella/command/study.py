@@ -69,7 +69,7 @@ def add_study(commands: argparse._SubParsersAction[Any]) -> None:
 def run_study(arguments: argparse.Namespace) -> int:
     """Compute a study; 0, or 1 where variants were lost with their workers and are missing."""
     from lamella.studies.study import study
-    from lamella.studies.variant import FAILED
+    from lamella.studies.variant import DONE, FAILED
 
     screen = Screen(verbose=False)
     began = time.monotonic()
@@ -96,9 +96,15 @@ def run_study(arguments: argparse.Namespace) -> int:
             cores = counted(arguments.jobs or os.cpu_count() or 1, "process", "processes")
             where = f"at {arguments.scheduler}" if arguments.scheduler else f"on {cores}"
             print(
-                f"{counted(result.computed, 'variant')} computed in {wall:.3g} s {where}: {result.seconds:.3g} CPU s, "
-                f"{result.seconds / wall:.2f} times as fast as one after the other"
+                f"{counted(result.computed, 'variant')} computed in {wall:.3g} s {where}: {result.seconds:.3g} CPU s"
+                + (f", {result.seconds / wall:.2f} at a time" if arguments.jobs != 1 else "")
             )
+        without = sum(
+            status == DONE and bool(reason)
+            for status, reason in zip(result.columns["status"], result.columns["reason"], strict=True)
+        )
+        if without:
+            print(f"{counted(without, 'variant')} without a value of an objective or constraint: see the column reason")
         for name in result.best[:10]:
             print(readable(f"best: {result.project(name)}"))
         if len(result.best) > 10:

@@ -140,4 +140,5 @@ def _heights_at(corners: Floats, x: float, y: float) -> Floats:
         v = (dy * first[:, 0] - dx * first[:, 1]) / area
         # an edge belongs to both of its triangles, whatever rounding says
         inside = (u >= -EDGE_SPARE) & (v >= -EDGE_SPARE) & (u + v <= 1 + EDGE_SPARE)
-    return np.asarray((a[:, 2] + u * first[:, 2] + v * second[:, 2])[inside])
+    u, v = u[inside], v[inside]
+    return np.asarray(a[inside, 2] + u * first[inside, 2] + v * second[inside, 2])

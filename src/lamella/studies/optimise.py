@@ -71,8 +71,9 @@ class _Gradient:
         first = self._rows([self._first])[0]
         if not np.isfinite(self._values(first)).all():
             raise InputError(
-                f"the search has nowhere to begin: {first.kept.reason or 'a figure has no value there'}",
-                "write start = [...] in [optimise], with values that have a design",
+                f"the search has nowhere to begin: {first.kept.reason}",
+                "write start = [...] in [optimise], with values that have a design; or let the stage of that figure "
+                "run (until)",
                 "optimise.start",
             )
         self._scale = np.maximum(np.abs(self._values(first)), SCALE_LEAST)
@@ -89,7 +90,10 @@ class _Gradient:
                 options={"ftol": self._table.tolerance, "maxiter": self._table.evaluations},
             )
         except _Enough:
-            return f"ended at {self._table.evaluations:,} variants, as [optimise] evaluations says"
+            return (
+                f"not converged: ended at {self._table.evaluations:,} variants, as [optimise] evaluations says; the "
+                "best so far may be next to the start"
+            )
         return f"{found.message.lower()}: {len(self._seen):,} variants"
 
     def _rows(self, places: Sequence[Floats]) -> list[Row]:

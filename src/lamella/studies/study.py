@@ -16,7 +16,7 @@ from lamella.base.progress import Progress, Report, silent
 from lamella.base.result import Result
 from lamella.base.wording import counted
 from lamella.files.whole import write_whole
-from lamella.project.read import located, parse_project, read_project
+from lamella.project.read import parse_project, read_project
 from lamella.stages.wanted import wanted_stages
 from lamella.studies.engine import Crew, workers
 from lamella.studies.folder import Kept, StudyFolder, check_study_folder
@@ -188,7 +188,12 @@ def study(
         raise InputError(f"{jobs} jobs are too few", "one at least", "--jobs")
     target = Path(out) if out is not None else Path("out") / (source.stem if source else "study")
     check_study_folder(target)
-    work = _Work(table, folder, target, progress)
+    try:
+        work = _Work(table, folder, target, progress)
+    except InputError as error:
+        # of the study's own keys; what is wrong with the project names its file
+        own = error.where.split("[")[0].split(".")[0] in StudyTable.model_fields and source is not None
+        raise InputError(error.message, error.remedy, f"{source}: {error.where}" if own else error.where) from None
     with work.store.opened(), ExitStack() as stack:
         work.begin = lambda: stack.enter_context(workers(work.base, jobs=jobs, scheduler=scheduler))
         ended = work.run()
@@ -212,7 +217,11 @@ class _Work:
         self.table, self._progress = table, progress
         file = folder / table.project
         project = read_project(file)
-        wanted_stages(project, table.until)
+        try:
+            wanted_stages(project, table.until)
+        except InputError as error:
+            where = "until" if error.where == "--until" else error.where
+            raise InputError(error.message, error.remedy, where) from None
         values = tomllib.loads(unmarked(file.read_bytes()).decode("utf-8"))
         values.setdefault("name", project.name)
         self.title = f"{project.name}: study"
@@ -221,7 +230,7 @@ class _Work:
         self.start = tuple(_start(values, variable) for variable in table.variable)
         self.rows: list[Row] = []
         self.seconds, self.computed = 0.0, 0
-        self._check(file)
+        self._check(file.parent)
 
     @cached_property
     def _crew(self) -> Crew:
@@ -229,7 +238,7 @@ class _Work:
         self._progress(Report.step("beginning workers"))
         return self.begin()
 
-    def _check(self, file: Path) -> None:
+    def _check(self, folder: Path) -> None:
         """Refuse variables that no value would suit: the first and the last of each, the others as they are."""
         for number, variable in enumerate(self.table.variable):
             ends: tuple[Any, ...] = variable.values or variable.range or ()
@@ -237,15 +246,16 @@ class _Work:
             for end in (ends[0], ends[-1]):
                 value = round(end) if variable.whole else end
                 try:
-                    parse_project(changed_values(self.base.values, (variable,), (value,), file.parent))
+                    parse_project(changed_values(self.base.values, (variable,), (value,), folder))
                 except InputError as error:
                     errors.append(error)
             if len(errors) == 2:
                 first = errors[0]
+                at = f"variable[{number}]"
                 if first.where.startswith("variable"):
-                    where = first.where.replace("variable", f"variable[{number}]")
-                    raise InputError(first.message, first.remedy, where)
-                raise located(first, file)
+                    raise InputError(first.message, first.remedy, first.where.replace("variable", at))
+                remedy = "write whole = true" if "whole number" in first.message else first.remedy
+                raise InputError(f"{first.where}: {first.message}", remedy, f"{at}.key")
 
     def run(self) -> str:
         """Compute all variants; how a search ended."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -85,19 +85,26 @@ def row_of(study: StudyTable, name: str, chosen: tuple[Any, ...], kept: Kept, st
         figures |= {f"headroom.{place}": height for place, height in kept.headrooms.items()}
         figures |= table_figures(summary)
     goals, excess, spare = [], [], []
+    missing: list[str] = []
     for number, objective in enumerate(study.objective):
-        value = _figure(figures, summary, objective.figure, kept, f"objective[{number}].figure")
+        value = _figure(figures, summary, objective.figure, kept, name, f"objective[{number}].figure")
         goals.append(-value if objective.goal == "max" else value)
+        missing += [objective.figure] if np.isnan(value) else []
     for number, limit in enumerate(study.constraint):
-        value = _figure(figures, summary, limit.figure, kept, f"constraint[{number}].figure")
+        value = _figure(figures, summary, limit.figure, kept, name, f"constraint[{number}].figure")
+        missing += [limit.figure] if np.isnan(value) else []
         for sign, bound in ((1, limit.at_most), (-1, limit.at_least)):
             if bound is not None:
                 excess.append(sign * (value - bound))
                 spare.append(LIMIT_SPARE * abs(bound))
+    if kept.status == DONE and missing:
+        kept = replace(kept, reason=f"without a value: {', '.join(dict.fromkeys(missing))}")
     return Row(name, chosen, kept, figures, tuple(goals), tuple(excess), tuple(spare))
 
 
-def _figure(figures: Mapping[str, Any], summary: Mapping[str, Any], key: str, kept: Kept, where: str) -> float:
+def _figure(
+    figures: Mapping[str, Any], summary: Mapping[str, Any], key: str, kept: Kept, name: str, where: str
+) -> float:
     if kept.status != DONE:
         return float("nan")
     try:
@@ -106,8 +113,8 @@ def _figure(figures: Mapping[str, Any], summary: Mapping[str, Any], key: str, ke
         near = _nearest(key, figures)
         raise InputError(
             f"{key} is no figure of the summary{f', did you mean {near}?' if near else ''}",
-            "choose one of the columns of table.csv, or a key of summary.json (docs/files.md); tables such as "
-            "[structure] have figures where the project has them",
+            f"choose a key of variants/{name}/summary.json (docs/files.md); a stage has figures where it runs "
+            "([structure], until)",
             where,
         ) from None
     return float("nan") if value is None else value

@@ -7,18 +7,18 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, field_validator, model_validator
+from pydantic import BeforeValidator, Field, ValidationError, field_validator, model_validator
 
 from lamella.base.byte_order import unmarked
 from lamella.base.errors import InputError
 from lamella.base.limits import MOST_LENGTH, MOST_WAVES
 from lamella.base.number_lists import Refusal
-from lamella.base.wording import cut
+from lamella.base.wording import cut, shown
 from lamella.project.messages import explain, reported_once
 from lamella.project.values import Name, Range, Table, file_name, list_of_tables, number
 
 STUDY_BYTES_MAX = 1_000_000
-VARIABLES_MAX, GOALS_MAX = 64, 20
+VARIABLES_MAX, GOALS_MAX, VALUES_MAX = 64, 20, 1000
 VARIANTS_MAX = 100_000
 SOBOL_DIMENSIONS_MAX = 64
 
@@ -27,7 +27,33 @@ Freedom = Literal["move", "scale", "tilt", "wave"]
 """Of a loop: shift, size and turn about its middle, a wave along it."""
 
 
-Values = Annotated[tuple[Number | str | bool, ...], Field(strict=False, min_length=1, max_length=1000)]
+def _checked_values(value: Any) -> Any:
+    """A list of numbers, words or flags."""
+    if not isinstance(value, list | tuple) or not value or len(value) > VALUES_MAX:
+        raise Refusal(
+            f"{shown(value)} is not a list of 1 to {VALUES_MAX} values", "write values = [0.06, 0.08], or a range"
+        )
+    odd = next((one for one in value if not isinstance(one, str | bool | int | float)), None)
+    if odd is not None or any(isinstance(one, float) and not math.isfinite(one) for one in value):
+        raise Refusal(f"{shown(value)} holds what is no number, text or true or false", "write plain values")
+    return value
+
+
+def _checked_range(value: Any) -> Any:
+    """Two numbers."""
+    fine = isinstance(value, list | tuple) and len(value) == 2
+    numbers = fine and all(isinstance(one, int | float) and not isinstance(one, bool) for one in value)
+    if not numbers or not all(map(math.isfinite, value)):
+        raise Refusal(f"{shown(value)} is not two numbers", "write range = [lowest, highest]")
+    return value
+
+
+Values = Annotated[
+    tuple[Number | str | bool, ...],
+    Field(strict=False, json_schema_extra={"minItems": 1}),
+    BeforeValidator(_checked_values),
+]
+TwoNumbers = Annotated[Range, BeforeValidator(_checked_range)]
 
 
 class VariableTable(Table):
@@ -59,7 +85,7 @@ class VariableTable(Table):
     name: Name = Field(
         default="", max_length=100, description="Column of the table; the key, or loop and freedom, when not given."
     )
-    range: Range | None = Field(default=None, description="Lowest and highest value.", examples=[[1.0, 1.6]])
+    range: TwoNumbers | None = Field(default=None, description="Lowest and highest value.", examples=[[1.0, 1.6]])
     whole: bool = Field(default=False, description="Whole numbers of the range only: of cells, say.")
     values: Values | None = Field(
         default=None,
@@ -71,9 +97,10 @@ class VariableTable(Table):
     def _possible(self) -> VariableTable:
         if (self.key is None) == (self.loop is None):
             given = "key and loop are both given" if self.key else "a variable needs a key or a loop"
-            raise Refusal(given, 'write key = "lamella.height", or loop = "rim" and freedom = "scale"')
+            raise Refusal(given, 'write key = "lamella.height", or loop = the name of one and freedom = "scale"')
         if (self.loop is None) != (self.freedom is None):
-            raise Refusal("loop and freedom go together", 'write loop = "rim" and freedom = "move"')
+            missing = 'freedom = "move"' if self.freedom is None else "loop = the name of one"
+            raise Refusal("loop and freedom go together", f"add {missing}")
         if (self.range is None) == (self.values is None):
             given = "range and values are both given" if self.range else "a variable needs a range or values"
             raise Refusal(given, "write range = [low, high], or values = [...]")
@@ -262,6 +289,17 @@ STUDY_TABLES: dict[str, type[Table]] = {
 """Tables of the file by how they are written."""
 
 
+def _explained(error: Any, values: dict[str, Any]) -> tuple[str, str, str]:
+    key, message, remedy = explain(error, values, StudyTable)
+    if error["type"] == "missing" and key == "variable":
+        return (
+            key,
+            "missing: nothing varies",
+            'add a table [[variable]] with key = "lamella.height" and range = [0.06, 0.1]',
+        )
+    return key, message, remedy
+
+
 def study_schema() -> dict[str, Any]:
     """JSON schema of the file of a study."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **StudyTable.model_json_schema()}
@@ -269,7 +307,8 @@ def study_schema() -> dict[str, Any]:
 
 def _check_optimise(study: StudyTable, table: OptimiseTable) -> None:
     if not study.objective:
-        raise Refusal("no [[objective]] is given to search for", 'write figure = "fabrication.mass"', "objective")
+        remedy = 'write a table [[objective]] with figure = "lamellas.utilisation_max", say'
+        raise Refusal("there is nothing to search for", remedy, "objective")
     values = [variable.column for variable in study.variable if variable.values is not None]
     if table.method == "gradient" and (len(study.objective) > 1 or values):
         why = f"{values[0]!r} has values and no range" if values else f"{len(study.objective)} objectives are given"
@@ -332,7 +371,7 @@ def parse_study(values: dict[str, Any], *, source: str = "") -> StudyTable:
         return StudyTable.model_validate(values)
     except ValidationError as failure:
         found = failure.errors(include_url=False)[:6]
-        errors = reported_once([explain(error, values, StudyTable) for error in found])
+        errors = reported_once([_explained(error, values) for error in found])
         reported = [InputError(m, r, f"{source}: {key}" if source else key) for key, m, r in errors]
         if len(reported) == 1:
             raise reported[0] from None

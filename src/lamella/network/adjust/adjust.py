@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from lamella.base.arrays import Complexes, Floats
 from lamella.base.errors import InputError
 from lamella.base.progress import Progress, Report, patient, silent
-from lamella.base.wording import counted
+from lamella.base.wording import counted, rounded
 from lamella.network.adjust.adjustable_films import Films, FollowError
 from lamella.network.adjust.aim import Aim, LostError, StuckError, worst
 from lamella.network.adjust.film_net import FilmNet
@@ -432,7 +432,7 @@ class _Search:
 
     def eased(self, aim: Aim) -> Aim:
         """A boundary as near as can be with which strips keep their limit, and the net closes still."""
-        limit = self.limit
+        limit, least = self.limit, np.inf
         if limit is None:
             return aim
         for _ in range(EASING_STEPS_MAX):
@@ -443,13 +443,17 @@ class _Search:
             self.progress(Report.step(f"strips are used up to {most.largest:.3f} of their strength"))
             if most.largest <= limit.most:
                 return aim
+            least = min(least, most.largest)
             self.steps += 1
-            aim = self._polished(self._eased_once(aim, most, limit))
+            eased = self._eased_once(aim, most, limit)
+            if eased is None:
+                raise self._beyond_limit(least, limit, self.films.freedom.used(aim.net.shares) > AT_LIMIT)
+            aim = self._polished(eased)
             self._tell(aim)
-        raise self._beyond_limit(most, limit)
+        raise self._beyond_limit(least, limit, False)
 
-    def _eased_once(self, aim: Aim, most: MostUsed, limit: StripLimit) -> Aim:
-        """A step towards the limit, to first order in shares and spacing."""
+    def _eased_once(self, aim: Aim, most: MostUsed, limit: StripLimit) -> Aim | None:
+        """A step towards the limit, to first order; None: there is none within what may change."""
         net = aim.net
         sensitivities = self.films.cell_sensitivities(net, aim.step)
         rates = most.rates(net.surface, *self.films.moves(net), limit)
@@ -461,7 +465,7 @@ class _Search:
             if missed <= EASING_MISSED * level:
                 break
         else:
-            raise self._beyond_limit(most, limit)
+            return None
         change = self._shortened(net, change)
         reason = ""
         for part in 0.5 ** np.arange(ADJUSTING_HALVINGS_MAX):
@@ -472,13 +476,17 @@ class _Search:
                 reason = str(error)
         raise LostError(aim, reason)
 
-    def _beyond_limit(self, most: MostUsed, limit: StripLimit) -> InputError:
+    def _beyond_limit(self, least: float, limit: StripLimit, at_limit: bool) -> InputError:
+        why = (
+            "the boundary may not change by more" if at_limit else "no small change of the boundary eases them further"
+        )
+        more = "allow more change (adjust of the loops, adjust_mean_curvature), " if at_limit else ""
         return InputError(
-            f"no boundary was found whose net closes with strips of a utilisation of {limit.most:g}: they are used up "
-            f"to {most.largest:.3g} where the boundary has changed as much as it may ({counted(self.steps, 'step')})",
-            "allow more change (adjust of the loops, adjust_mean_curvature), take thinner strips (their bending and "
-            "torsion are in proportion to the thickness) or lower ones (the helix stress goes with the square of the "
-            "height), or allow more utilisation",
+            f"no boundary was found whose net closes with strips of a utilisation of {limit.most:g}: the least is "
+            f"{least:.3g}, in {counted(self.steps, 'step')}; {why}",
+            f"{more}take thinner strips (their bending and torsion are in proportion to the thickness) or lower ones "
+            f"(the helix stress goes with the square of the height), or allow a utilisation of "
+            f"{rounded(least, up=True):g}",
             "limit",
         )
 

@@ -93,7 +93,7 @@ function markUp(mark, k) {
 function drawParallel() {
   const svg = drawing("parallel");
   svg.replaceChildren();
-  const gap = Math.max(130, Math.min(300, 1000 / Math.max(1, axes.length - 1))), height = 300, top = 36, left = 60;
+  const gap = Math.max(130, Math.min(300, 1000 / Math.max(1, axes.length - 1))), height = 300, top = 36, left = 90;
   const width = Math.max(left + gap * (axes.length - 1) + 110, 600);
   svg.setAttribute("width", String(width));
   svg.setAttribute("height", String(height + top + 20));
