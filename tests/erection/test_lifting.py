@@ -13,6 +13,7 @@ from lamella.erection.bracings import NONE, Bracings
 from lamella.erection.lift_cases import LiftRules, least_bracing, lift_cases
 from lamella.erection.lifted import Lifted, lifted
 from lamella.erection.lifting_points import BESSEL, lifting_points
+from lamella.erection.warnings import lifting_warnings
 from lamella.hardware.rules import CableRules
 from lamella.structure.actions.load_case import GRAVITY
 from lamella.structure.actions.node_supports import no_supports
@@ -82,6 +83,12 @@ def test_cables_are_what_it_needs() -> None:
     assert least_bracing(cases, 4) == "cables"
     assert least_bracing(cases[:1], 4) is None
     assert "4 nodes" in repr(alone.lifted)
+    # a project without any bracing is told what would be one
+    (message,) = lifting_warnings({"": cases[:1]})
+    assert "[cables]" in message
+    assert "[edge_beam]" in message
+    (message,) = lifting_warnings({"": cases})
+    assert "[" not in message
 
 
 def test_one_node_is_no_lift() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+import json
 import os
 import socket
 from collections.abc import Iterator
@@ -101,6 +102,18 @@ def test_sizes_are_limited(server: Server) -> None:
     assert ask(server, target, method="POST", body=b"{}", Content_Length=str(BODY_BYTES_MAX + 1))[0] == 413
     assert ask(server, target, method="POST", body=b"{}", Content_Length="many")[0] == 411
     assert ask(server, f"/?token={server.access.token}&x={'y' * 70_000}")[0] == 414
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "status", "way"),
+    [("GET", "/api/net", 405, "POST"), ("PUT", "/api/net", 405, "GET, POST"), ("FLY", "/api/net", 501, "")],
+)
+def test_other_methods_are_told_which_to_use(server: Server, method: str, path: str, status: int, way: str) -> None:
+    found, body = ask(server, f"{path}?token={server.access.token}", method=method)
+    assert found == status
+    assert way in json.loads(body)["error"]["message"]
+    if status == 405:
+        assert ask(server, f"{path}?token=wrong", method=method)[0] == 403
 
 
 def test_what_is_no_request_does_not_end_it(server: Server) -> None:

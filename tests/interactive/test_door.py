@@ -105,11 +105,15 @@ def test_meshes_come_in(tmp_path: Path) -> None:
             "surface.radius",
         ),
         ("surface", b'{"project": {}, "more": 1}', 422, "more"),
+        ("surface", b'{"project": {}}', 422, "project"),
+        ("surface", b'{"project": {"network": {}}}', 422, "surface"),
     ],
 )
 def test_what_cannot_be_is_refused(name: str, body: bytes, status: int, where: str) -> None:
     given = answer(name, body)
     assert given.status == status
+    # of a program, not of a file
+    assert "lamella new" not in json.loads(given.content)["error"].get("remedy", "")
     assert json.loads(given.content)["error"]["where"].endswith(where)
 
 
@@ -119,6 +123,7 @@ def test_what_cannot_be_is_refused(name: str, body: bytes, status: int, where: s
         ({"file": "curves.3dm"}, "surface.boundary[1].file"),
         ({"rhino": {"version": 1}}, "surface.boundary[1].rhino"),
         ({"rhino": "nonsense"}, "surface.boundary[1].rhino"),
+        ({"rhino": 3}, "surface.boundary[1].rhino"),
         ({"rhino": rhino3dm.Mesh().Encode()}, "surface.boundary[1].rhino"),
         ({"compas": {"dtype": "compas.geometry/Sphere", "data": {}}}, "surface.boundary[1].compas"),
         ({"compas": {"dtype": "compas.geometry/Circle", "data": {"radius": 1}}}, "surface.boundary[1].compas"),
@@ -128,3 +133,4 @@ def test_what_cannot_be_is_refused(name: str, body: bytes, status: int, where: s
 def test_curves_that_are_none(loop: dict[str, Any], where: str) -> None:
     status, made = ask("net", "plain", [CIRCLES[0], loop])
     assert (status, made["error"]["where"]) == (422, where)
+    assert "Decode" not in made["error"]["message"]

@@ -1,10 +1,13 @@
 """The tables [structure], [[support]], [[load]] and [[combination]]: what they refuse, by key, and their defaults."""
 
+import json
+import re
 import tomllib
 
 import pytest
 
 from lamella import InputError, parse_project
+from lamella.project.structure_analyses_tables import STAGES
 
 SURFACE = '[surface]\nkind = "catenoid"\nneck_radius = 2.5\nheight = [-2.0, 3.0]\n'
 SNOW = '[[load]]\nname = "snow"\nkind = "area"\nvalue = 500\nper = "plan"\n'
@@ -122,3 +125,22 @@ def test_loads_have_the_defaults_of_their_kind_alone():
         (500.0, (0.0, 0.0, -1.0), "plan"),
         (20.0, None, None),
     ]
+
+
+@pytest.mark.parametrize(
+    ("more", "left"),
+    [
+        ("", {"cables on"}),
+        ("[joint]\n[cables]\n", set()),
+        ('joints = "hinged"\n', {"joints locked", "cables on"}),
+    ],
+)
+@pytest.mark.parametrize("stages", ["[]", '["loads on", "bent"]', '["bent", "bent", "props away", "loads on"]'])
+def test_the_order_that_is_offered_is_one_the_project_can_have(stages, more, left):
+    text = "[structure]\nconstruction = {}\n" + more
+    with pytest.raises(InputError) as refused:
+        project(text.format(stages))
+    assert refused.value.where.endswith("structure.construction")
+    offered = re.search(r"\[.*\]", refused.value.remedy)[0]
+    assert set(STAGES) - set(json.loads(offered)) == left
+    assert project(text.format(offered)).structure.construction == tuple(json.loads(offered))

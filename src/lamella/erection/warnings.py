@@ -160,12 +160,19 @@ def lifting_warnings(lifts: Mapping[str, Sequence[LiftCase]]) -> Iterator[Messag
         for bracing in dict.fromkeys(soft.values()):
             ids = [segment for segment, one in soft.items() if one == bracing and segment]
             those = f" ({', '.join(ids[:SEGMENTS_NAMED])}{', ...' if len(ids) > SEGMENTS_NAMED else ''})" if ids else ""
-            ways.append(("no bracing that the project has is enough" if bracing is None else _named(bracing)) + those)
+            ways.append((_not_enough(lifts) if bracing is None else _named(bracing)) + those)
         yield Message(
             "lifting_needs_bracing",
             f"lifted at {points} points with joints locked alone {of_it} would not keep the shape; needed before: "
             + "; ".join(ways),
         )
+
+
+def _not_enough(lifts: Mapping[str, Sequence[LiftCase]]) -> str:
+    """Where nothing of the project holds a net: that it has nothing, or not enough."""
+    if all(case.bracing == NONE for cases in lifts.values() for case in cases):
+        return "bracing, of which the project has none: add [cables] or [edge_beam]"
+    return "no bracing that the project has is enough"
 
 
 def _named(bracing: str) -> str:

@@ -92,5 +92,5 @@ class Access:
         if authorization.startswith("Bearer "):
             given = authorization.removeprefix("Bearer ").strip()
         if not hmac.compare_digest(given.encode(), self.token.encode()):
-            raise RefusedError("no token")
+            raise RefusedError("no or wrong token")
         return Asked(path)

@@ -75,7 +75,10 @@ def _made(name: str, body: bytes) -> dict[str, Any]:
     # curves and meshes come as files of a folder that is gone afterwards
     with tempfile.TemporaryDirectory(prefix="lamella-") as there:
         folder = Path(there)
-        project = parse_project(taken_in(asked["project"], folder))
+        values = taken_in(asked["project"], folder)
+        if not values:
+            raise InputError("the project is empty", 'give "surface" = {"kind": "form-found", ...}', "project")
+        project = parse_project(values)
         with computing:
             results = compute(project, until=UNTIL[name], folder=folder)
         summary = results.summary

@@ -7,6 +7,7 @@ of a file.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -77,14 +78,16 @@ def _loop(loop: dict[str, Any], where: str, file: Path) -> dict[str, Any]:
 def _decoded(encoded: Any, where: str) -> Any:
     import rhino3dm
 
-    try:
+    made = None
+    # whatever it says of its own arguments says nothing of the request
+    with contextlib.suppress(Exception):
         made = rhino3dm.CommonObject.Decode(encoded)
-    except Exception as error:
-        raise InputError(
-            f"rhino3dm does not read it: {cut(str(error), 120)}", "send what Encode() gives", where
-        ) from None
     if made is None:
-        raise InputError("rhino3dm does not read it", "send what Encode() gives", where)
+        raise InputError(
+            "it is no object that rhino3dm reads",
+            "send the table that Encode() of the curve or mesh gives",
+            where,
+        )
     return made
 
 

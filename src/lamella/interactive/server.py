@@ -152,6 +152,8 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(page(self.server_.access), "text/html; charset=utf-8", policy=True)
         elif path == "/api":
             self._answered(answer("", b""))
+        elif path.startswith("/api/"):
+            self._other_method("POST")
         elif path.startswith("/help/"):
             self._send(orjson.dumps(key_help(path.removeprefix("/help/"))), "application/json")
         elif path.startswith("/assets/"):
@@ -179,6 +181,19 @@ class _Handler(BaseHTTPRequestHandler):
         self.server_.used()
         self._answered(answer(path.removeprefix("/api/"), body))
         self.server_.used()
+
+    def do_PUT(self) -> None:
+        if self._path() is not None:
+            self._other_method("GET, POST")
+
+    do_HEAD = do_DELETE = do_PATCH = do_OPTIONS = do_PUT
+
+    def _other_method(self, ways: str) -> None:
+        self._fail(HTTPStatus.METHOD_NOT_ALLOWED, f"{self.command} is not answered here: use {ways}", allow=ways)
+
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
+        """What `http.server` refuses by itself, in JSON as all else."""
+        self._fail(HTTPStatus(code), message or HTTPStatus(code).phrase)
 
     def _path(self) -> str | None:
         """What is asked for; None: it is refused, and that is said already."""
@@ -213,12 +228,22 @@ class _Handler(BaseHTTPRequestHandler):
     def _answered(self, given: Answer) -> None:
         self._send(given.content, given.type, HTTPStatus(given.status))
 
-    def _fail(self, status: HTTPStatus, message: str) -> None:
+    def _fail(self, status: HTTPStatus, message: str, *, allow: str = "") -> None:
         self.close_connection = True
-        self._send(orjson.dumps({"error": {"message": message}}), "application/json", status)
+        self._send(orjson.dumps({"error": {"message": message}}), "application/json", status, allow=allow)
 
-    def _send(self, content: bytes, kind: str, status: HTTPStatus = HTTPStatus.OK, *, policy: bool = False) -> None:
+    def _send(
+        self,
+        content: bytes,
+        kind: str,
+        status: HTTPStatus = HTTPStatus.OK,
+        *,
+        policy: bool = False,
+        allow: str = "",
+    ) -> None:
         self.send_response(status)
+        if allow:
+            self.send_header("Allow", allow)
         self.send_header("Content-Type", kind)
         self.send_header("Content-Length", str(len(content)))
         self.send_header("Cache-Control", "no-store")

@@ -22,7 +22,7 @@ def with_angle(values: Any) -> Any:
     return values | {"network": network, "surface": surface}
 
 
-def check_angle(surface: Any, angle: float, normal_curvature: float | None, closing: str) -> None:
+def check_angle(surface: Any, angle: float, normal_curvature: float | None) -> None:
     """Refuse what no surface is found for.
 
     Raises
@@ -56,10 +56,6 @@ def check_angle(surface: Any, angle: float, normal_curvature: float | None, clos
             f"only the surface that goes over into the stable film is found for angle = {angle:g} deg",
             'write branch = "stable" or leave it out',
             "surface.branch",
-        )
-    if closing == "adjust":
-        raise Refusal(
-            f'closing = "adjust" is for nets of angle = 90 deg, not {angle:g} deg', 'write closing = "open"', key
         )
     if normal_curvature is not None and normal_curvature != surface.normal_curvature:
         raise Refusal(

@@ -103,7 +103,11 @@ class PartTable(Table):
 
 
 class AdjustTable(Table):
-    """How far a loop may be changed for a net that closes (network.closing = "adjust"); what is not given is held."""
+    """How far a loop may be changed for a net that closes (network.closing = "adjust"); what is not given is held.
+
+    Where no loop has this table, and surface.adjust_mean_curvature is not given, loops of points and circles may change
+    by a twentieth of their size, and only curves of files and parts are held.
+    """
 
     move: float = number("Shift of the loop, at most.", "m", ge=0, le=MOST_MOVE, default=0.0, examples=[0.3])
     scale: float = number(

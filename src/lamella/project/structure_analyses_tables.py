@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
@@ -127,23 +128,60 @@ def check_variants(value: Any) -> Any:
 
 
 def check_stages(value: Any) -> Any:
-    """Stages of construction in an order that can be.
+    """Names of stages of construction, before their order is looked at.
+
+    Raises
+    ------
+    Refusal
+    """
+    if not isinstance(value, list | tuple):
+        raise Refusal(f"{shown(value)} is not a list of stages", "write names in brackets, with commas between them")
+    for stage in value:
+        if stage not in STAGES:
+            listed = ", ".join(f'"{one}"' for one in STAGES)
+            raise Refusal(f"{shown(stage)} is no stage", f"choose from {listed}")
+    return value
+
+
+def check_construction(stages: Sequence[str], joints: Any, tightened: str, cables: bool) -> None:
+    """Refuse an order of construction that cannot be.
+
+    Parameters
+    ----------
+    stages : sequence of str
+    joints, tightened
+        structure.joints and structure.cables.
+    cables : bool
+        Whether the project has cables; the remedy has the stages that the project can have.
 
     Raises
     ------
     Refusal
         Stages that are none or come twice; a first one that is not "bent", a last one that is not "loads on"; props
-        that stay.
+        that stay; joints that are locked, or not, against what the stages say.
     """
-    listed = ", ".join(f'"{stage}"' for stage in STAGES)
+    key = "structure.construction"
+    idle = {"joints locked": joints != "locked", "cables on": not cables}
+    listed = ", ".join(f'"{stage}"' for stage in STAGES if not idle.get(stage))
     remedy = f"write construction = [{listed}], in the order of the site"
-    if not isinstance(value, list | tuple):
-        raise Refusal(f"{shown(value)} is not a list of stages", remedy)
-    for stage in value:
-        if stage not in STAGES:
-            raise Refusal(f"{shown(stage)} is no stage", remedy)
-        if list(value).count(stage) > 1:
-            raise Refusal(f"the stage {shown(stage)} comes twice", remedy)
-    if not value or value[0] != "bent" or value[-1] != "loads on" or "props away" not in value:
-        raise Refusal('it has to begin with "bent", end with "loads on", and the props have to go in between', remedy)
-    return value
+    if tightened != "designed":
+        raise Refusal("construction says when the cables come", 'leave cables = "let go" out', "structure.cables")
+    for stage in stages:
+        if list(stages).count(stage) > 1:
+            raise Refusal(f"the stage {shown(stage)} comes twice", remedy, key)
+    if not stages or stages[0] != "bent" or stages[-1] != "loads on" or "props away" not in stages:
+        raise Refusal(
+            'it has to begin with "bent", end with "loads on", and the props have to go in between', remedy, key
+        )
+    if "joints locked" in stages and joints != "locked":
+        raise Refusal(
+            'joints are not locked, and the construction has the stage "joints locked"',
+            'write joints = "locked", or leave the stage out',
+            key,
+        )
+    if "joints locked" not in stages and joints == "locked":
+        raise Refusal(
+            "joints are locked, and the construction says not when",
+            'add the stage "joints locked", or write joints = "hinged"',
+            key,
+        )

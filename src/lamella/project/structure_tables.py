@@ -140,26 +140,6 @@ class StructureTable(Table):
     def _variants(cls, value: Any) -> Any:
         return None if value is None else check_variants(value)
 
-    @model_validator(mode="after")
-    def _order(self) -> StructureTable:
-        if self.construction is None:
-            return self
-        if self.cables != "designed":
-            raise Refusal("construction says when the cables come", 'leave cables = "let go" out', "cables")
-        if "joints locked" in self.construction and self.joints != "locked":
-            raise Refusal(
-                'joints are not locked, and the construction has the stage "joints locked"',
-                'write joints = "locked", or leave the stage out',
-                "construction",
-            )
-        if "joints locked" not in self.construction and self.joints == "locked":
-            raise Refusal(
-                "joints are locked, and the construction says not when",
-                'add the stage "joints locked", or write joints = "hinged"',
-                "construction",
-            )
-        return self
-
     @field_validator("variant")
     @classmethod
     def _names(cls, value: tuple[VariantTable, ...] | None) -> tuple[VariantTable, ...] | None:

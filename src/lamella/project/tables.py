@@ -34,6 +34,7 @@ from lamella.project.panels_table import PanelsTable
 from lamella.project.segments_table import SegmentsTable
 from lamella.project.sizing_table import SizingTable
 from lamella.project.stock_table import StockTable, check_stock
+from lamella.project.structure_analyses_tables import check_construction
 from lamella.project.structure_tables import StructureTable, SupportTable, check_list, list_key
 from lamella.project.surface_tables import SURFACE_TABLES, FormFoundTable, MeshTable, SurfaceTable
 from lamella.project.values import (
@@ -131,7 +132,8 @@ class NetworkTable(Table):
     )
     angle: float = number(
         "Angle between the families at the nodes, bisected by the direction of the larger principal curvature. Other "
-        "than 90 the surface is found for it, between curves (form-found), with surface.normal_curvature.",
+        "than 90 the surface is found for it, between curves (form-found), with surface.normal_curvature; closing and "
+        "limit do not go together with that yet.",
         "deg",
         ge=LEAST_NODE_ANGLE,
         le=LARGEST_NODE_ANGLE,
@@ -139,12 +141,13 @@ class NetworkTable(Table):
     )
     closing: Literal["open", "round", "adjust"] = Field(
         default="open",
-        description="What to do where a net does not close by itself; every net of a closed-form surface closes.",
+        description="What to do where a net does not close by itself; every net of a closed-form surface closes. With "
+        'an angle other than 90 "open" only.',
     )
     limit: LimitTable | None = Field(
         default=None,
         description='With closing = "adjust": what strips may be used, as limit = {utilisation = 1.0}. The nearest '
-        "boundary is looked for whose net closes and whose strips keep it.",
+        "boundary is looked for whose net closes and whose strips keep it. Not with an angle other than 90 yet.",
     )
     minimum_length: float = number(
         "Lamellas shorter than this many median cell edges are left out.", "cells", ge=0, le=100, default=0.5
@@ -174,13 +177,6 @@ class NetworkTable(Table):
             raise Refusal(
                 f"cells = {self.cells} and spacing = {self.spacing:g} m are both given", "keep one of them", "spacing"
             )
-        if self.limit is not None and (self.closing != "adjust" or self.kind == "principal"):
-            reason = f'closing = "{self.closing}"' if self.closing != "adjust" else 'kind = "principal"'
-            raise Refusal(
-                f"limit changes a boundary for its strips, and {reason} is given",
-                'write closing = "adjust" and a net of lamellas, or leave limit out',
-                "limit",
-            )
         if self.kind == "principal" and self.normal_curvature is not None:
             raise Refusal(
                 f'normal_curvature = {self.normal_curvature:g} 1/m and kind = "principal" are both given: along '
@@ -188,14 +184,35 @@ class NetworkTable(Table):
                 "keep one of them",
                 "normal_curvature",
             )
+        self._closes()
+        return self
+
+    def _closes(self) -> None:
+        """Refuse closing and limit where nothing is closed; of them what was given is named, and no way leads back."""
+        asked = [key for key, on in (("closing", self.closing != "open"), ("limit", self.limit is not None)) if on]
+        both = " and ".join(asked)
+        if self.angle != 90 and asked:
+            raise Refusal(
+                f"angle = {self.angle:g} deg is given with {both}: nets of other angles than 90 deg are not closed yet",
+                f"leave {both} out, or write angle = 90",
+                "angle",
+            )
+        if self.limit is not None and (self.closing != "adjust" or self.kind == "principal"):
+            reason = f'closing = "{self.closing}"' if self.closing != "adjust" else 'kind = "principal"'
+            raise Refusal(
+                f"limit changes a boundary for its strips, and {reason} is given",
+                "leave limit out"
+                if self.normal_curvature is not None
+                else 'write closing = "adjust" and a net of lamellas, or leave limit out',
+                "limit",
+            )
         if self.closing == "adjust" and self.normal_curvature is not None:
             raise Refusal(
                 f'closing = "adjust" makes the lattice of a net whole, and lines of normal_curvature = '
                 f"{self.normal_curvature:g} 1/m have none on a surface that is found",
-                'write closing = "open", or leave normal_curvature out',
+                f"leave {both} out, or normal_curvature",
                 "closing",
             )
-        return self
 
 
 class LamellaTable(Table):
@@ -368,9 +385,12 @@ class Project(Table):
     @model_validator(mode="after")
     def _possible(self) -> Project:
         check_stock(self.stock or ())
-        check_angle(self.surface, self.network.angle, self.network.normal_curvature, self.network.closing)
+        check_angle(self.surface, self.network.angle, self.network.normal_curvature)
         if self.structure is not None:
-            check_actions(self.structure, self.load or (), self.combination or ())
+            table = self.structure
+            check_actions(table, self.load or (), self.combination or ())
+            if table.construction is not None:
+                check_construction(table.construction, table.joints, table.cables, self.cables is not None)
         if self.joint is not None and self.joint.slot_width is not None and self.fabrication.slot_width is not None:
             raise Refusal(
                 f"slot_width is given twice: {self.joint.slot_width:g} m here and {self.fabrication.slot_width:g} m in "

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from scipy.spatial import cKDTree
 
 from lamella import InputError, compute, parse_project
 from lamella.base.arrays import Floats
+from lamella.network.pattern import NetKind, Pattern
+from lamella.network.streamlines.winding import refuse_winding
 from lamella.stages.check import check_project
 
 Faces = list[tuple[int, ...]]
@@ -116,6 +119,21 @@ def test_a_normal_curvature_is_offered_where_its_lines_cover_the_surface(tmp_pat
     assert figures["unreal_area_share"] == figures["flat_area_share"] == 0
     assert figures["node_angle_mean_deg"] > 60
     assert figures["cell_edge_min"] > 0.05 * figures["cell_edge_median"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "key", "remedy"),
+    [("principal", "kind", 'kind = "lamellas"'), ("lamellas", "angle", "another angle")],
+)
+def test_where_an_angle_is_given_neither_a_curvature_nor_a_cut_is_offered(kind: NetKind, key: str, remedy: str) -> None:
+    """The surface's own normal curvature is the lamellas', and there is no mesh; nothing is searched for in vain."""
+    lines: Any = SimpleNamespace(endless=np.array([True]), count=1, half=np.array([0]), position=np.zeros((1, 3)))
+    nothing: Any = None
+    with pytest.raises(InputError) as refused:
+        refuse_winding(nothing, nothing, lines, Pattern(kind, angle=70.0), 0.5, 5.0)
+    assert refused.value.where == key
+    assert remedy in refused.value.remedy
+    assert not re.search(r"normal_curvature|mesh", refused.value.remedy)
 
 
 @pytest.mark.slow

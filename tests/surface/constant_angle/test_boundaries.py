@@ -93,6 +93,10 @@ def test_ninety_degrees_take_the_film_of_that_curvature() -> None:
         (changed("surface", volume=3.0), "surface.volume"),
         (changed("surface", branch="unstable"), "surface.branch"),
         (changed("network", normal_curvature=0.3), "network.normal_curvature"),
+        (changed("network", closing="round"), "network.angle"),
+        (changed("network", closing="adjust", kind="principal"), "network.angle"),
+        (changed("network", closing="adjust", limit={"utilisation": 1.0}), "network.angle"),
+        (changed("network", limit={"utilisation": 1.0}), "network.angle"),
         (PROJECT | {"surface": {"kind": "catenoid", "neck_radius": 2.0, "height": [0.0, 1.0]}}, "network.angle"),
     ],
 )
@@ -101,6 +105,11 @@ def test_what_goes_with_no_other_angle(values: dict[str, Any], where: str) -> No
         lamella.parse_project(values)
     assert refused.value.where == where
     assert refused.value.remedy
+    if {"closing", "limit"} & set(values["network"]):
+        # what is left out is what was given, and nothing that the file has not
+        assert "normal_curvature" not in str(refused.value)
+        kept = {key: value for key, value in values["network"].items() if key not in refused.value.remedy}
+        lamella.parse_project(values | {"network": {"angle": values["network"]["angle"], **kept}})
 
 
 def test_boundaries_that_slide_are_refused() -> None:

@@ -379,7 +379,10 @@ class _Search:
                 continue
             share = float(np.linalg.norm(move) / np.linalg.norm(change))
             self.progress(
-                Report.detail(f"following the film over {share:.2g} of a step" + (f" ({reason})" if reason else ""))
+                Report.detail(
+                    f"following the film over {'a whole' if f'{share:.2g}' == '1' else f'{share:.2g} of a'} step"
+                    + (f" ({reason})" if reason else "")
+                )
             )
             try:
                 there = self._carried(aim, self.films.moved(net, net.shares + move[:-1]), sensitivities, move)
