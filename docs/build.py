@@ -310,12 +310,11 @@ def _type_of(schema: dict[str, Any]) -> str:
         items = schema["items"]
         if "anyOf" in items:
             return "list of values"
-        if items.get("type") == "number":
-            return "list of numbers"
-        if items.get("type") == "string":
+        lists = {"number": "list of numbers", "integer": "list of whole numbers", "string": "list of text"}
+        if "enum" in items:
             return f"list of {_type_of(items)}"
-        if items.get("type") == "number":
-            return "list of numbers"
+        if items.get("type") in lists:
+            return lists[items["type"]]
         return "list of points" if items.get("type") == "array" else "list of tables"
     return names.get(schema.get("type", ""), "")
 

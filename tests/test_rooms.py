@@ -214,7 +214,18 @@ METHODS = {
 # modules that stand above their folder: they choose among the folders below it
 ABOVE = {"lamella.network.net": "network.net"} | {
     f"lamella.stages.{module}": "stages.run"
-    for module in ("all_stages", "wanted", "computation", "results", "check", "write", "report", "scene", "schema")
+    for module in (
+        "all_stages",
+        "wanted",
+        "computation",
+        "results",
+        "check",
+        "write",
+        "report",
+        "scene",
+        "schema",
+        "shown_names",
+    )
 }
 # results whose methods lead on to a later module by lamella.base.onward: their signatures name its types
 ONWARD = {

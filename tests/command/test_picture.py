@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from lamella.base.errors import InputError
+from lamella.command import picture
 from lamella.command.main import main
 from lamella.command.picture import project_file, size_of
 
@@ -67,7 +68,9 @@ def test_of_a_surface_that_has_no_net(tmp_path: Path) -> None:
         (("--colour", "beauty"), "--colour"),
         (("--until", "harvest"), "harvest"),
         (("--frames", "erection:first"), "--frames"),
-        (("--frames", "erection:0"), "--frames"),
+        (("--frames", "erection:0"), "[erection]"),
+        (("--frames", "dance:0"), "steps"),
+        (("--colour", "beauty"), "family"),
     ],
 )
 def test_what_cannot_be_is_refused(
@@ -78,6 +81,18 @@ def test_what_cannot_be_is_refused(
     assert where in said
     assert "remedy" in said
     assert not (tmp_path / "x.png").exists()
+
+
+def test_names_are_refused_before_anything_is_computed(
+    project: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def computed(*_: object, **__: object) -> None:
+        raise AssertionError
+
+    monkeypatch.setattr(picture, "_computed", computed)
+    for options in (("--colour", "beauty"), ("--frames", "dance"), ("--frames", "erection"), ("--out", "x.jpg")):
+        given = ("--out", str(tmp_path / "x.png")) if options[0] != "--out" else ()
+        assert main(["picture", str(project), *given, *options]) == 2
 
 
 def test_folders_that_are_none(project: Path, tmp_path: Path) -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
+import tomllib
 from pathlib import Path
 
 import pytest
 
-from lamella import compute, read_project
+from lamella import compute, parse_project, read_project
 from lamella.command.main import main
+from lamella.project.starter import starter
 from lamella.project.surface_tables import SURFACE_TABLES
 
 
@@ -37,3 +40,18 @@ def test_nothing_is_overwritten(there: str, tmp_path: Path, capsys: pytest.Captu
     assert main(["new", "mesh", "--out", str(tmp_path / "hall.toml")]) == 2
     assert there in capsys.readouterr().err
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {there: "mine"}
+
+
+def test_examples_of_tables_are_read_and_lines_have_no_gaps() -> None:
+    text = starter("catenoid", "hall")
+    own = text.replace("# [erection]", "[erection]").replace("# lifting =", "lifting =")
+    table = parse_project(tomllib.loads(own)).erection
+    assert table is not None
+    assert table.lifting is not None
+    assert table.lifting.points == (2, 3, 4)
+    comments = [line for line in text.splitlines() if re.match(r"# \S", line)]
+    assert not [line for line in comments if re.search(r"\S  +\S", line) and "lamella run" not in line]
+    assert not [line for line in comments if re.fullmatch(r"# \[[^\]]+\]", line) and line[3:-1] in UNITS]
+
+
+UNITS = {"m", "mm", "deg", "1/m", "Pa", "N", "N/m", "N m/rad", "kg", "cells", "s"}

@@ -11,6 +11,7 @@ import pytest
 import lamella
 from lamella import compute, parse_project
 from lamella.network.network import SEAM
+from lamella.stages import all_stages
 from lamella.stages.fabrication import view_layers
 from lamella.stages.network import scene as network_scene
 from lamella.stages.network.marks import network_marks
@@ -85,6 +86,18 @@ def test_hardware_is_bounded(results: lamella.Results, monkeypatch: pytest.Monke
 def test_kinds_that_take_least_for_a_piece_come_first(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(view_layers, "SHOWN_TRIANGLES", 3)
     assert view_layers.bounded([(3, 1), (4, 1)]) == [0]
+
+
+def test_beams_come_before_small_hardware_and_a_picture_has_room_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(view_layers, "STORED_TRIANGLES", 10)
+    assert view_layers.bounded([(3, 1), (1, 10)], frozenset({1})) == [1]
+    assert view_layers.bounded([(3, 1), (1, 10)], frozenset({1}), still=True) == [0, 1]
+
+
+def test_names_of_quantities_are_those_that_stages_declare(scene: Scene) -> None:
+    declared = {key for stage in all_stages.STAGES for key in stage.quantities}
+    shown = {one.key for layer in scene.layers for one in layer.quantities}
+    assert {"utilisation", "twist", "K"} <= shown <= declared
 
 
 def test_without_joints_strips_have_their_thickness_still() -> None:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from lamella.base.progress import Progress
     from lamella.project.tables import Project
     from lamella.stages.results import Results
+    from lamella.stages.stage import Stage
 
 BUILT = "fabrication"
 """Stage whose output is what is built: no later one changes what a picture shows."""
@@ -73,10 +74,13 @@ def run_picture(arguments: argparse.Namespace) -> None:
     from lamella.files.whole import write_whole
     from lamella.project.read import located, read_project
     from lamella.stages.scene import scene_of
+    from lamella.stages.shown_names import check_colour, check_slider
     from lamella.view.render.png import png_bytes
     from lamella.view.render.render import refuse_size, render
+    from lamella.view.render.soup import shown_layers
     from lamella.view.render.standpoint import direction_of
     from lamella.view.scene.still import at_frame
+    from lamella.view.surroundings import standing
 
     size = size_of(arguments.size)
     # before anything is computed
@@ -85,21 +89,29 @@ def run_picture(arguments: argparse.Namespace) -> None:
     name, frame = frame_of(arguments.frames)
     file = project_file(arguments.project)
     target = arguments.out or Path(f"{arguments.project.stem if file != arguments.project else file.stem}.png")
+    if target.suffix.lower() not in ("", ".png"):
+        raise InputError(f"{target}: pictures are PNG files", f"name it {target.with_suffix('.png').name}", "--out")
     if not target.parent.is_dir():
         raise InputError(f"{target.parent}: no such folder", "make it first, or name another file with --out")
     project = read_project(file)
     screen = Screen(verbose=False)
     try:
         progress = silent if arguments.quiet else screen
-        results = _computed(project, arguments.until, file.parent, progress, whole=bool(name))
+        wanted = _wanted(project, arguments.until, whole=bool(name))
+        check_slider(project, name, wanted)
+        check_colour(arguments.colour, wanted)
+        results = _computed(project, wanted, file.parent, progress, ends=arguments.until is None)
     except InputError as error:
         raise located(error, file) from None
     finally:
         screen.clear()
     with reported_from(results.origin):
-        scene = scene_of(results)
+        scene = scene_of(results, still=True)
+        if name:
+            moved = at_frame(scene, name, frame)
+            scene = standing(moved, shown_layers(moved, surface=arguments.surface))
         pixels = render(
-            at_frame(scene, name, frame) if name else scene,
+            scene,
             view=arguments.view,
             size=size,
             colour="layer" if arguments.colour == "family" else arguments.colour,
@@ -107,6 +119,8 @@ def run_picture(arguments: argparse.Namespace) -> None:
         )
     write_whole(target, png_bytes(pixels))
     if not arguments.quiet:
+        for remark in scene.remarks:
+            print(readable(remark))
         print(readable(f"picture: {target}"))
 
 
@@ -153,17 +167,24 @@ def project_file(given: Path) -> Path:
     return file
 
 
-def _computed(project: Project, until: str | None, folder: Path, progress: Progress, *, whole: bool) -> Results:
-    """A project as far as it comes, but no farther than what is built where not the whole is wanted."""
-    from lamella.stages.clock import Clock
-    from lamella.stages.computation import Computation
-    from lamella.stages.memory import Memory
+def _wanted(project: Project, until: str | None, *, whole: bool) -> tuple[Stage[Any], ...]:
+    """Stages of a project as far as it comes, but no farther than what is built where not the whole is wanted."""
     from lamella.stages.wanted import wanted_stages
 
     wanted, _ = wanted_stages(project, until)
     names = [stage.name for stage in wanted]
     if until is None and not whole and BUILT in names:
-        wanted = wanted[: names.index(BUILT) + 1]
+        return wanted[: names.index(BUILT) + 1]
+    return wanted
+
+
+def _computed(
+    project: Project, wanted: tuple[Stage[Any], ...], folder: Path, progress: Progress, *, ends: bool
+) -> Results:
+    from lamella.stages.clock import Clock
+    from lamella.stages.computation import Computation
+    from lamella.stages.memory import Memory
+
     computation = Computation(project, wanted, folder, Memory(), Clock(progress))
-    computation.run_all(wanted, ends=until is None)
+    computation.run_all(wanted, ends=ends)
     return computation.results()

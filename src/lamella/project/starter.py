@@ -11,6 +11,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from lamella.project.tables import FURTHER_TABLES, SURFACE_TABLES, Project
+from lamella.project.text_edits import written
 
 # the film between a saddle-shaped rim of 12 x 9 m and a ring
 _BOUNDARY = """\
@@ -52,15 +53,16 @@ _ACTIVE: dict[str, Any] = {
     "lamella.thickness": 0.001,
     "lamella.layers": 1,
 }
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+
 # with 24 cells nodes of these come within millimetres of the rim, or strips meet beyond it
 _OWN: dict[str, dict[str, Any]] = {"unduloid": {"network.cells": 25}, "mesh": {"network.cells": 16}}
 
 
 def _key(table: str, name: str, field: FieldInfo, active: dict[str, Any], plain: dict[str, Any]) -> str:
     extra = field.json_schema_extra
-    unit = extra.get("unit", "") if isinstance(extra, dict) else ""
-    about = (field.description or "") + (f" [{unit}]" if unit else "")
-    lines = textwrap.wrap(about, 98, initial_indent="# ", subsequent_indent="# ")
+    unit = str(extra.get("unit", "")) if isinstance(extra, dict) else ""
+    lines = _comment((field.description or "") + (f" [{unit}]" if unit else ""), unit)
     required = field.is_required()
     # a commented key stands at its default; what has none shows an example
     shown = required or field.default is None or name == "scale"
@@ -72,18 +74,26 @@ def _key(table: str, name: str, field: FieldInfo, active: dict[str, Any], plain:
         # a table that a word stands for
         value = plain[name]
     if isinstance(value, BaseModel):
-        inside = ", ".join(f"{key} = {number}" for key, number in value.model_dump().items())
-        return "\n".join([*lines, f"# {name} = {{{inside}}}"])
-    line = f"{name} = " + tomli_w.dumps({"x": value}, indent=0).partition(" = ")[2].strip().replace("\n", " ")
-    line = line.replace("[ ", "[").replace(", ]", "]")
-    written = required or f"{table}.{name}" in active or (bool(field.examples) and name == "scale")
-    return "\n".join([*lines, line if written else f"# {line}"])
+        return "\n".join([*lines, f"# {name} = {written(value.model_dump(exclude_none=True))}"])
+    line = f"{name} = {written(value)}"
+    plainly = required or f"{table}.{name}" in active or (bool(field.examples) and name == "scale")
+    return "\n".join([*lines, line if plainly else f"# {line}"])
+
+
+def _comment(text: str, unit: str = "") -> list[str]:
+    """A text as lines of a comment; a unit at its end stays beside the word before it."""
+    words = " ".join(text.split())
+    if unit:
+        own = unit.replace(" ", _NO_BREAK)
+        words = words.removesuffix(f" [{unit}]") + f"{_NO_BREAK}[{own}]"
+    lines = textwrap.wrap(words, 98, initial_indent="# ", subsequent_indent="# ")
+    return [line.replace(_NO_BREAK, " ") for line in lines]
 
 
 def _table(name: str, model: type[BaseModel], active: dict[str, Any], skip: frozenset[str] = frozenset()) -> str:
     plain = model.model_construct().model_dump(mode="json", warnings=False)
     keys = [_key(name, key, field, active, plain) for key, field in model.model_fields.items() if key not in skip]
-    about = textwrap.wrap((model.__doc__ or "").strip(), 98, initial_indent="# ", subsequent_indent="# ")
+    about = _comment(model.__doc__ or "")
     field = Project.model_fields[name]
     # a table that changes what is made by being there stands as a comment
     header = f"# [{name}]" if field.default is None and not field.is_required() else f"[{name}]"

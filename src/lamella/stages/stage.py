@@ -159,6 +159,10 @@ class Stage(Generic[Out]):
     figures : tuple of Figure
     report : (section, tuple of str)
         Heading and keys of the report's table.
+    sliders : tuple of str
+        Names of the frames that its scene may have; of those with a second word the first.
+    quantities : tuple of str
+        Keys of what its scene's layers may be coloured by.
     """
 
     name: ClassVar[str]
@@ -166,6 +170,8 @@ class Stage(Generic[Out]):
     writes: ClassVar[tuple[tuple[str, str], ...]] = ()
     figures: ClassVar[tuple[Figure[Any], ...]] = ()
     report: ClassVar[tuple[str, tuple[str, ...]]] = ("", ())
+    sliders: ClassVar[tuple[str, ...]] = ()
+    quantities: ClassVar[tuple[str, ...]] = ()
 
     def reads(self, project: Project, wanted: tuple[str, ...]) -> tuple[str, ...]:
         """Tables or keys of the project that decide the output, of a computation of some stages."""
@@ -250,3 +256,7 @@ class Stage(Generic[Out]):
             With the outputs of all stages that were run, those after it too.
         """
         return iter(())
+
+    def still(self, out: Out, up: Upstream) -> Iterator[Shown]:
+        """What the stage adds to a picture: that of the view, where a picture need not hold less."""
+        return self.scene(out, up)

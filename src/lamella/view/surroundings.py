@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from lamella.base.arrays import Floats, Integers
-from lamella.view.scene.layer import MeshLayer
+from lamella.view.scene.layer import Layer, MeshLayer
+from lamella.view.scene.scene import Scene
 
 TALL = 1.75
 """Height of the person, m."""
@@ -98,6 +100,25 @@ def surroundings(low: Floats, high: Floats) -> Iterator[MeshLayer]:
         faces=faces,
         normals=_normals(vertices, faces),
     )
+
+
+def standing(scene: Scene, shown: Iterable[Layer]) -> Scene:
+    """The scene with ground and person where what a picture of it shows is, after layers have moved.
+
+    Parameters
+    ----------
+    scene : Scene
+    shown : iterable of Layer
+        Those of its layers that the picture shows.
+    """
+    about = ("ground", "person")
+    built = [one for one in scene.layers if one.material not in about]
+    clouds = [one.reach for one in shown if one.material not in about and len(one.points)]
+    if not clouds:
+        return scene
+    low = np.min([cloud.min(0) for cloud in clouds], axis=0)
+    high = np.max([cloud.max(0) for cloud in clouds], axis=0)
+    return replace(scene, layers=(*built, *surroundings(low, high)))
 
 
 def person() -> tuple[Floats, Integers]:

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from lamella.base.errors import InputError
+from lamella.view.render.soup import shown_layers
 from lamella.view.scene.frames import Frames, Motion
-from lamella.view.scene.layer import PointsLayer
+from lamella.view.scene.layer import MeshLayer, PointsLayer
 from lamella.view.scene.quantity import magnitude
 from lamella.view.scene.scene import Scene, make_scene
 from lamella.view.scene.still import at_frame
+from lamella.view.surroundings import standing, surroundings
 
 PLACES = np.array([[0.0, 0, 0], [1, 2, 3]])
 
@@ -45,3 +47,20 @@ def test_frames_that_are_not_there_are_refused(scene: Scene, name: str, frame: i
     with pytest.raises(InputError) as error:
         at_frame(scene, name, frame)
     assert error.value.where == "--frames"
+
+
+def test_the_ground_is_below_what_a_frame_shows() -> None:
+    """A roof from 0 to 3 m that lies at 1 m before it is raised, with a hidden layer farther down."""
+    roof = MeshLayer(name="roof", label="roof", positions=np.array([[0.0, 0, 0], [4, 0, 0], [0, 4, 3]]), faces=FACE)
+    deep = MeshLayer(name="deep", label="deep", positions=roof.positions - 9, faces=FACE, groups=("g",), visible=False)
+    flat = np.array([[[0.0, 0, 1], [5, 0, 1], [0, 5, 1]]])
+    frames = Frames("f", "F", np.zeros(1), motions=(Motion("roof", positions=flat),))
+    scene = make_scene("x", [roof, deep, frames, *surroundings(*np.array([[0.0, 0, 0], [4, 4, 3]]))])
+    moved = at_frame(scene, "f", 0)
+    still = standing(moved, shown_layers(moved, surface=True))
+    assert still.layer("ground").points[0].tolist() == [2.5, 2.5, 1.0]
+    assert still.layer("person").points[:, 2].min() == 1.0
+    assert still.layer("person").points[:, 0].min() > 5.0
+
+
+FACE = np.array([[0, 1, 2]])

@@ -33,6 +33,8 @@ class ErectionStage(Stage["ErectionOutput"]):
     """See `lamella.stages.stage.Stage`."""
 
     name = "erection"
+    sliders = ("erection",)
+    quantities = ("joint_turn",)
     needs = ("surface", "network", "lamellas", "fabrication")
     writes = (
         (

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from lamella.base.message import Message
 from lamella.files.write.drawn_layer import Body, DrawnLayer, Repeated
 from lamella.hardware.item import Item
+from lamella.hardware.shape import Sweep
 from lamella.project.tables import Project
 from lamella.solid.bodies import TRIANGLE_LIMIT, StripBody, body_step, strip_bodies, triangle_count
+from lamella.solid.coarser import coarser_sweep
 from lamella.solid.extrusion import item_solid, item_solids
 from lamella.solid.finish import finish
 from lamella.stages.fabrication.output import FabricationOutput
@@ -44,6 +47,10 @@ REPORT_TRIANGLES = 200_000
 """Of all strips in a report: some 3 MB."""
 COARSER = 1.5
 """By how much steps are lengthened until the strips have no more."""
+CHORD, CHORD_MOST = 0.02, 0.2
+"""Chord errors of bars in a report over how far their sections reach: at first, and at most."""
+BEAM, BEAM_TRIANGLES = "edge_beam", 60_000
+"""Layer of edge beams, and how many triangles they have together until their chord error is larger."""
 SOLIDS = {"A": (210, 130, 105), "B": (105, 150, 205)}
 """Of the strips' layers."""
 
@@ -77,7 +84,21 @@ def report_layers(out: FabricationOutput, lamellas: Lamellas, material: str) -> 
         step *= COARSER
     if triangle_count(out.parts, step) <= REPORT_TRIANGLES:
         yield from strip_layers(out, lamellas, material, step)
-    yield from hardware_layers(out.hardware.items)
+    yield from _bounded_hardware(out.hardware.items)
+
+
+def _bounded_hardware(items: tuple[Item, ...]) -> Iterator[DrawnLayer]:
+    """Hardware whose bars have larger chord errors where they would have too many triangles."""
+    share = CHORD
+    layers = list(hardware_layers(items, share))
+    while share < CHORD_MOST and _triangles(layers, BEAM) > BEAM_TRIANGLES:
+        share *= COARSER
+        layers = list(hardware_layers(items, share))
+    yield from layers
+
+
+def _triangles(layers: list[DrawnLayer], name: str) -> int:
+    return sum(len(solid.triangles) for layer in layers if layer.name == name for solid in layer.repeated)
 
 
 def strip_layers(
@@ -91,10 +112,10 @@ def strip_layers(
         yield DrawnLayer(f"solids {family}", colour=colour, bodies=tuple(bodies[family]))
 
 
-def hardware_layers(items: tuple[Item, ...]) -> Iterator[DrawnLayer]:
-    """A layer for each kind of hardware."""
+def hardware_layers(items: tuple[Item, ...], chord: float = 0.0) -> Iterator[DrawnLayer]:
+    """A layer for each kind of hardware; bars along polylines may have a chord error, over their section's reach."""
     for kind in dict.fromkeys(item.kind for item in items):
-        of_kind = [one for item in items if item.kind == kind for one in _repeated(item)]
+        of_kind = [one for item in items if item.kind == kind for one in _repeated(item, chord)]
         yield DrawnLayer(kind, colour=COLOURS.get(kind, OTHER), repeated=tuple(of_kind))
 
 
@@ -113,7 +134,7 @@ def _body(one: StripBody, material: str, look: str) -> Body:
     return Body(one.name, one.solid.vertices, one.solid.triangles, text, look)
 
 
-def _repeated(item: Item) -> Iterator[Repeated]:
+def _repeated(item: Item, chord: float) -> Iterator[Repeated]:
     """A kind of hardware as a block of the model, or each piece as one of its own where pieces are bent."""
     places, look = item.places, finish(item.density)
     text = {
@@ -129,5 +150,6 @@ def _repeated(item: Item) -> Iterator[Repeated]:
             name = f"{item.id} {number + 1}"
             yield Repeated(name, solid.vertices, solid.triangles, here, axes, (label,), inside, look)
         return
-    solid = item_solid(item)
+    coarse = tuple(coarser_sweep(one, chord) if chord and isinstance(one, Sweep) else one for one in item.shape)
+    solid = item_solid(replace(item, shape=coarse))
     yield Repeated(item.id, solid.vertices, solid.triangles, places.origins, places.axes, places.labels, text, look)

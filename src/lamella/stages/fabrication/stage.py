@@ -197,3 +197,8 @@ class FabricationStage(Stage[FabricationOutput]):
         from lamella.stages.fabrication.view_layers import fabrication_scene
 
         yield from fabrication_scene(up.project, out, up.outputs["lamellas"].lamellas)
+
+    def still(self, out: FabricationOutput, up: Upstream) -> Iterator[Shown]:
+        from lamella.stages.fabrication.view_layers import fabrication_scene
+
+        yield from fabrication_scene(up.project, out, up.outputs["lamellas"].lamellas, still=True)

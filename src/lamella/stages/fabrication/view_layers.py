@@ -8,11 +8,12 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from lamella.base.arrays import Integers
+from lamella.base.wording import counted
 from lamella.files.write.drawn_layer import DrawnLayer, Repeated
 from lamella.network.network import Network
 from lamella.project.tables import Project
 from lamella.stages.fabrication.output import FabricationOutput
-from lamella.stages.fabrication.scene import report_layers
+from lamella.stages.fabrication.scene import BEAM, report_layers
 from lamella.stages.lamellas.scene import LOOKS
 from lamella.stages.network.scene import thinned
 from lamella.strip.lamellas import Lamellas
@@ -28,13 +29,27 @@ STORED_TRIANGLES = 100_000
 SHOWN_TRIANGLES = 1_500_000
 """Triangles of all pieces of hardware together that a browser draws in time."""
 
+PICTURE_TRIANGLES = 2_000_000
+"""Triangles of all pieces of hardware together in a still picture: 0.5 GB."""
+
 GROUPS = {"edge_beam": "Edge beams", "cable": "Cables", "turnbuckle": "Cables", "clamp": "Cables"}
 """Switches of kinds of hardware; the others are on one."""
 OTHER_GROUP = "Hardware"
 
 
-def fabrication_scene(project: Project, out: FabricationOutput, lamellas: Lamellas) -> Iterator[Shown]:
-    """Solids of strips where there are joints or they were asked for, and hardware."""
+def fabrication_scene(
+    project: Project, out: FabricationOutput, lamellas: Lamellas, *, still: bool = False
+) -> Iterator[Shown]:
+    """Solids of strips where there are joints or they were asked for, and hardware.
+
+    Parameters
+    ----------
+    project : Project
+    out : FabricationOutput
+    lamellas : Lamellas
+    still : bool
+        Whether it is for a picture, which no browser has to hold.
+    """
     if project.joint is None and not project.files.solids:
         return
     layers = list(report_layers(out, lamellas, project.lamella.material))
@@ -42,10 +57,12 @@ def fabrication_scene(project: Project, out: FabricationOutput, lamellas: Lamell
         if layer.bodies:
             yield _strips(layer, lamellas.network)
     kinds = [(layer, solid) for layer in layers for solid in layer.repeated]
-    shown = bounded([(len(solid.origins), len(solid.triangles)) for _, solid in kinds])
+    beams = frozenset(k for k, (layer, _) in enumerate(kinds) if layer.name == BEAM)
+    shown = bounded([(len(solid.origins), len(solid.triangles)) for _, solid in kinds], beams, still=still)
     if len(shown) < len(kinds):
         left_out = sum(len(solid.origins) for _, solid in kinds) - sum(len(kinds[k][1].origins) for k in shown)
-        yield Remark(f"Drawn without {left_out:,} pieces of hardware; model.3dm and model.glb hold them.")
+        left = counted(left_out, "piece")
+        yield Remark(f"Drawn without {left} of hardware; model.3dm and model.glb hold all hardware.")
     single: dict[str, list[Repeated]] = {}
     for layer, solid in (kinds[k] for k in shown):
         if len(solid.origins) == 1:
@@ -57,15 +74,20 @@ def fabrication_scene(project: Project, out: FabricationOutput, lamellas: Lamell
         yield _merged(kind, colours[kind], solids)
 
 
-def bounded(sizes: Sequence[tuple[int, int]]) -> list[int]:
-    """Which kinds of hardware a view holds within its limits: those come first that take least for each piece.
+def bounded(sizes: Sequence[tuple[int, int]], beams: frozenset[int] = frozenset(), *, still: bool = False) -> list[int]:
+    """Which kinds of hardware a view holds within its limits: beams, then those that take least for each piece.
 
     Parameters
     ----------
     sizes : sequence of (pieces, triangles of one)
+    beams : frozenset of int
+        Which of them are edge beams.
+    still : bool
+        Whether it is a picture, of which nothing but its triangles is bounded.
     """
-    order = sorted(range(len(sizes)), key=lambda k: (sizes[k][1] / max(sizes[k][0], 1), k))
-    room = np.array([PIECE_LIMIT, STORED_TRIANGLES, SHOWN_TRIANGLES])
+    order = sorted(range(len(sizes)), key=lambda k: (k not in beams, sizes[k][1] / max(sizes[k][0], 1), k))
+    limits = (np.inf, np.inf, PICTURE_TRIANGLES) if still else (PIECE_LIMIT, STORED_TRIANGLES, SHOWN_TRIANGLES)
+    room = np.array(limits)
     kept = []
     for k in order:
         pieces, triangles = sizes[k]

@@ -38,6 +38,16 @@ class LamellasStage(Stage[LamellasOutput]):
     """See `lamella.stages.stage.Stage`."""
 
     name = "lamellas"
+    quantities = (
+        "utilisation",
+        "mises",
+        "layers",
+        "planarity",
+        "limit",
+        "limit_thickness",
+        "limit_height",
+        "developable_stress",
+    )
     needs = ("surface", "network")
     writes = (
         ("lamellas.json", "curvatures and stresses along every lamella, node marks of the flat strips"),

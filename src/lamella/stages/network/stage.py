@@ -41,6 +41,7 @@ class NetworkStage(Stage[NetworkOutput]):
     """See `lamella.stages.stage.Stage`."""
 
     name = "network"
+    quantities = ("twist", "geodesic")
     needs = ("surface",)
     writes = (
         ("network.json", "nodes, lamellas and faces, for programs"),

@@ -28,6 +28,7 @@ class PanelsStage(Stage["Panels"]):
     """See `lamella.stages.stage.Stage`."""
 
     name = "panels"
+    quantities = ("out_of_plane", "kink", "plate_area")
     needs = ("surface", "network")
     writes = (
         ("panels/panels.dxf", "where `[panels]` is given: the flat outline of each kind of plate"),

@@ -33,6 +33,8 @@ class StructureStage(Stage[StructureOutput]):
     """See `lamella.stages.stage.Stage`."""
 
     name = "structure"
+    sliders = ("cases", "steps", "buckling", "swinging")
+    quantities = ("case_use", "case_mises", "cable_force")
     needs = ("surface", "network", "lamellas", "fabrication")
     writes = (
         (

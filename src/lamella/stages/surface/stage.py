@@ -33,6 +33,7 @@ class SurfaceStage(Stage[SurfaceOutput]):
     """See `lamella.stages.stage.Stage`."""
 
     name = "surface"
+    quantities = ("deviation", "K", "ratio", "k1", "k2")
     writes = (
         ("surface.obj, surface.ply", "the surface as a mesh"),
         (

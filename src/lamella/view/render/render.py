@@ -64,7 +64,7 @@ def render(
     if not len(points):
         raise InputError("there is nothing to see", "compute a stage that shows something", "--until")
     ground = next((float(one.points[0, 2]) for one in scene.layers if one.name == "ground" and one.visible), None)
-    camera = standpoint(view, points, float(scene.box[0][2]), *size)
+    camera = standpoint(view, points, float(scene.box[0][2]) if ground is None else ground, *size)
     piece = PIECE_PIXELS * SUBPIXELS * camera.distance / focal(height)
     soup = soup_of(scene, colour=colour, surface=surface, eye=camera.eye, piece=piece)
     picture = _Picture.of(soup, camera, width, height, ground)
@@ -89,7 +89,9 @@ def refuse_size(size: tuple[int, int]) -> None:
 def _refuse_colour(scene: Scene, colour: str) -> None:
     known = {one.key for layer in scene.layers for one in layer.quantities}
     if colour not in known | {"", "layer"}:
-        raise InputError(f"there is no quantity {colour!r}", f"choose one of {', '.join(sorted(known))}", "--colour")
+        raise InputError(
+            f"there is no quantity {colour!r}", f"choose one of {', '.join(['family', *sorted(known)])}", "--colour"
+        )
 
 
 @dataclass(frozen=True, eq=False)
