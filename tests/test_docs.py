@@ -132,6 +132,7 @@ def projection_pictures() -> dict[str, Any]:
 def test_quoted_figures_of_the_papers_pictures(
     picture: str, quoted: dict[str, str | None], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """Figures that docs/projection.md quotes of the paper's pictures, computed anew."""
     projection_pictures()[picture](tmp_path)
     said, page = capsys.readouterr().out, " ".join((DOCS / "projection.md").read_text().split())
     assert "stagnated" not in said

@@ -304,6 +304,7 @@ class Imports:
 
 
 def test_folders_import_what_they_may() -> None:
+    """No import against the table of rooms."""
     assert Imports(PACKAGE, ONWARD).against(MAY_IMPORT) == []
 
 

@@ -118,6 +118,7 @@ HEADER = re.compile(rf"(?:# )?\[+(surface|{'|'.join([*FURTHER_TABLES, *LIST_TABL
 def test_a_new_project_is_good_and_mentions_every_key(
     here: Path, capsys: pytest.CaptureFixture[str], kind: str
 ) -> None:
+    """What `lamella new` writes passes `lamella check`, and names every key of its tables."""
     assert main(["new", kind]) == 0
     assert f"lamella run {kind}.toml" in capsys.readouterr().out
     text = (here / f"{kind}.toml").read_text()

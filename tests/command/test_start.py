@@ -37,6 +37,7 @@ NOTHING = ("numpy", "scipy", "pydantic", "orjson", "ezdxf", "rhino3dm", "tomli_w
     ids=" ".join,
 )
 def test_commands_import_what_they_use(arguments: list[str], without: tuple[str, ...]) -> None:
+    """Each command in a process of its own: heavy modules that it has no use for are not loaded."""
     # argparse ends after --help with an exit of its own
     code = (
         "import sys\nfrom lamella.command.main import main\n"

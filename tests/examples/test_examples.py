@@ -106,6 +106,7 @@ def test_example(name):
 
 @pytest.mark.parametrize("name", NUMBERS)
 def test_examples_warn_of_what_is_known_of_them_and_of_nothing_else(name):
+    """Warnings of every example in full, by patterns: nothing else is said."""
     left = list(WARNINGS.get(name, []))
     for message in run_of_example(name).summary["warnings"]:
         matching = [pattern for pattern in left if re.fullmatch(pattern, message)]

@@ -155,6 +155,7 @@ def test_the_name_is_the_files_when_not_given(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_schema_accepts_the_examples_and_refuses_what_the_program_refuses(path: Path) -> None:
+    """The JSON schema of a project against the program, on the examples and on copies with a fault."""
     schema = project_schema()
     jsonschema.Draft202012Validator.check_schema(schema)
     validator = jsonschema.Draft202012Validator(schema)

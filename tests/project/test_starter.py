@@ -16,6 +16,7 @@ from lamella.project.surface_tables import SURFACE_TABLES
 
 @pytest.mark.parametrize("kind", SURFACE_TABLES)
 def test_every_starter_runs_without_a_warning(kind: str, tmp_path: Path) -> None:
+    """`lamella new KIND` writes projects that run as they are."""
     file = tmp_path / f"{kind}.toml"
     assert main(["new", kind, "--out", str(file)]) == 0
     results = compute(read_project(file), folder=tmp_path)

@@ -107,6 +107,7 @@ def test_summaries_of_examples_have_every_key_with_finite_values(example: tuple[
 
 
 def test_summaries_agree_with_the_files_beside_them(example: tuple[Path, Path]) -> None:
+    """Counts, singular nodes and lengths of summary.json are those of network.json."""
     path, out = example
     summary = json.loads((out / "summary.json").read_bytes())
     assert (out / "surface.3dm").is_file() == (path.stem in FOUND)
